@@ -21,6 +21,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "rigid",
     "robust",
     "strong",
+    "tapered",
     "thrifty"
 ];
 

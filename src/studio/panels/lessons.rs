@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
-use crate::score::Evaluation;
+use crate::score::{Evaluation, Fitness};
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
     Asks, FITNESS_OF_THE_LANDED, Found, LESSONS, LessonScene, LessonView, Plays, Progress,
@@ -138,9 +138,14 @@ fn prediction(
         plays(ui, &progress.plays);
     } else if progress.is_revealed && !progress.lanes.is_empty() {
         lanes(ui, &progress.lanes);
+        match progress.fitness {
+            Some(Fitness::Climb) | None => explain(ui, FITNESS_OF_THE_LANDED),
+            Some(fitness) => explain(ui, &format!("Fitness: {}.", fitness.words())),
+        }
     }
     if !progress.runs.is_empty() {
-        runs(ui, progress, view.is_busy);
+        let asks = scene.question().map(|question| question.asks);
+        runs(ui, progress, asks, view.is_busy);
     }
 }
 
@@ -240,12 +245,13 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
             ui.end_row();
         }
     });
-    explain(ui, FITNESS_OF_THE_LANDED);
 }
 
 /// Chart of all runs, and a table of their results once these may be seen.
-fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
+fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: bool) {
     let runs = &progress.runs;
+    let fitness = runs.iter().find_map(Found::best).map(|best| best.trial.fitness);
+    let unit = fitness.map_or("", Fitness::unit);
     let palette = theme::of(ui);
     let best = |found: &Found| -> Vec<[f64; 2]> {
         let known = found.reports.iter().filter_map(|report| {
@@ -258,7 +264,8 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
         padded_range(lines.iter().flatten().map(move |point| point[of]), least)
     };
     if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, 1.0)) {
-        y_title(ui, "Best fitness of each generation (m)");
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({})", unit.trim()) };
+        y_title(ui, &format!("Best fitness of each generation{unit}"));
         fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&x, &y));
             for (lane, (found, points)) in runs.iter().zip(&lines).enumerate() {
@@ -281,15 +288,23 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, is_busy: bool) {
         }
         return;
     }
-    table(ui, "runs", &["", "Best", "Disqualified", "Run hash"], |ui| {
+    let of_bodies = asks == Some(Asks::LateBodyChanges);
+    let middle = if of_bodies { "Late changes" } else { "Disqualified" };
+    table(ui, "runs", &["", "Best", middle, "Run hash"], |ui| {
         for (lane, found) in runs.iter().enumerate() {
             lane_name(ui, lane, &found.name);
-            let best = found.best().map(|best| format!("{:.2} m", best.evaluation.fitness));
+            let best = found.best().map(|best| format!("{:.2}{unit}", best.evaluation.fitness));
             ui.label(best.unwrap_or_else(|| "-".to_owned()));
-            let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
-            let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
-            ui.label(format!("{out} of {all}"))
-                .on_hover_text("Disqualified snakes of all that were evaluated");
+            if of_bodies {
+                ui.label(found.late_body_changes().to_string()).on_hover_text(
+                    "Generations of the second half whose best snake has another body than the best before it",
+                );
+            } else {
+                let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
+                let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
+                ui.label(format!("{out} of {all}"))
+                    .on_hover_text("Disqualified snakes of all that were evaluated");
+            }
             hash(ui, found.run_hash.unwrap_or_default());
             ui.end_row();
         }

@@ -216,11 +216,6 @@ impl Edited {
         })
     }
 
-    /// The space of the changes: wide enough for the body, with its volume.
-    fn space(&self) -> GenomeSpace {
-        GenomeSpace::default().widened_for(&self.genome)
-    }
-
     /// Why the body cannot be shown, if it cannot.
     fn problem(&self) -> Option<String> {
         let checked = self.original.trial().check_genome(&self.genome);
@@ -264,9 +259,7 @@ impl Edited {
     }
 
     fn change(&mut self, block: usize, change: BodyChange) -> Result<(), String> {
-        let mut rng = stream(self.genome.hash(), 1, block as u32, Purpose::Mutation);
-        let changed = self.space().with_body_change_at(&self.genome, change, block, &mut rng);
-        let changed = changed.ok_or_else(|| {
+        let changed = changed_body(&self.genome, change, block).ok_or_else(|| {
             let limits = "2 to 12 blocks of 0.4 to 4 m and at most 12 m in all, and neighbours differ by a factor of 8 \
                           in mass and of 10 in inertia at most";
             format!("Not possible here: a body that evolves has {limits}.")
@@ -319,6 +312,14 @@ impl Edited {
         self.tuning = Some(task.map_err(|error| format!("Tuning could not start: {error}."))?);
         Ok(())
     }
+}
+
+/// A genome with a change of its body at a block, within the usual limits of evolving bodies and with the same volume; none if
+/// it is not possible. The same change always has the same result.
+pub(super) fn changed_body(genome: &Genome, change: BodyChange, block: usize) -> Option<Genome> {
+    let mut rng = stream(genome.hash(), 1, block as u32, Purpose::Mutation);
+    let space = GenomeSpace::default().widened_for(genome);
+    space.with_body_change_at(genome, change, block, &mut rng)
 }
 
 fn follow(

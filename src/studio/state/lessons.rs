@@ -238,6 +238,7 @@ impl Lessons {
         match scene {
             LessonScene::Lanes { lanes, champion, .. } => {
                 let champions = champions(champion, lanes)?;
+                progress.fitness = champions.first().map(|staged| staged.trial().fitness);
                 if progress.lanes.is_empty() {
                     progress.lanes = champions
                         .iter()
@@ -249,8 +250,9 @@ impl Lessons {
             // Finished runs are not repeated.
             LessonScene::Runs { .. } if progress.is_revealed => Ok(progress.race()),
             LessonScene::Runs { .. } if !progress.has_begun => Ok(None),
-            LessonScene::Runs { runs, .. } => {
-                let plans = runs.iter().map(plan).collect::<Result<Vec<_>, _>>()?;
+            LessonScene::Runs { preset, runs, .. } => {
+                let plans = runs.iter().map(|side| plan(preset, side));
+                let plans = plans.collect::<Result<Vec<_>, _>>()?;
                 progress.runs = runs.iter().map(found).collect();
                 let started = ParallelRuns::start(plans);
                 current.under_way = Some(

@@ -140,7 +140,7 @@ fn results_have_the_colours_of_their_lanes() {
     for part in ["lanes", "runs"] {
         let mut harness = Harness::builder().build_ui(|ui| match part {
             "lanes" => lanes(ui, &progress.lanes),
-            _ => runs(ui, &progress, false),
+            _ => runs(ui, &progress, Some(Asks::BestRun), false),
         });
         harness.run();
         let palette = theme::of_context(&harness.ctx);

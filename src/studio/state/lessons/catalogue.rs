@@ -1,12 +1,16 @@
 //! Texts and scenes of the lessons. Tests in [`super`] check that the conclusions are true.
 
+mod bodies;
 mod report;
 mod senses;
 
-use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::evolve::{Champion, RunPlan, Settings, with_fields};
+use crate::genome::BodyChange;
 use crate::save::library::{SavePlace, load_entry};
 use crate::save::load_preset;
+use crate::score::evaluate;
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::body_editor::changed_body;
 
 use super::lesson::{Lesson, Side};
 
@@ -15,7 +19,7 @@ pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it 
     whole snake is on the landing.";
 
 /// All lessons. Only findings and conclusions may state a result: the other texts are read before the experiments.
-pub(crate) const LESSONS: [Lesson; 7] = [
+pub(crate) const LESSONS: [Lesson; 8] = [
     report::FRICTION,
     report::FRAME_RATE,
     report::JOINT_LIMITS,
@@ -23,9 +27,10 @@ pub(crate) const LESSONS: [Lesson; 7] = [
     report::REPETITION,
     senses::LEARNED_BY_HEART,
     senses::BLINDFOLD,
+    bodies::PROTECTION,
 ];
 
-/// A built-in champion in each of these worlds.
+/// A built-in champion in each of these worlds or bodies.
 pub(super) fn champions(
     champion: &'static str,
     lanes: &[Side],
@@ -35,7 +40,11 @@ pub(super) fn champions(
     let original = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
     lanes
         .iter()
-        .map(|Side { name, changes, .. }| {
+        .map(|Side { name, changes, body_change, .. }| {
+            if let Some((change, block)) = *body_change {
+                return with_changed_body(&loaded.champion, change, block)
+                    .map(|staged| staged.named((*name).to_owned()));
+            }
             let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
             let settings = with_fields(&settings, changes.iter().copied())
                 .map_err(|error| error.to_string())?;
@@ -48,9 +57,23 @@ pub(super) fn champions(
         .collect()
 }
 
-/// Plan and thread count of a run: the preset "quick" with changes.
-pub(super) fn plan(side: &Side) -> Result<(RunPlan, usize), String> {
-    let preset = load_preset("quick").map_err(|error| error.to_string())?;
+/// A champion whose body has changed, with its old gait.
+fn with_changed_body(
+    champion: &Champion,
+    change: BodyChange,
+    block: usize,
+) -> Result<StagedChampion, String> {
+    let own = champion.trial.with_own_blocks(&champion.genome);
+    let own = own.map_err(|error| error.to_string())?;
+    let genome = changed_body(&own, change, block)
+        .ok_or_else(|| format!("{} is not possible at block {block}.", change.name()))?;
+    let evaluation = evaluate(&genome, &champion.trial);
+    Ok(StagedChampion::from_lesson(&Champion { genome, evaluation, ..champion.clone() }))
+}
+
+/// Plan and thread count of a run: a preset with changes.
+pub(super) fn plan(preset: &str, side: &Side) -> Result<(RunPlan, usize), String> {
+    let preset = load_preset(preset).map_err(|error| error.to_string())?;
     let settings = with_fields(&preset.settings, side.changes.iter().copied())
         .map_err(|error| error.to_string())?;
     Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))

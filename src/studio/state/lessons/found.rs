@@ -20,4 +20,16 @@ impl Found {
         let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
         champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
     }
+
+    /// Number of generations in the second half whose best snake has another structure of its body than the best of the
+    /// generation before.
+    pub fn late_body_changes(&self) -> usize {
+        let structure = |report: &GenerationReport| {
+            report.champion.as_ref().map(|champion| champion.genome.body.block_ids())
+        };
+        let structures: Vec<_> = self.reports.iter().map(structure).collect();
+        let first_late = structures.len() / 2;
+        let pairs = structures.iter().zip(structures.iter().skip(1)).skip(first_late.max(1) - 1);
+        pairs.filter(|(before, after)| before != after).count()
+    }
 }

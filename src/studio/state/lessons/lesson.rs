@@ -1,6 +1,7 @@
 //! The parts of a lesson: texts, scenes, and their lanes or runs.
 
 use super::prediction::{Asks, Question};
+use crate::genome::BodyChange;
 
 /// A guided experiment.
 #[derive(Debug)]
@@ -41,6 +42,8 @@ pub(crate) enum LessonScene {
     Runs {
         /// Label of its button.
         label: &'static str,
+        /// Preset of the runs.
+        preset: &'static str,
         /// Question to answer by a guess before the runs.
         question: Question,
         /// Runs.
@@ -80,6 +83,8 @@ pub(crate) struct Side {
     pub name: &'static str,
     /// Changed settings with their values.
     pub changes: &'static [(&'static str, &'static str)],
+    /// Change of the champion's body, whose gait stays as it is, with the index of the block that it concerns.
+    pub body_change: Option<(BodyChange, usize)>,
     /// Seed of the run.
     pub seed: u64,
     /// Worker threads of the run.
@@ -90,7 +95,12 @@ pub(super) const fn lane(
     name: &'static str,
     changes: &'static [(&'static str, &'static str)],
 ) -> Side {
-    Side { name, changes, seed: 1, threads: 1 }
+    Side { name, changes, body_change: None, seed: 1, threads: 1 }
+}
+
+/// A lane with the champion's gait in a changed body.
+pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: usize) -> Side {
+    Side { name, changes: &[], body_change: Some((change, block)), seed: 1, threads: 1 }
 }
 
 pub(super) const fn run(
@@ -99,7 +109,7 @@ pub(super) const fn run(
     threads: usize,
     changes: &'static [(&'static str, &'static str)],
 ) -> Side {
-    Side { name, changes, seed, threads }
+    Side { name, changes, body_change: None, seed, threads }
 }
 
 /// The champion alone, without changes.
@@ -120,4 +130,9 @@ pub(super) const fn best_run(finding: &'static str) -> Question {
 
 pub(super) const fn same_hash(finding: &'static str) -> Question {
     Question { text: "Will both runs have the same hash?", asks: Asks::SameHash, finding }
+}
+
+pub(super) const fn later_bodies(finding: &'static str) -> Question {
+    let text = "In which run does the body of the best snake change more often in the second half?";
+    Question { text, asks: Asks::LateBodyChanges, finding }
 }

@@ -3,7 +3,7 @@
 use super::found::Found;
 use super::lesson::LessonScene;
 use super::plays::Plays;
-use crate::score::Evaluation;
+use crate::score::{Evaluation, Fitness};
 
 /// Ends within this distance count as equally far, in metres.
 pub(super) const EQUAL_M: f32 = 1.0;
@@ -30,6 +30,8 @@ pub(crate) enum Asks {
     BestRun,
     /// Whether both runs have the same hash.
     SameHash,
+    /// In which run the best snake's body changes its structure more often in the second half.
+    LateBodyChanges,
 }
 
 /// The reader's progress in a scene.
@@ -41,6 +43,8 @@ pub(crate) struct Progress {
     pub has_begun: bool,
     /// Whether the result may be seen.
     pub is_revealed: bool,
+    /// Measure of fitness of the lanes.
+    pub fitness: Option<Fitness>,
     /// Name and result of each lane.
     pub lanes: Vec<(String, Evaluation)>,
     /// Results of the runs.
@@ -66,6 +70,7 @@ impl LessonScene {
             Some(Asks::Furthest | Asks::BestRun) => {
                 names().chain(["all within 1 m of each other"]).collect()
             }
+            Some(Asks::LateBodyChanges) => names().chain(["equally often"]).collect(),
             Some(Asks::PlaybackSpeed) => vec!["no, it ends differently", "yes, in every digit"],
             Some(Asks::SameHash) => vec!["the same hash", "different hashes"],
             None => Vec::new(),
@@ -133,6 +138,11 @@ impl Progress {
                     Truth { answer: 0, words: format!("the motions at {speeds} differ") }
                 })
             }
+            Asks::LateBodyChanges => {
+                let runs = self.runs.iter();
+                let late = runs.map(|found| (found.name.as_str(), found.late_body_changes()));
+                more_often(&late.collect::<Vec<_>>())
+            }
             Asks::SameHash => {
                 let hashes: Option<Vec<u64>> = self.runs.iter().map(|of| of.run_hash).collect();
                 let [first, second] = hashes?.try_into().ok()?;
@@ -160,6 +170,17 @@ fn furthest(ends: &[(&str, Option<f32>)]) -> Option<Truth> {
         let words = format!("\"{}\" gets furthest, to {most_m:.2} m", ends[best].0);
         Truth { answer: best, words }
     })
+}
+
+/// The run in which something happened most often; the answer after the last of them if that was equally often in all.
+fn more_often(counts: &[(&str, usize)]) -> Option<Truth> {
+    let most = counts.iter().map(|(_, count)| *count).max()?;
+    let first = counts.iter().position(|(_, count)| *count == most)?;
+    let all_are_equal = counts.iter().all(|(_, count)| *count == most);
+    let words: Vec<String> =
+        counts.iter().map(|(name, count)| format!("{count} times \"{name}\"")).collect();
+    let answer = if all_are_equal { counts.len() } else { first };
+    Some(Truth { answer, words: format!("it changed {}", words.join(" and ")) })
 }
 
 #[cfg(test)]
@@ -200,6 +221,14 @@ mod tests {
         let mut out = progress(None, &[25.2, 26.0, 25.9]);
         out.lanes[0].1.disqualified = Some(crate::world::Disqualification::TooFast);
         assert_eq!(out.true_answer(Asks::Furthest), Some(1), "a disqualified snake ends nowhere");
+    }
+
+    #[test]
+    fn changes_of_bodies_are_counted_in_words() {
+        let of = |first, second| more_often(&[("with", first), ("without", second)]).expect("two");
+        assert_eq!(of(3, 0).answer, 0);
+        assert_eq!(of(3, 0).words, "it changed 3 times \"with\" and 0 times \"without\"");
+        assert_eq!([of(1, 2).answer, of(2, 2).answer], [1, 2]);
     }
 
     #[test]

@@ -22,7 +22,9 @@ pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
             };
             Progress { lanes: staged.iter().map(of).collect(), plays, ..Progress::default() }
         }
-        LessonScene::Runs { runs, .. } => Progress { runs: outcome(runs), ..Progress::default() },
+        LessonScene::Runs { preset, runs, .. } => {
+            Progress { runs: outcome(preset, runs), ..Progress::default() }
+        }
     })
 }
 
@@ -43,11 +45,11 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
 }
 
 /// Evolves the runs of a scene.
-fn outcome(sides: &[Side]) -> Vec<Found> {
+fn outcome(preset: &str, sides: &[Side]) -> Vec<Found> {
     sides
         .iter()
         .map(|side| {
-            let (plan, threads) = plan(side).expect("allowed");
+            let (plan, threads) = plan(preset, side).expect("allowed");
             let pool = LocalPool::new(threads).expect("threads");
             let mut experiment = Experiment::new(plan);
             let mut found = found(side);
@@ -192,6 +194,21 @@ fn the_conclusion_about_the_senses_is_true() {
 }
 
 #[test]
+fn the_conclusion_about_protection_is_true() {
+    assert_eq!([answer(7, 0), answer(7, 1)], ["original", "with protection"]);
+    let [original, more, less] = ends_m(7, 0)[..] else { panic!("three lanes") };
+    let first_riser_m = champions("tapered", &[lesson::lane("original", &[])]).expect("it fits")[0]
+        .trial()
+        .stairs
+        .first_riser_y_m;
+    assert!(original > 23.0 && more.max(less) < first_riser_m, "{original}, {more}, {less}");
+    let [with, without] = &result(7, 1).runs[..] else { panic!("two runs") };
+    assert!(with.late_body_changes() >= 2 && without.late_body_changes() == 0);
+    let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
+    assert!(best(with) < best(without), "as the finding says");
+}
+
+#[test]
 fn every_scene_of_every_lesson_can_be_shown() {
     for lesson in &LESSONS {
         for scene in lesson.scenes {
@@ -199,8 +216,8 @@ fn every_scene_of_every_lesson_can_be_shown() {
                 LessonScene::Lanes { lanes, champion, .. } => {
                     champions(champion, lanes).expect(lesson.title);
                 }
-                LessonScene::Runs { runs, .. } => {
-                    runs.iter().for_each(|side| drop(plan(side).expect(lesson.title)));
+                LessonScene::Runs { preset, runs, .. } => {
+                    runs.iter().for_each(|side| drop(plan(preset, side).expect(lesson.title)));
                 }
             }
         }

@@ -19,7 +19,7 @@ struct Sheet {
     expected: &'static str,
 }
 
-const SHEETS: [Sheet; 7] = [
+const SHEETS: [Sheet; LESSONS.len()] = [
     Sheet {
         steps: &[
             "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
@@ -104,6 +104,18 @@ const SHEETS: [Sheet; 7] = [
         ],
         expected: "",
     },
+    Sheet {
+        steps: &[
+            "Begin lesson 8, guess, and watch the race to its end. Fill in the first table.",
+            "Choose \"Evolve with and without protection\", guess, and wait. Fill in the second table.",
+            "Race again, and select \"a block more\". In the Body panel: Edit this body, Adapt the gait.",
+        ],
+        questions: [
+            "Why is a snake with a changed body worse at first, even if its body could be better?",
+            "What does protection cost, and when is it worth that?",
+        ],
+        expected: "",
+    },
 ];
 
 /// A line to write on.
@@ -130,7 +142,7 @@ fn text(index: usize) -> String {
     for (number, step) in (1..).zip(sheet.steps) {
         text += &format!("{number}. {step}\n");
     }
-    text += &format!("\n{}\n## Explain\n\n", table(index));
+    text += &format!("\n{}\n## Explain\n\n", tables(index));
     for (number, question) in (1..).zip(sheet.questions) {
         text += &format!("{number}. {question}\n\n   {LINE}{LINE}\n\n");
     }
@@ -142,39 +154,52 @@ fn text(index: usize) -> String {
     )
 }
 
-/// Table to fill in.
-fn table(index: usize) -> String {
-    let scenes = || LESSONS[index].scenes.iter();
-    let mut asked = scenes().filter_map(|scene| scene.question()).map(|question| question.asks);
-    let has_speeds = asked.clone().any(|asks| asks == Asks::PlaybackSpeed);
-    let asks = asked.next();
-    let heads: &[&str] = match asks {
-        _ if has_speeds => &["Snake", "Ends at (m)", "Hash"],
-        Some(Asks::Furthest | Asks::PlaybackSpeed) => &["Snake", "Ends at (m)", "On the landing?"],
-        Some(Asks::BestRun) => {
-            &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
+/// Tables to fill in: one for all experiments with the same columns.
+fn tables(index: usize) -> String {
+    let asked =
+        || LESSONS[index].scenes.iter().filter_map(|scene| Some((scene, scene.question()?.asks)));
+    let has_speeds = asked().any(|(_, asks)| asks == Asks::PlaybackSpeed);
+    let heads = |asks: Asks| -> &'static [&'static str] {
+        match asks {
+            _ if has_speeds => &["Snake", "Ends at (m)", "Hash"],
+            Asks::Furthest | Asks::PlaybackSpeed => &["Snake", "Ends at (m)", "On the landing?"],
+            Asks::BestRun => {
+                &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
+            }
+            Asks::LateBodyChanges => {
+                &["Run", "Best fitness", "Changes of the body in the second half"]
+            }
+            Asks::SameHash => &["Run", "Hash"],
         }
-        Some(Asks::SameHash) | None => &["Run", "Hash"],
     };
-    let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
-    let blank = |name: &str| {
-        let mut cells = vec![name];
-        cells.resize(heads.len(), " ");
-        row(&cells)
-    };
-    let rule = row(&vec!["---"; heads.len()]);
-    let mut names = Vec::new();
-    for scene in scenes() {
-        match scene.question().map(|question| question.asks) {
-            Some(Asks::PlaybackSpeed) => names.extend(["played at × 1", "played at × 4"]),
-            Some(_) => names.extend(scene.sides().iter().map(|side| side.name)),
-            None => {}
+    let mut tables: Vec<(&[&str], Vec<&str>)> = Vec::new();
+    for (scene, asks) in asked() {
+        let names = match asks {
+            Asks::PlaybackSpeed => vec!["played at × 1", "played at × 4"],
+            _ => scene.sides().iter().map(|side| side.name).collect(),
+        };
+        if tables.last().is_none_or(|(of, _)| *of != heads(asks)) {
+            tables.push((heads(asks), Vec::new()));
+        }
+        let Some((_, rows)) = tables.last_mut() else { continue };
+        for name in names {
+            // Two scenes may have the original in common.
+            if !rows.contains(&name) {
+                rows.push(name);
+            }
         }
     }
-    // Two scenes may have the original in common.
-    let is_new = |index: &usize| !names[..*index].contains(&names[*index]);
-    let rows = (0..names.len()).filter(is_new).map(|index| blank(names[index]));
-    row(heads) + &rule + &rows.collect::<String>()
+    let row = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+    let table = |(heads, names): (&[&str], Vec<&str>)| {
+        let blank = |name: &str| {
+            let mut cells = vec![name];
+            cells.resize(heads.len(), " ");
+            row(&cells)
+        };
+        let rows: String = names.into_iter().map(blank).collect();
+        row(heads) + &row(&vec!["---"; heads.len()]) + &rows
+    };
+    tables.into_iter().map(table).collect::<Vec<_>>().join("\n")
 }
 
 /// Results of all experiments, in words.
@@ -193,6 +218,10 @@ fn expected(index: usize) -> String {
             let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
             format!("{}: {best}, {out} of {all} disqualified", found.name)
         };
+        let changes = |found: &Found| {
+            let best = found.best().map_or("none".to_owned(), |best| best.reached());
+            format!("{}: {best}, {} late changes", found.name, found.late_body_changes())
+        };
         let hash =
             |found: &Found| format!("{}: {:016x}", found.name, found.run_hash.unwrap_or_default());
         let play = |play: &Play| {
@@ -203,6 +232,7 @@ fn expected(index: usize) -> String {
             Asks::Furthest => progress.lanes.iter().map(lane).collect(),
             Asks::PlaybackSpeed => progress.plays.finished().iter().map(play).collect(),
             Asks::BestRun => progress.runs.iter().map(run).collect(),
+            Asks::LateBodyChanges => progress.runs.iter().map(changes).collect(),
             Asks::SameHash => progress.runs.iter().map(hash).collect(),
         };
         Some(format!("{} ({}). {}", scene.label(), results.join("; "), question.finding))

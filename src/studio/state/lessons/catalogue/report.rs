@@ -106,6 +106,7 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
         AS_FOUND,
         LessonScene::Runs {
             label: "Evolve with and almost without limits",
+            preset: "quick",
             question: best_run(
                 "Almost without limits, more snakes are disqualified, and fewer are left to breed from. The \
                  best snake with limits gets further, but it passes the stairs at their side.",
@@ -145,6 +146,7 @@ pub(super) const MUTATIONS: Lesson = Lesson {
         AS_FOUND,
         LessonScene::Runs {
             label: "Evolve with both ranges",
+            preset: "quick",
             question: best_run(
                 "With the range that stays large, the best snake gets further. Not every seed shows this, \
                  because some runs are lucky early.",
@@ -180,6 +182,7 @@ pub(super) const REPETITION: Lesson = Lesson {
         AS_FOUND,
         LessonScene::Runs {
             label: "The same run twice",
+            preset: "quick",
             question: same_hash(
                 "The same seed and settings give the same hash, with any number of threads and on every \
                  computer with an x86-64 processor.",
@@ -191,6 +194,7 @@ pub(super) const REPETITION: Lesson = Lesson {
         },
         LessonScene::Runs {
             label: "Friction changed by a millionth",
+            preset: "quick",
             question: same_hash("Even a change of a millionth gives another result."),
             runs: &[
                 run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
