@@ -20,6 +20,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "reflexes",
     "rigid",
     "robust",
+    "six",
     "strong",
     "tapered",
     "thrifty"

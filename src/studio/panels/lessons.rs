@@ -263,7 +263,9 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
     let axis = |of: usize, least: f64| {
         padded_range(lines.iter().flatten().map(move |point| point[of]), least)
     };
-    if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, 1.0)) {
+    // A metre of a distance, a tenth of a share.
+    let least = if unit.is_empty() { 0.1 } else { 1.0 };
+    if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, least)) {
         let unit = if unit.is_empty() { String::new() } else { format!(" ({})", unit.trim()) };
         y_title(ui, &format!("Best fitness of each generation{unit}"));
         fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {

@@ -12,7 +12,7 @@ use crate::studio::ui::theme;
 
 /// Smallest width of a cell with a picture, in points: in a smaller one it would be a smudge.
 const LEAST_WIDTH: f32 = 16.0;
-/// Share of a cell's width that the longest body takes.
+/// Share of a cell's width that a body takes.
 const FILLED: f32 = 0.9;
 /// Size of the large picture at most, in points.
 const LARGE: egui::Vec2 = egui::vec2(200.0, 60.0);
@@ -39,7 +39,8 @@ impl ArchivePictures {
         Self { bodies, longest_m }
     }
 
-    /// Draws the body of a cell from the side, the head on the right, all bodies on one scale. `ground` is the cell's colour.
+    /// Draws the body of a cell from the side, the head on the right, as large as the cell allows: its row tells the length.
+    /// `ground` is the cell's colour.
     pub fn draw(
         &self,
         painter: &egui::Painter,
@@ -50,9 +51,8 @@ impl ArchivePictures {
         let Some(body) = self.bodies.get(&cell).filter(|_| rect.width() >= LEAST_WIDTH) else {
             return;
         };
-        let scale = FILLED * rect.width() / self.longest_m.max(f32::MIN_POSITIVE);
-        // A tall body is drawn smaller rather than into the next cell.
-        let scale = scale.min(FILLED * rect.height() / body.size_m()[2].max(f32::MIN_POSITIVE));
+        let [_, length_m, height_m] = body.size_m().map(|size_m| size_m.max(f32::MIN_POSITIVE));
+        let scale = FILLED * (rect.width() / length_m).min(rect.height() / height_m);
         let ink = theme::palette::text_on(ground);
         let shades = [ink.gamma_multiply(0.9), ink.gamma_multiply(0.5)];
         side_view(painter, body, rect.center(), scale, shades);

@@ -9,11 +9,14 @@ use crate::genome::{BodyChange, Genome};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::{Ancestor, Ancestry, GenerationReport};
 use crate::studio::commands::pick::Pick;
+use crate::world::BodyPlan;
 
 /// Maximum number of bodies that are drawn; the earliest are left out.
 const MAX_BODIES: usize = 24;
-/// Half of the width that a block of one metre has in the chart, in columns.
-const HALF_METRE: f64 = 0.2;
+/// Width of a block of one metre in the chart, in columns, unless a body would then be wider than [`WIDEST`].
+const METRE: f64 = 0.4;
+/// Width of the widest body in the chart, in columns.
+const WIDEST: f64 = 0.9;
 
 /// The first individual with a structure.
 struct Structure {
@@ -42,29 +45,22 @@ pub(super) fn view(
     let left_out = structures.len().saturating_sub(MAX_BODIES);
     structures.drain(..left_out);
     let agent = &settings.trial.agent;
+    let bodies: Vec<BodyPlan> =
+        structures.iter().map(|structure| agent.body_plan(&structure.genome)).collect();
+    let seen: Vec<Vec<[f64; 4]>> = bodies.iter().map(seen_from_above).collect();
+    let half_widths_m = seen.iter().flatten().map(|[left, right, ..]| left.abs().max(right.abs()));
+    let widest_m = 2.0 * half_widths_m.fold(f64::MIN_POSITIVE, f64::max);
+    let metre = METRE.min(WIDEST / widest_m);
     let mut blocks: [Vec<[f64; 4]>; 2] = Default::default();
     let (mut hits, mut tallest_m) = (Vec::new(), 1.0_f64);
-    for (column, structure) in (1..).zip(&structures) {
-        let (body, x) = (agent.body_plan(&structure.genome), f64::from(column));
+    for (column, (structure, (body, seen))) in
+        (1..).zip(structures.iter().zip(bodies.iter().zip(seen)))
+    {
+        let x = f64::from(column);
         let length_m = f64::from(body.length_m());
         tallest_m = tallest_m.max(length_m);
-        let mut top_m = length_m;
-        // Of a creature the boxes around its parts.
-        let boxes_m = if body.is_branching() { body.rest_boxes_m() } else { Vec::new() };
-        for index in 0..body.limbs() {
-            let [width_m, limb_m, _] = body.limb_size_m(index).map(f64::from);
-            let half = HALF_METRE * width_m;
-            let bottom_m = top_m - limb_m;
-            let shown = match boxes_m.get(index) {
-                Some([least, most]) => {
-                    let across = [least.x, most.x].map(|x_m| x + 2.0 * HALF_METRE * f64::from(x_m));
-                    let along = [least.y, most.y].map(|y_m| length_m + f64::from(y_m));
-                    [across[0], across[1], along[0], along[1]]
-                }
-                None => [x - half, x + half, bottom_m, top_m],
-            };
-            blocks[index % 2].push(shown);
-            top_m = bottom_m;
+        for (index, [left, right, bottom, top]) in seen.into_iter().enumerate() {
+            blocks[index % 2].push([x + left * metre, x + right * metre, bottom, top]);
         }
         let unit = settings.trial.fitness.unit();
         let words = words(structure, body.limbs(), length_m, unit);
@@ -101,6 +97,34 @@ pub(super) fn view(
         ..Figure::of("Ancestry of the best body", chart)
     };
     ChartView::new(figure, vec![hits])
+}
+
+/// The limbs of a body from above, the head at the top: left, right, lower and upper end of each, in metres. The middle of the
+/// body is at 0, and its rear end too.
+fn seen_from_above(body: &BodyPlan) -> Vec<[f64; 4]> {
+    let length_m = f64::from(body.length_m());
+    if body.is_branching() {
+        // The boxes around its parts.
+        let boxes_m = body.rest_boxes_m();
+        let ends = boxes_m.iter().fold([f32::MAX, f32::MIN], |[least, most], [from, to]| {
+            [least.min(from.x), most.max(to.x)]
+        });
+        let middle_m = (ends[0] + ends[1]) / 2.0;
+        let seen = boxes_m.iter().map(|[least, most]| {
+            let across = [least.x, most.x].map(|x_m| f64::from(x_m - middle_m));
+            let along = [least.y, most.y].map(|y_m| length_m + f64::from(y_m));
+            [across[0], across[1], along[0], along[1]]
+        });
+        return seen.collect();
+    }
+    let mut top_m = length_m;
+    let limb = |index| {
+        let [width_m, limb_m, _] = body.limb_size_m(index).map(f64::from);
+        let upper_m = top_m;
+        top_m -= limb_m;
+        [-width_m / 2.0, width_m / 2.0, top_m, upper_m]
+    };
+    (0..body.limbs()).map(limb).collect()
 }
 
 fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> String {
@@ -283,6 +307,37 @@ mod tests {
         };
         let blocks = |column: f64| in_column(red, column) + in_column(blue, column);
         assert_eq!(blocks(2.0), blocks(1.0) + 1, "a split is a block more");
+    }
+
+    #[test]
+    fn creatures_do_not_reach_into_the_next_column() {
+        let mut settings = Settings::default();
+        settings.genome.controller = ControllerKind::PartNeurons;
+        settings.genome.bodies.vary = true;
+        let shape = settings.trial.genome_shape();
+        let genome = |generation: u32| {
+            let mut rng = stream(generation.into(), 1, 0, Purpose::Birth);
+            Some(Arc::new(settings.genome.random_genome(shape, &mut rng)))
+        };
+        let ancestor = |generation| {
+            let place = IndividualId { generation, individual: 0 };
+            let parents = Parents::Unknown;
+            Arc::new(Ancestor { place, fitness: None, genome: genome(generation), parents })
+        };
+        let line = (1..=8).rev().map(ancestor).collect();
+        let view = view(&settings, &[], Some(&Ancestry { line, ..Ancestry::default() }));
+        let boxes = view.figure.charts[0].series.iter().flat_map(|series| match &series.shape {
+            Shape::Boxes(boxes) => boxes.clone(),
+            _ => panic!("boxes"),
+        });
+        let (mut boxes, mut widest) = (boxes.peekable(), 0.0_f64);
+        assert!(boxes.peek().is_some());
+        for [left, right, bottom, top] in boxes {
+            assert_eq!(left.round(), right.round(), "within one column");
+            assert!(left < right && bottom < top && bottom > -0.01, "{bottom} to {top} m");
+            widest = widest.max(2.0 * (right - right.round()).abs());
+        }
+        assert!((widest - WIDEST).abs() < 1e-6, "the widest fills its column: {widest}");
     }
 
     #[test]

@@ -12,9 +12,9 @@ pub(super) const PROTECTION: Lesson = Lesson {
     story: "Blocks can come and go while a gait evolves. The stage shows a snake whose gait belongs to its body, and the \
             same gait in two other bodies: with a block more, and with a block less.",
     to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: choosing by \
-             fitness alone, and with protection, where a snake with a new body only loses against snakes whose bodies \
-             are as new.",
-    look_for: "How the gait fails in the other bodies. In the runs, how often the best snake has another body than the \
+             fitness alone, and with protection, where a snake with a new body only loses against better ones whose \
+             bodies are as new.",
+    look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
                best before it, and which run climbs further.",
     conclusion: "A new body is judged with the gait of the old one, and most lose at once, before a gait of their own \
                  could develop. Protection gives them time, but it is not free: in runs four times as long, protected \
