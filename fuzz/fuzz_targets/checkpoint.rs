@@ -15,12 +15,14 @@ static PLANS: LazyLock<Vec<(RunPlan, String)>> = LazyLock::new(|| StrategyKind::
 fn plan(strategy: StrategyKind) -> (RunPlan, String) {
     let mut settings = Settings::default();
     settings.evolution.strategy = strategy;
-    if let Some(controller) = strategy.controllers().next() {
+    settings.genome.bodies.vary = strategy.info().varies_bodies;
+    let of_bodies = [ControllerKind::Gait, ControllerKind::PartNeurons];
+    let mut fitting =
+        strategy.controllers().filter(|kind| !settings.genome.bodies.vary || of_bodies.contains(kind));
+    if let Some(controller) = fitting.next() {
         settings.genome.controller = controller;
     }
-    settings.genome.bodies.vary = strategy.info().varies_bodies;
     if settings.genome.bodies.vary {
-        settings.genome.controller = ControllerKind::Gait;
         settings.genome.bodies.limbs_max = 3;
         settings.evolution.islands.candidates = 4;
         settings.evolution.generations = 40;

@@ -236,7 +236,9 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::Xcs, ControllerKind::JointDecisions, "xcs-per-joint"),
         (StrategyKind::Zcs, ControllerKind::Decisions, "zcs"),
         (StrategyKind::BodyGa, ControllerKind::Gait, "body-ga"),
+        (StrategyKind::BodyNovelty, ControllerKind::Gait, "body-novelty"),
         (StrategyKind::BodyMapElites, ControllerKind::Gait, "body-map-elites"),
+        (StrategyKind::CreatureGa, ControllerKind::PartNeurons, "creature-ga"),
         (StrategyKind::Islands, ControllerKind::Gait, "islands"),
     ] {
         let (mut plan, _) = plan();
