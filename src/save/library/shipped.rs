@@ -11,6 +11,7 @@ macro_rules! shipped {
 pub const SHIPPED: &[(&str, &str)] = shipped![
     "by-heart",
     "climber",
+    "crawler",
     "fast",
     "feeler",
     "first-climber",
