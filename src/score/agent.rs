@@ -343,7 +343,11 @@ impl AgentSettings {
         (0..self.limbs as usize).try_for_each(|limb| {
             let sides_m = [self.limb_width_m.at(limb), self.limb_height_m.at(limb)];
             let density = self.density_kg_m3.as_ref().map_or(greatest_kg_m3, |of| of.at(limb));
-            check_softness(modulus_pa.at(limb), sides_m, density)
+            let field = match modulus_pa {
+                PerPart::All(_) => "youngs_modulus_pa".to_owned(),
+                PerPart::Each(_) => format!("youngs_modulus_pa[{limb}]"),
+            };
+            check_softness(&field, modulus_pa.at(limb), sides_m, density)
         })
     }
 }

@@ -154,11 +154,12 @@ impl WorldPlan {
     }
 }
 
-/// Checks that a limb of this material and size does not fold up under its own weight.
+/// Checks that a limb of this material and size does not fold up under its own weight. `field` names the modulus in the error.
 ///
 /// # Errors
 /// It is too soft.
 pub fn check_softness(
+    field: &str,
     youngs_modulus_pa: f32,
     sides_m: [f32; 2],
     density_kg_m3: f32,
@@ -174,5 +175,5 @@ pub fn check_softness(
          their own weight",
         least_pa.ceil()
     );
-    Err(Invalid::new("youngs_modulus_pa", youngs_modulus_pa, allowed))
+    Err(Invalid::new(field, youngs_modulus_pa, allowed))
 }

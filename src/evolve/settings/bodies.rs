@@ -141,4 +141,16 @@ mod tests {
         let error = said(&settings);
         assert!(error.ends_with(" unless genome.bodies.vary is true"), "{error}");
     }
+
+    #[test]
+    fn a_limb_that_is_too_soft_is_named() {
+        let error = |modulus: &str| {
+            let changes = [("agent.density_kg_m3", "9"), ("youngs_modulus_pa", modulus)];
+            with_fields(&Settings::default(), changes).expect_err("too soft").to_string()
+        };
+        let of_list = error("[40000, 50, 40000, 40000, 40000]");
+        assert!(of_list.starts_with("trial.agent.youngs_modulus_pa[1] is 50;"), "{of_list}");
+        let of_all = error("60");
+        assert!(of_all.starts_with("trial.agent.youngs_modulus_pa is 60;"), "{of_all}");
+    }
 }

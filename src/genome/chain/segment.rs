@@ -65,7 +65,8 @@ impl Segment {
         within("strength", self.strength, 0.0..=1.0)?;
         let Some(modulus_pa) = self.youngs_modulus_pa else { return Ok(()) };
         within("youngs_modulus_pa", modulus_pa, MODULUS_RANGE_PA)?;
-        check_softness(modulus_pa, [self.width_m, self.height_m], self.density_kg_m3)
+        let sides_m = [self.width_m, self.height_m];
+        check_softness("youngs_modulus_pa", modulus_pa, sides_m, self.density_kg_m3)
     }
 }
 

@@ -16,6 +16,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "feeler",
     "first-climber",
     "foam",
+    "four",
     "learner",
     "rearer",
     "reflexes",

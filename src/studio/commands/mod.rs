@@ -21,6 +21,7 @@ use bevy::prelude::*;
 use crate::genome::{BodyChange, Segment};
 use crate::save::library::SavePlace;
 use crate::score::ExamSuite;
+use crate::world::modulus_at_pa;
 
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
@@ -351,8 +352,14 @@ pub(super) enum BlockSize {
 }
 
 impl BlockSize {
-    /// Young's modulus of a block that has just become soft, in Pa: that of the preset `squishy`.
-    pub const USUAL_MODULUS_PA: f32 = 40_000.0;
+    /// Young's modulus of a block that has just become soft, in Pa: a block of any size then bends by a similar part of its
+    /// length as those of the preset `squishy`, which have 40,000 Pa.
+    pub fn usual_modulus_pa(segment: &Segment) -> f32 {
+        const SQUISHY_M4_S2: f32 = 370.0;
+        let sides_m = [segment.width_m, segment.height_m];
+        let modulus_pa = modulus_at_pa(SQUISHY_M4_S2, sides_m, segment.density_kg_m3);
+        (modulus_pa / 100.0).round() * 100.0
+    }
 
     /// The number in a block.
     pub fn of_mut(self, segment: &mut Segment) -> &mut f32 {
@@ -364,7 +371,10 @@ impl BlockSize {
             Self::BendLimit => &mut segment.bend_limit_rad,
             Self::TwistLimit => &mut segment.twist_limit_rad,
             Self::Strength => &mut segment.strength,
-            Self::Modulus => segment.youngs_modulus_pa.get_or_insert(Self::USUAL_MODULUS_PA),
+            Self::Modulus => {
+                let usual_pa = Self::usual_modulus_pa(segment);
+                segment.youngs_modulus_pa.get_or_insert(usual_pa)
+            }
         }
     }
 }

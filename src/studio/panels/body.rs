@@ -185,7 +185,7 @@ fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut V
         "Young's modulus of its material. A block that is too stiff to bend is rigid";
     let mut is_soft = segment.youngs_modulus_pa.is_some();
     if ui.checkbox(&mut is_soft, "Soft").on_hover_text(HINT).clicked() {
-        let (size, value) = (BlockSize::Modulus, BlockSize::USUAL_MODULUS_PA);
+        let (size, value) = (BlockSize::Modulus, BlockSize::usual_modulus_pa(segment));
         commands.push(Command::Body(match is_soft {
             true => BodyCommand::Set { block, size, value },
             false => BodyCommand::MakeRigid { block },

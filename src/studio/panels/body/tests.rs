@@ -57,7 +57,9 @@ fn a_block_becomes_soft_and_rigid_again() {
     assert!(harness.query_by_label("Young's modulus").is_none());
     harness.get_by_label("Soft").click();
     harness.run();
-    let (size, value) = (BlockSize::Modulus, BlockSize::USUAL_MODULUS_PA);
+    let edited = harness.state().editor.edited().expect("editing");
+    let value = BlockSize::usual_modulus_pa(&edited.segments[0]);
+    let size = BlockSize::Modulus;
     let soften = BodyCommand::Set { block: 0, size, value };
     let Edit { editor, commands, .. } = harness.state_mut();
     assert_eq!(*commands, [Command::Body(soften.clone())]);

@@ -107,7 +107,7 @@ const SHEETS: [Sheet; LESSONS.len()] = [
     Sheet {
         steps: &[
             "Begin lesson 8, guess, and watch the race to its end. Fill in the first table.",
-            "Choose \"Evolve with and without protection\", guess, and wait. Fill in the second table.",
+            "Choose \"With and without protection\", guess, and wait. Fill in the second table.",
             "Race again, and select \"a block more\". In the Body panel: Edit this body, Adapt the gait.",
         ],
         questions: [
@@ -219,7 +219,9 @@ fn expected(index: usize) -> String {
             format!("{}: {best}, {out} of {all} disqualified", found.name)
         };
         let changes = |found: &Found| {
-            let best = found.best().map_or("none".to_owned(), |best| best.reached());
+            let best = found
+                .best()
+                .map_or("none".to_owned(), |best| best.trial.fitness.text(best.evaluation.fitness));
             format!("{}: {best}, {} late changes", found.name, found.late_body_changes())
         };
         let hash =

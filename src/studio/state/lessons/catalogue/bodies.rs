@@ -9,23 +9,20 @@ use crate::studio::state::lessons::lesson::{
 pub(super) const PROTECTION: Lesson = Lesson {
     title: "Why bodies need protection",
     question: "Why does evolution settle so soon on a body?",
-    story: "Blocks can come and go while a gait evolves. The stage shows a snake whose gait belongs to its body, and the \
-            same gait in two other bodies: with a block more, and with a block less.",
+    story: "Bodies can evolve with their gaits. The stage shows a snake with the gait of its body, and the same gait with \
+            a block more and a block less.",
     to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: choosing by \
              fitness alone, and with protection, where a snake with a new body only loses against better ones whose \
              bodies are as new.",
     look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
                best before it, and which run climbs further.",
-    conclusion: "A new body is judged with the gait of the old one, and most lose at once, before a gait of their own \
-                 could develop. Protection gives them time, but it is not free: in runs four times as long, protected \
-                 bodies still changed late, and 8 of 10 climbed less far than those chosen by fitness alone.",
+    conclusion: "A new body is judged with the gait of the old one, and most lose at once. Protection gives them time to \
+                 adapt their gait, at a price: in runs four times as long, 8 of 10 protected ones climbed less far.",
     scenes: &[
         LessonScene::Lanes {
             label: "A block more, a block less",
             champion: "tapered",
-            question: Some(furthest(
-                "In another body the same gait leads nowhere: both copies end before the first step.",
-            )),
+            question: Some(furthest("In another body the same gait leads nowhere.")),
             lanes: &[
                 lane("original", &[]),
                 lane_of_body("a block more", BodyChange::Duplicate, 2),
@@ -33,11 +30,11 @@ pub(super) const PROTECTION: Lesson = Lesson {
             ],
         },
         LessonScene::Runs {
-            label: "Evolve with and without protection",
+            label: "With and without protection",
             preset: "bodies",
             question: later_bodies(
-                "Protected, bodies go on changing. By fitness alone the first good body stays, and only its gait \
-                 improves; in this short run it even climbs a little further. Not every seed shows this.",
+                "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait improves, \
+                 even a little further. Other seeds may differ.",
             ),
             runs: &[
                 run("with protection", 1, 1, &PROTECTED),
