@@ -18,6 +18,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "foam",
     "four",
     "learner",
+    "paddler",
     "rearer",
     "reflexes",
     "rigid",
