@@ -232,7 +232,7 @@ strategy_kinds! {
         name: "body_novelty",
         title: "Novelty search of bodies",
         words: "Rewards new behaviour, numbers of blocks and lengths, mixed with fitness in any proportion.",
-        color: [0xa0, 0xa0, 0x00],
+        color: [0x40, 0x70, 0xf0],
         settings: &["novelty", "body_ga"],
         varies_bodies: true,
         check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
