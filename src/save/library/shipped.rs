@@ -26,7 +26,8 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "six",
     "strong",
     "tapered",
-    "thrifty"
+    "thrifty",
+    "twister"
 ];
 
 /// The text of one of them.
