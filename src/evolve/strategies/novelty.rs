@@ -22,7 +22,7 @@ use crate::score::Evaluation;
 use crate::world::Stairs;
 
 /// A behaviour: the final position of the agent and its two descriptors, each from 0 to 1.
-type Behaviour = [f64; 3];
+type BehaviourPoint = [f64; 3];
 
 /// A genetic algorithm to which novelty search tells which individuals are the best.
 pub trait Breeder: Strategy + Sized {
@@ -47,12 +47,12 @@ pub trait Breeder: Strategy + Sized {
     /// The random numbers of the present generation for a purpose.
     fn stream(&self, purpose: Purpose) -> ChaCha8Rng;
     /// The point of an individual.
-    fn point(behaviour: Behaviour, genome: &Genome, bodies: &BodySpace) -> Self::Point;
+    fn point(behaviour: BehaviourPoint, genome: &Genome, bodies: &BodySpace) -> Self::Point;
 }
 
 impl Breeder for Ga {
     type Member = GaMember;
-    type Point = Behaviour;
+    type Point = BehaviourPoint;
 
     fn resume_with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Result<Self, Invalid> {
         Self::resume_with(plan, finished, members)
@@ -70,7 +70,7 @@ impl Breeder for Ga {
         self.search.stream(0, purpose)
     }
 
-    fn point(behaviour: Behaviour, _: &Genome, _: &BodySpace) -> Behaviour {
+    fn point(behaviour: BehaviourPoint, _: &Genome, _: &BodySpace) -> BehaviourPoint {
         behaviour
     }
 }
@@ -100,7 +100,11 @@ impl Breeder for BodyGa {
         self.children.stream(0, purpose)
     }
 
-    fn point([end, first, second]: Behaviour, genome: &Genome, bodies: &BodySpace) -> [f64; 5] {
+    fn point(
+        [end, first, second]: BehaviourPoint,
+        genome: &Genome,
+        bodies: &BodySpace,
+    ) -> [f64; 5] {
         let segments = &genome.body.segments;
         let share = |of: f64, [least, most]: [f64; 2]| {
             ((of - least) / (most - least).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
@@ -147,7 +151,7 @@ impl<B: Breeder> Novelty<B> {
     }
 
     /// The behaviour of an agent; none if it was disqualified.
-    fn behaviour(&self, evaluation: &Evaluation) -> Option<Behaviour> {
+    fn behaviour(&self, evaluation: &Evaluation) -> Option<BehaviourPoint> {
         if evaluation.disqualified.is_some() {
             return None;
         }
@@ -288,10 +292,10 @@ mod tests {
     use super::*;
     use crate::evolve::{BodyProtection, Settings, StrategyKind};
     use crate::genome::ControllerKind;
-    use crate::score::Behaviour as Measured;
+    use crate::score::Behaviour;
 
     fn evaluation(centre_y_m: f32, contact_duty: f32) -> Evaluation {
-        let behaviour = Some(Measured { contact_duty, ..Measured::default() });
+        let behaviour = Some(Behaviour { contact_duty, ..Behaviour::default() });
         Evaluation { behaviour, ..Evaluation::of_fitness(centre_y_m) }
     }
 
