@@ -13,7 +13,6 @@ mod neat;
 mod novelty;
 mod partners;
 mod size;
-mod strategies;
 mod strategy_kind;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
@@ -27,8 +26,7 @@ pub use map_elites::MapElitesSettings;
 pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
-pub use strategies::StrategyKind;
-pub use strategy_kind::StrategyInfo;
+pub use strategy_kind::{StrategyInfo, StrategyKind};
 
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,16 @@
-//! A row of the list of strategies: the facts about a strategy that need no search.
+//! The list of strategies: the facts about each that need no search.
 
-use super::size::LARGEST_GENERATION_GENES;
-use super::{EvolutionSettings, GenomeSize};
+use serde::{Deserialize, Serialize};
+
+use super::halving::HalvingSettings;
+use super::learning::check_learners;
+use super::size::{LARGEST_GENERATION_GENES, LARGEST_STATE_GENES};
+use super::{
+    CmaEsSettings, CreatureGaSettings, EvolutionSettings, GenomeSize, NeatSettings, NoveltySettings,
+};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
+use crate::schema::named_by_info;
 
 /// The facts about a strategy that are the same for all its runs.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +47,7 @@ pub struct StrategyInfo {
 
 impl StrategyInfo {
     /// The row of a strategy of points that keeps no more than its generation.
-    pub(super) const PLAIN: Self = Self {
+    const PLAIN: Self = Self {
         name: "",
         title: "",
         words: "",
@@ -59,7 +66,7 @@ impl StrategyInfo {
     };
 }
 
-/// Makes [`StrategyKind`](super::StrategyKind) from one row for each strategy, in the order of lists.
+/// Makes [`StrategyKind`] from one row for each strategy, in the order of lists.
 macro_rules! strategy_kinds {
     ($($(#[$meta:meta])* $kind:ident = $info:expr;)*) => {
         /// The strategies. Files store the name.
@@ -78,4 +85,186 @@ macro_rules! strategy_kinds {
         }
     };
 }
-pub(super) use strategy_kinds;
+
+strategy_kinds! {
+    /// The report's method: children of the best few, within a range that halves.
+    #[default]
+    Halving = StrategyInfo {
+        name: "halving",
+        title: "Halving (the report's)",
+        words: "The best few become parents; children vary at random within a range that halves each generation.",
+        color: [0xd5, 0x5e, 0x00],
+        settings: &["halving"],
+        compared_generations: Some(HalvingSettings::REPORT_GENERATIONS),
+        check_size: |evolution, size| evolution.halving.check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// A genetic algorithm.
+    Ga = StrategyInfo {
+        name: "ga",
+        title: "Genetic algorithm",
+        words: "Parents are selected, crossed and mutated; the mutation step evolves as well.",
+        color: [0x00, 0x9e, 0x73],
+        settings: &["ga"],
+        check_size: |evolution, size| {
+            size.check_population(evolution.population, LARGEST_STATE_GENES)
+        },
+        ..StrategyInfo::PLAIN
+    };
+    /// Covariance matrix adaptation.
+    CmaEs = StrategyInfo {
+        name: "cma_es",
+        title: "CMA-ES",
+        words: "Covariance matrix adaptation: learns in which directions variation pays off.",
+        color: [0x00, 0x72, 0xb2],
+        settings: &["cma_es"],
+        is_budget_driven: true,
+        check_size: |evolution, size| CmaEsSettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// An archive of the best of every kind of behaviour.
+    MapElites = StrategyInfo {
+        name: "map_elites",
+        title: "MAP-Elites",
+        words: "Keeps the best snake for each kind of behaviour and breeds from all of them.",
+        color: [0xcc, 0x79, 0xa7],
+        settings: &["map_elites"],
+        has_archive: true,
+        check_size: |evolution, size| evolution.map_elites.check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Novelty search. The genetic algorithm makes its children.
+    Novelty = StrategyInfo {
+        name: "novelty",
+        title: "Novelty search",
+        words: "Rewards new behaviour, mixed with fitness in any proportion.",
+        color: [0xe6, 0x9f, 0x00],
+        settings: &["novelty", "ga"],
+        check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Random search, the baseline for every other strategy.
+    Random = StrategyInfo {
+        name: "random",
+        title: "Random",
+        words: "Draws every genome at random: the baseline for every other strategy.",
+        color: [0x80, 0x80, 0x80],
+        ..StrategyInfo::PLAIN
+    };
+    /// NEAT, the evolution of networks that grow.
+    Neat = StrategyInfo {
+        name: "neat",
+        title: "NEAT",
+        words: "Grows networks from nothing but links; species protect what is new.",
+        color: [0xe0, 0x00, 0xe0],
+        settings: &["neat"],
+        has_fixed_population: true,
+        only_controllers: &[ControllerKind::Grown],
+        has_species: true,
+        check_size: |evolution, _| NeatSettings::check_size(evolution.population),
+        ..StrategyInfo::PLAIN
+    };
+    /// Tabular Q-learning, of one table that all episodes share.
+    QLearning = StrategyInfo {
+        name: "q_learning",
+        title: "Q-learning",
+        words: "Learns by trial and error what each posture is worth in each situation.",
+        color: [0x20, 0x80, 0x00],
+        settings: &["q_learning", "exploration"],
+        only_controllers: &[ControllerKind::Decisions],
+        check_size: |evolution, _| check_learners(evolution.population),
+        ..StrategyInfo::PLAIN
+    };
+    /// XCS, of one population of rules that all episodes share.
+    Xcs = StrategyInfo {
+        name: "xcs",
+        title: "XCS",
+        words: "Learns rules that predict accurately what a posture is worth, and breeds from them.",
+        color: [0x60, 0x20, 0xe0],
+        settings: &["xcs", "exploration"],
+        only_controllers: &[ControllerKind::Decisions, ControllerKind::JointDecisions],
+        check_size: |evolution, _| check_learners(evolution.population),
+        ..StrategyInfo::PLAIN
+    };
+    /// ZCS, of one population of rules that all episodes share.
+    Zcs = StrategyInfo {
+        name: "zcs",
+        title: "ZCS",
+        words: "Learns rules that grow stronger with what they earn, and breeds from the strong.",
+        color: [0x80, 0xe0, 0x40],
+        settings: &["zcs", "exploration"],
+        only_controllers: &[ControllerKind::Decisions],
+        check_size: |evolution, _| check_learners(evolution.population),
+        ..StrategyInfo::PLAIN
+    };
+    /// A genetic algorithm over bodies.
+    BodyGa = StrategyInfo {
+        name: "body_ga",
+        title: "Genetic algorithm of bodies",
+        words: "Blocks come, go, divide and merge; new bodies are protected while they learn to move.",
+        color: [0x50, 0xc0, 0xe0],
+        settings: &["body_ga"],
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            size.check_population(evolution.population, LARGEST_STATE_GENES)
+        },
+        ..StrategyInfo::PLAIN
+    };
+    /// Novelty search over behaviours and bodies. The genetic algorithm over bodies makes its children.
+    BodyNovelty = StrategyInfo {
+        name: "body_novelty",
+        title: "Novelty search of bodies",
+        words: "Rewards new behaviour, numbers of blocks and lengths, mixed with fitness in any proportion.",
+        color: [0x40, 0x70, 0xf0],
+        settings: &["novelty", "body_ga"],
+        varies_bodies: true,
+        check_size: |evolution, size| NoveltySettings::check_size(evolution.population, size),
+        ..StrategyInfo::PLAIN
+    };
+    /// MAP-Elites over the number of blocks and the length of a body.
+    BodyMapElites = StrategyInfo {
+        name: "body_map_elites",
+        title: "MAP-Elites of bodies",
+        words: "Keeps the best snake of each number of blocks and each length, and breeds from all of them.",
+        color: [0x20, 0x60, 0x70],
+        settings: &["body_map_elites"],
+        has_archive: true,
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            evolution.body_map_elites.check_size(evolution.population, size)
+        },
+        ..StrategyInfo::PLAIN
+    };
+    /// A CMA-ES for each number of blocks.
+    Islands = StrategyInfo {
+        name: "islands",
+        title: "Islands",
+        words: "A CMA-ES for each number of blocks; the best of them get the evaluations.",
+        color: [0xf0, 0x40, 0x50],
+        settings: &["islands"],
+        is_budget_driven: true,
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            let EvolutionSettings { population, generations, .. } = *evolution;
+            evolution.islands.check_size([population, generations], size)
+        },
+        ..StrategyInfo::PLAIN
+    };
+    /// A genetic algorithm over graphs that grow into creatures.
+    CreatureGa = StrategyInfo {
+        name: "creature_ga",
+        title: "Genetic algorithm of creatures",
+        words: "Breeds graphs that grow into branching bodies with neurons in each part, after Karl Sims.",
+        color: [0x80, 0x40, 0x00],
+        settings: &["creature_ga"],
+        only_controllers: &[ControllerKind::PartNeurons],
+        varies_bodies: true,
+        check_size: |evolution, size| {
+            let (population, genes) = (evolution.population, CreatureGaSettings::MOST_GENES);
+            size.check_count("evolution.population", population, genes, LARGEST_STATE_GENES)
+        },
+        ..StrategyInfo::PLAIN
+    };
+}
+
+named_by_info!(StrategyKind);
