@@ -54,6 +54,11 @@ impl BodyGenes {
         if self.is_branching() { grow(&self.nodes).len() } else { self.segments.len() }
     }
 
+    /// Length of its chain of blocks, in metres; 0 without one.
+    pub fn chain_length_m(&self) -> f64 {
+        self.segments.iter().map(|segment| f64::from(segment.length_m)).sum()
+    }
+
     /// Ids which tell bodies of different structures apart: of each block, or one for the tree of a creature; empty without a
     /// body of its own.
     pub fn block_ids(&self) -> Vec<u64> {

@@ -21,9 +21,7 @@ pub fn body_archive<G>(bodies: &BodySpace, length_cells: u32, floor: f32) -> Arc
 
 /// The cell of a body.
 pub fn body_cell<G>(archive: &Archive<G>, genome: &Genome) -> u32 {
-    let segments = &genome.body.segments;
-    let length_m: f64 = segments.iter().map(|segment| f64::from(segment.length_m)).sum();
-    archive.cell([segments.len() as f64, length_m])
+    archive.cell([genome.body.segments.len() as f64, genome.body.chain_length_m()])
 }
 
 /// Number of cells in which a body of the space can lie.

@@ -10,12 +10,13 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::body_children::BodyChildren;
+use super::breeder::{BehaviourPoint, Breeder};
 use crate::check::{Invalid, within};
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{BodyGaSettings, BodyProtection};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::Genome;
+use crate::genome::{BodySpace, Genome};
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
@@ -33,8 +34,7 @@ pub struct BodyMember {
 #[derive(Debug, Clone)]
 pub struct BodyGa {
     settings: BodyGaSettings,
-    /// The maker of the genomes.
-    pub children: BodyChildren,
+    children: BodyChildren,
     population: usize,
     /// The last generation, best first; empty at the beginning.
     members: Vec<BodyMember>,
@@ -128,39 +128,6 @@ impl BodyGa {
         (0..self.population).map(|individual| self.individual(individual)).collect()
     }
 
-    /// The algorithm after the first `finished` generations of a run, of which the last is known.
-    ///
-    /// # Errors
-    /// It is larger than a generation, or an individual in it is not one of this plan.
-    pub fn resume_with(
-        plan: &RunPlan,
-        finished: u32,
-        members: Vec<BodyMember>,
-    ) -> Result<Self, Invalid> {
-        let resumed = Self::with(plan, finished, members);
-        within("members", resumed.members.len(), 0..=resumed.population)?;
-        for member in &resumed.members {
-            plan.settings.trial.check_genome(&member.genome)?;
-            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
-        }
-        Ok(resumed)
-    }
-
-    /// The last generation, best first.
-    pub fn members(&self) -> &[BodyMember] {
-        &self.members
-    }
-
-    /// Ends a generation: `ranking` lists its indices, best first, which the protection of new bodies may change.
-    pub fn select(&mut self, ranking: &[usize]) {
-        let generation = self.generation();
-        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
-        let order = self.order(&ages, ranking);
-        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
-        self.ids = IndividualId::all(self.children.generation, &order);
-        self.children.generation += 1;
-    }
-
     /// The order of a generation as parents: the elites by their rank alone, then by the protection of new bodies.
     fn order(&self, ages: &[u32], ranked: &[usize]) -> Vec<usize> {
         match self.settings.protection {
@@ -195,6 +162,57 @@ fn by_fronts(ranked: &[usize], ages: &[u32]) -> Vec<usize> {
         youngest[front] = youngest[front].min(age);
     }
     fronts.concat()
+}
+
+impl Breeder for BodyGa {
+    type Member = BodyMember;
+    /// The behaviour, the number of blocks and the length.
+    type Point = [f64; 5];
+
+    fn resume_with(
+        plan: &RunPlan,
+        finished: u32,
+        members: Vec<BodyMember>,
+    ) -> Result<Self, Invalid> {
+        let resumed = Self::with(plan, finished, members);
+        within("members", resumed.members.len(), 0..=resumed.population)?;
+        for member in &resumed.members {
+            plan.settings.trial.check_genome(&member.genome)?;
+            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
+        }
+        Ok(resumed)
+    }
+
+    fn members(&self) -> &[BodyMember] {
+        &self.members
+    }
+
+    fn select(&mut self, ranking: &[usize]) {
+        let generation = self.generation();
+        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
+        let order = self.order(&ages, ranking);
+        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
+        self.ids = IndividualId::all(self.children.generation, &order);
+        self.children.generation += 1;
+    }
+
+    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
+        self.children.stream(0, purpose)
+    }
+
+    fn point(
+        [end, first, second]: BehaviourPoint,
+        genome: &Genome,
+        bodies: &BodySpace,
+    ) -> [f64; 5] {
+        let share = |of: f64, [least, most]: [f64; 2]| {
+            ((of - least) / (most - least).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+        };
+        let limbs = [bodies.limbs_min, bodies.limbs_max].map(f64::from);
+        let blocks = share(genome.body.segments.len() as f64, limbs);
+        let length = share(genome.body.chain_length_m(), [0.0, f64::from(bodies.longest_m)]);
+        [end, first, second, blocks, length]
+    }
 }
 
 impl Strategy for BodyGa {

@@ -7,6 +7,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use super::breeder::{BehaviourPoint, Breeder};
 use super::search::Search;
 use super::wave_takeover::WaveTakeover;
 use crate::check::{Invalid, within};
@@ -15,7 +16,7 @@ use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{Crossover, GaSettings, Mutation, ParentSelection};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::Genome;
+use crate::genome::{BodySpace, Genome};
 use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
@@ -47,7 +48,7 @@ enum Variation {
     Child { first: usize, second: Option<usize>, wave_of: Option<usize> },
 }
 
-/// The genetic algorithm. Which individuals are the best may also be decided from outside: see [`Self::select`].
+/// The genetic algorithm. Which individuals are the best may also be decided from outside: see [`Breeder::select`].
 #[derive(Debug, Clone)]
 pub struct Ga {
     settings: GaSettings,
@@ -71,44 +72,9 @@ impl Ga {
         }
     }
 
-    /// A search after the first `finished` generations, of which the last is known.
-    ///
-    /// # Errors
-    /// It is larger than a generation, or a number in it is out of its range.
-    pub fn resume_with(
-        plan: &RunPlan,
-        finished: u32,
-        members: Vec<GaMember>,
-    ) -> Result<Self, Invalid> {
-        let ga = Self::with(plan, finished, members);
-        within("members", ga.members.len(), 0..=ga.search.population)?;
-        for member in &ga.members {
-            within("step", member.step, STEPS)?;
-            ga.search.check(&member.point)?;
-            ga.takeover.check(member)?;
-        }
-        Ok(ga)
-    }
-
-    /// The last generation, best first.
-    pub fn members(&self) -> &[GaMember] {
-        &self.members
-    }
-
     /// The next generation.
     pub fn generation(&self) -> Vec<GaMember> {
         (0..self.search.population).map(|individual| self.individual(individual)).collect()
-    }
-
-    /// Ends a generation: `order` lists its indices, best first.
-    pub fn select(&mut self, order: &[usize]) {
-        let generation = self.generation();
-        let member = |&index: &usize| {
-            generation.get(index).map(|member| GaMember { uses: None, ..member.clone() })
-        };
-        self.members = order.iter().filter_map(member).collect();
-        self.ids = IndividualId::all(self.search.generation, order);
-        self.search.generation += 1;
     }
 
     /// How an individual is made, and the stream from which its random numbers continue.
@@ -215,6 +181,44 @@ impl Ga {
             *gene += child.step * deviate;
         }
         self.search.after_mutation(&before, &mut child.point, rng);
+    }
+}
+
+impl Breeder for Ga {
+    type Member = GaMember;
+    type Point = BehaviourPoint;
+
+    fn resume_with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Result<Self, Invalid> {
+        let ga = Self::with(plan, finished, members);
+        within("members", ga.members.len(), 0..=ga.search.population)?;
+        for member in &ga.members {
+            within("step", member.step, STEPS)?;
+            ga.search.check(&member.point)?;
+            ga.takeover.check(member)?;
+        }
+        Ok(ga)
+    }
+
+    fn members(&self) -> &[GaMember] {
+        &self.members
+    }
+
+    fn select(&mut self, order: &[usize]) {
+        let generation = self.generation();
+        let member = |&index: &usize| {
+            generation.get(index).map(|member| GaMember { uses: None, ..member.clone() })
+        };
+        self.members = order.iter().filter_map(member).collect();
+        self.ids = IndividualId::all(self.search.generation, order);
+        self.search.generation += 1;
+    }
+
+    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
+        self.search.stream(0, purpose)
+    }
+
+    fn point(behaviour: BehaviourPoint, _: &Genome, _: &BodySpace) -> BehaviourPoint {
+        behaviour
     }
 }
 

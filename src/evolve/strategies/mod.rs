@@ -6,6 +6,7 @@
 mod body_children;
 mod body_ga;
 mod body_map_elites;
+mod breeder;
 mod cma;
 mod cma_es;
 mod creature_ga;

@@ -1,15 +1,10 @@
 //! Novelty search: unseen behaviour is rewarded (Lehman and Stanley, Evolutionary Computation 19 (2011)), to a
 //! configurable share beside fitness.
 
-use std::fmt::Debug;
-
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::body_ga::{BodyGa, BodyMember};
-use super::ga::{Ga, GaMember};
+use super::breeder::{BehaviourPoint, Breeder};
 use crate::check::{Invalid, within};
 use crate::evolve::archives::Descriptor;
 use crate::evolve::parents::{IndividualId, Parents};
@@ -20,101 +15,6 @@ use crate::genome::{BodySpace, Genome};
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 use crate::world::Stairs;
-
-/// A behaviour: the final position of the agent and its two descriptors, each from 0 to 1.
-type BehaviourPoint = [f64; 3];
-
-/// A genetic algorithm to which novelty search tells which individuals are the best.
-pub trait Breeder: Strategy + Sized {
-    /// An individual of the last generation.
-    type Member: Clone + Serialize + DeserializeOwned;
-    /// An individual as a point, whose distance to the others is its novelty. Each coordinate is from 0 to 1.
-    type Point: Copy + Debug + AsRef<[f64]> + Send + Serialize + DeserializeOwned;
-
-    /// The algorithm after the first `finished` generations of a run, of which the last is known.
-    ///
-    /// # Errors
-    /// It is larger than a generation, or an individual in it is not one of this plan.
-    fn resume_with(
-        plan: &RunPlan,
-        finished: u32,
-        members: Vec<Self::Member>,
-    ) -> Result<Self, Invalid>;
-    /// The last generation, best first.
-    fn members(&self) -> &[Self::Member];
-    /// Ends a generation: `ranking` lists its indices, best first.
-    fn select(&mut self, ranking: &[usize]);
-    /// The random numbers of the present generation for a purpose.
-    fn stream(&self, purpose: Purpose) -> ChaCha8Rng;
-    /// The point of an individual.
-    fn point(behaviour: BehaviourPoint, genome: &Genome, bodies: &BodySpace) -> Self::Point;
-}
-
-impl Breeder for Ga {
-    type Member = GaMember;
-    type Point = BehaviourPoint;
-
-    fn resume_with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Result<Self, Invalid> {
-        Self::resume_with(plan, finished, members)
-    }
-
-    fn members(&self) -> &[GaMember] {
-        self.members()
-    }
-
-    fn select(&mut self, ranking: &[usize]) {
-        self.select(ranking);
-    }
-
-    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
-        self.search.stream(0, purpose)
-    }
-
-    fn point(behaviour: BehaviourPoint, _: &Genome, _: &BodySpace) -> BehaviourPoint {
-        behaviour
-    }
-}
-
-impl Breeder for BodyGa {
-    type Member = BodyMember;
-    /// The behaviour, the number of blocks and the length.
-    type Point = [f64; 5];
-
-    fn resume_with(
-        plan: &RunPlan,
-        finished: u32,
-        members: Vec<BodyMember>,
-    ) -> Result<Self, Invalid> {
-        Self::resume_with(plan, finished, members)
-    }
-
-    fn members(&self) -> &[BodyMember] {
-        self.members()
-    }
-
-    fn select(&mut self, ranking: &[usize]) {
-        self.select(ranking);
-    }
-
-    fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
-        self.children.stream(0, purpose)
-    }
-
-    fn point(
-        [end, first, second]: BehaviourPoint,
-        genome: &Genome,
-        bodies: &BodySpace,
-    ) -> [f64; 5] {
-        let segments = &genome.body.segments;
-        let share = |of: f64, [least, most]: [f64; 2]| {
-            ((of - least) / (most - least).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
-        };
-        let limbs = [bodies.limbs_min, bodies.limbs_max].map(f64::from);
-        let length_m: f64 = segments.iter().map(|segment| f64::from(segment.length_m)).sum();
-        let blocks = share(segments.len() as f64, limbs);
-        [end, first, second, blocks, share(length_m, [0.0, f64::from(bodies.longest_m)])]
-    }
-}
 
 /// The state of novelty search.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -290,6 +190,8 @@ impl<B: Breeder> Strategy for Novelty<B> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::strategies::body_ga::BodyGa;
+    use crate::evolve::strategies::ga::Ga;
     use crate::evolve::{BodyProtection, Settings, StrategyKind};
     use crate::genome::ControllerKind;
     use crate::score::Behaviour;

@@ -82,6 +82,7 @@ impl WaveTakeover {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::strategies::breeder::Breeder;
     use crate::evolve::strategies::ga::Ga;
     use crate::evolve::strategy::Strategy;
     use crate::evolve::{Settings, StrategyKind};

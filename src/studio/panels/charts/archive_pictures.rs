@@ -9,6 +9,7 @@ use crate::plot::Role;
 use crate::score::AgentSettings;
 use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
+use crate::world::BodyPlan;
 
 /// Smallest width of a cell with a picture, in points: in a smaller one it would be a smudge.
 const LEAST_WIDTH: f32 = 16.0;
@@ -17,10 +18,19 @@ const FILLED: f32 = 0.9;
 /// Size of the large picture at most, in points.
 const LARGE: egui::Vec2 = egui::vec2(200.0, 60.0);
 
+/// A body from the side.
+#[derive(Debug)]
+struct SideView {
+    length_m: f32,
+    height_m: f32,
+    /// The outline of each limb: see [`Outlines::seen`].
+    limbs_m: Vec<Vec<[f32; 2]>>,
+}
+
 /// The bodies of an archive's elites, by cell. Empty if all elites have the same body.
 #[derive(Debug, Default)]
 pub(super) struct ArchivePictures {
-    bodies: BTreeMap<u32, Outlines>,
+    bodies: BTreeMap<u32, SideView>,
     longest_m: f32,
 }
 
@@ -29,13 +39,13 @@ impl ArchivePictures {
     pub fn of(archive: &Archive, agent: &AgentSettings) -> Self {
         let body = |genes: &EliteGenes| match genes {
             EliteGenes::Point(_) => None,
-            EliteGenes::Genome(genome) => Some(Outlines::of(&agent.body_plan(genome))),
+            EliteGenes::Genome(genome) => Some(SideView::of(&agent.body_plan(genome))),
         };
-        let bodies: BTreeMap<u32, Outlines> = archive
+        let bodies: BTreeMap<u32, SideView> = archive
             .elites()
             .filter_map(|(cell, elite)| Some((cell, body(&elite.genes)?)))
             .collect();
-        let longest_m = bodies.values().map(|body| body.size_m()[1]).fold(0.0, f32::max);
+        let longest_m = bodies.values().map(|body| body.length_m).fold(0.0, f32::max);
         Self { bodies, longest_m }
     }
 
@@ -51,41 +61,48 @@ impl ArchivePictures {
         let Some(body) = self.bodies.get(&cell).filter(|_| rect.width() >= LEAST_WIDTH) else {
             return;
         };
-        let [_, length_m, height_m] = body.size_m().map(|size_m| size_m.max(f32::MIN_POSITIVE));
+        let [length_m, height_m] =
+            [body.length_m, body.height_m].map(|size_m| size_m.max(f32::MIN_POSITIVE));
         let scale = FILLED * (rect.width() / length_m).min(rect.height() / height_m);
         let ink = theme::palette::text_on(ground);
         let shades = [ink.gamma_multiply(0.9), ink.gamma_multiply(0.5)];
-        side_view(painter, body, rect.center(), scale, shades);
+        body.draw(painter, rect.center(), scale, shades);
     }
 
     /// Draws the body of a cell large, in its colours.
     pub fn large(&self, ui: &mut egui::Ui, cell: u32) {
         let Some(body) = self.bodies.get(&cell) else { return };
-        let [_, length_m, height_m] = body.size_m();
         let scale = (LARGE.x / self.longest_m.max(f32::MIN_POSITIVE))
-            .min(LARGE.y / height_m.max(f32::MIN_POSITIVE));
-        let size = egui::vec2(length_m, height_m) * scale;
+            .min(LARGE.y / body.height_m.max(f32::MIN_POSITIVE));
+        let size = egui::vec2(body.length_m, body.height_m) * scale;
         let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
         let palette = theme::of(ui);
         let colors = [palette.role(Role::Red), palette.role(Role::Blue)];
-        side_view(ui.painter(), body, area.center(), scale, colors);
+        body.draw(ui.painter(), area.center(), scale, colors);
     }
 }
 
-/// Draws limbs in two colours in turn, the head on the right, where the stairs are.
-fn side_view(
-    painter: &egui::Painter,
-    body: &Outlines,
-    center: egui::Pos2,
-    scale: f32,
-    colors: [egui::Color32; 2],
-) {
-    let [_, length_m, height_m] = body.size_m();
-    let corner = center + egui::vec2(length_m, -height_m) * (scale / 2.0);
-    for (limb, corners) in body.seen(2).into_iter().enumerate() {
-        let point = |[along_m, down_m]: [f32; 2]| corner + egui::vec2(-along_m, down_m) * scale;
-        let points = corners.into_iter().map(point).collect();
-        painter.add(egui::Shape::convex_polygon(points, colors[limb % 2], egui::Stroke::NONE));
+impl SideView {
+    fn of(body: &BodyPlan) -> Self {
+        let outlines = Outlines::of(body);
+        let [_, length_m, height_m] = outlines.size_m();
+        Self { length_m, height_m, limbs_m: outlines.seen(2) }
+    }
+
+    /// Draws the limbs in two colours in turn, the head on the right, where the stairs are.
+    fn draw(
+        &self,
+        painter: &egui::Painter,
+        center: egui::Pos2,
+        scale: f32,
+        colors: [egui::Color32; 2],
+    ) {
+        let corner = center + egui::vec2(self.length_m, -self.height_m) * (scale / 2.0);
+        let point = |[along_m, down_m]: &[f32; 2]| corner + egui::vec2(-along_m, *down_m) * scale;
+        for (limb, corners) in self.limbs_m.iter().enumerate() {
+            let points = corners.iter().map(point).collect();
+            painter.add(egui::Shape::convex_polygon(points, colors[limb % 2], egui::Stroke::NONE));
+        }
     }
 }
 
@@ -103,7 +120,7 @@ mod tests {
         assert_eq!(pictures.bodies.len(), archive.elites().len());
         for (cell, body) in &pictures.bodies {
             let [column, _] = archive.place(*cell);
-            assert_eq!(body.seen(2).len() as u32, column + 2, "the columns are numbers of blocks");
+            assert_eq!(body.limbs_m.len() as u32, column + 2, "the columns are numbers of blocks");
         }
         assert!((4.0..=12.01).contains(&pictures.longest_m), "{} m", pictures.longest_m);
     }
