@@ -1,6 +1,7 @@
 //! `snakes bench`: the speed of the simulation, as a table or JSON.
 
 use std::io;
+use std::path::Path;
 use std::time::Duration;
 
 use indicatif::ProgressBar;
@@ -8,17 +9,22 @@ use indicatif::ProgressBar;
 use super::args::Args;
 use super::error::CliError;
 use super::output::print;
-use crate::run::bench::{BenchReport, bench};
+use crate::evolve::Champion;
+use crate::run::bench::{BenchReport, Workload, bench};
 use crate::run::headless::HeadlessError;
+use crate::save::load_champion;
 
 /// Enough for some twenty rounds of every variant.
 const BENCH_DURATION: Duration = Duration::from_secs(6);
 
-/// Measures, and prints the figures.
-pub fn print_bench(args: &Args) -> Result<(), CliError> {
-    let (_, settings) = args.settings_of_run()?;
+/// Measures a saved champion, else newborns of a run, and prints the figures.
+pub fn print_bench(args: &Args, champion: Option<&Path>) -> Result<(), CliError> {
+    let workload = match champion {
+        Some(file) => workload_of(file)?,
+        None => Workload::newborns(&args.settings_of_run()?.1),
+    };
     let bar = ProgressBar::new(100);
-    let report = bench(&settings, args.threads()?, BENCH_DURATION, |share| {
+    let report = bench(&workload, args.threads()?, BENCH_DURATION, |share| {
         bar.set_position((share * 100.0) as u64);
     });
     bar.finish_and_clear();
@@ -28,6 +34,14 @@ pub fn print_bench(args: &Args) -> Result<(), CliError> {
         return print(&format!("{}\n", line.map_err(HeadlessError::from)?));
     }
     print(&table(&report))
+}
+
+fn workload_of(file: &Path) -> Result<Workload, CliError> {
+    let Champion { genome, trial, .. } = load_champion(file)?.champion;
+    Workload::champion(genome, trial).ok_or_else(|| {
+        let reason = "is disqualified before its trial ends; only a whole trial is measured";
+        CliError::Usage(format!("{}: the champion {reason}", file.display()))
+    })
 }
 
 fn table(report: &BenchReport) -> String {

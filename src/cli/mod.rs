@@ -79,7 +79,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Presets) => lists::print_presets(args.json),
         Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
         Some(Subcommand::Body { file }) => body::body(file, args.json),
-        Some(Subcommand::Bench) => bench::print_bench(args),
+        Some(Subcommand::Bench { file }) => bench::print_bench(args, file.as_deref()),
         Some(Subcommand::BodyStudy(wanted)) => body_study::body_study(args, wanted),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {

@@ -38,37 +38,57 @@ pub struct BenchReport {
 /// Genomes evaluated per thread in a round: about a tenth of a second.
 const GENOMES: usize = 20;
 
-/// Measures the scene of `settings` for about `duration`, calling `progress` with the share done.
+/// What a benchmark simulates: genomes in one trial.
+#[derive(Debug)]
+pub struct Workload {
+    genomes: Vec<Genome>,
+    trial: Trial,
+}
+
+impl Workload {
+    /// Newborns of a run with these settings that are not disqualified: those stop early, and without them ours and
+    /// bare rapier take the same steps.
+    pub fn newborns(settings: &Settings) -> Self {
+        let trial = settings.trial.clone();
+        let genomes = (0..10 * GENOMES as u32)
+            .map(|individual| {
+                let mut rng = stream(1, 1, individual, Purpose::Birth);
+                settings.genome.random_genome(trial.genome_shape(), &mut rng)
+            })
+            .filter(|genome| evaluate(genome, &trial).disqualified.is_none())
+            .take(GENOMES)
+            .collect();
+        Self { genomes, trial }
+    }
+
+    /// One champion, again and again. None if it is disqualified, since its trial then ends early.
+    pub fn champion(genome: Genome, trial: Trial) -> Option<Self> {
+        let runs_to_the_end = evaluate(&genome, &trial).disqualified.is_none();
+        runs_to_the_end.then(|| Self { genomes: vec![genome; GENOMES], trial })
+    }
+}
+
+/// Measures a workload for about `duration`, calling `progress` with the share done.
 ///
 /// # Errors
 /// The threads could not be started.
 pub fn bench(
-    settings: &Settings,
+    Workload { genomes, trial }: &Workload,
     threads: usize,
     duration: Duration,
     mut progress: impl FnMut(f64),
 ) -> Result<BenchReport, WorkersError> {
-    let trial = &settings.trial;
-    // Disqualified rollouts stop early; without them, ours and bare rapier take the same steps.
-    let genomes: Vec<Genome> = (0..10 * GENOMES as u32)
-        .map(|individual| {
-            let mut rng = stream(1, 1, individual, Purpose::Birth);
-            settings.genome.random_genome(trial.genome_shape(), &mut rng)
-        })
-        .filter(|genome| evaluate(genome, trial).disqualified.is_none())
-        .take(GENOMES)
-        .collect();
     let (one, many) = (LocalPool::new(1)?, LocalPool::new(threads)?);
     let started = Instant::now();
     let mut rounds: Vec<Round> = Vec::new();
     loop {
         rounds.push(Round {
-            ours: steps_per_s(&one, 1, &genomes, |genome| evaluate(genome, trial).steps),
-            bare: steps_per_s(&one, 1, &genomes, |genome| {
+            ours: steps_per_s(&one, 1, genomes, |genome| evaluate(genome, trial).steps),
+            bare: steps_per_s(&one, 1, genomes, |genome| {
                 step_bare(genome, trial);
                 trial.steps()
             }),
-            many: steps_per_s(&many, threads, &genomes, |genome| evaluate(genome, trial).steps),
+            many: steps_per_s(&many, threads, genomes, |genome| evaluate(genome, trial).steps),
         });
         let elapsed = started.elapsed();
         progress((elapsed.as_secs_f64() / duration.as_secs_f64()).min(1.0));
@@ -159,7 +179,8 @@ mod tests {
     fn a_bench_reports_rates_and_ratios() {
         let mut settings = Settings::default();
         settings.trial.duration_s = 0.1;
-        let report = bench(&settings, 2, Duration::ZERO, |_| ()).expect("threads");
+        let report =
+            bench(&Workload::newborns(&settings), 2, Duration::ZERO, |_| ()).expect("threads");
         assert_eq!(report.threads, 2);
         assert!(report.steps_per_s > 0.0 && report.ratio_to_bare_rapier > 0.0);
         assert!((report.sim_s_per_s * 60.0 / report.steps_per_s - 1.0).abs() < 1e-6);

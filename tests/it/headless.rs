@@ -311,6 +311,18 @@ fn the_bench_reports_its_figures() {
     }
 }
 
+#[test]
+fn the_bench_takes_a_champion() {
+    let folder = folder();
+    let save = include_str!("../../saves/first-climber.ron");
+    std::fs::write(folder.path().join("climber.ron"), save).expect("written");
+    let figures = &json_lines(folder.path(), "bench climber.ron --threads 1 --json")[0];
+    assert!(figures["sim_s_per_s"].as_f64().expect("a rate") > 0.0, "{figures}");
+    let output = run(folder.path(), "bench climber.ron --set limbs=3");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("--set"), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn the_interrupt_key_ends_a_run_and_keeps_its_finished_generations() {

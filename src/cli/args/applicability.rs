@@ -15,6 +15,7 @@ enum Task {
     ReplayInWindow,
     CheckReplay,
     Bench,
+    BenchChampion,
     Body,
     BodyStudy,
     Verify,
@@ -36,9 +37,9 @@ enum Task {
 }
 
 use Task::{
-    Bench, Body, BodyStudy, CheckReplay, Compare, Completions, Exam, Export, Families, Figures,
-    Machines, Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings, SettingsAsMarkdown,
-    Table1, Verify, Window, Worker,
+    Bench, BenchChampion, Body, BodyStudy, CheckReplay, Compare, Completions, Exam, Export,
+    Families, Figures, Machines, Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings,
+    SettingsAsMarkdown, Table1, Verify, Window, Worker,
 };
 
 /// The tasks that compute on other machines.
@@ -77,6 +78,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Run,
             CheckReplay,
             Bench,
+            BenchChampion,
             Body,
             Verify,
             Exam,
@@ -125,6 +127,7 @@ const FLAGS: [(&str, &[Task]); 29] = [
             Run,
             ReplayInWindow,
             Bench,
+            BenchChampion,
             Verify,
             Exam,
             Robust,
@@ -160,7 +163,8 @@ impl Task {
             None => Window,
             Some(Subcommand::Replay { .. }) if args.no_render => CheckReplay,
             Some(Subcommand::Replay { .. }) => ReplayInWindow,
-            Some(Subcommand::Bench) => Bench,
+            Some(Subcommand::Bench { file: None }) => Bench,
+            Some(Subcommand::Bench { file: Some(_) }) => BenchChampion,
             Some(Subcommand::Body { .. }) => Body,
             Some(Subcommand::BodyStudy(_)) => BodyStudy,
             Some(Subcommand::Verify) => Verify,
@@ -190,6 +194,7 @@ impl Task {
             ReplayInWindow => "snakes replay",
             CheckReplay => "snakes replay --no-render",
             Bench => "snakes bench",
+            BenchChampion => "snakes bench FILE",
             Body => "snakes body",
             BodyStudy => "snakes body-study",
             Verify => "snakes verify",

@@ -147,7 +147,10 @@ pub enum Subcommand {
         files: Vec<PathBuf>,
     },
     /// Measure the speed of the simulation on this machine
-    Bench,
+    Bench {
+        /// Saved champion, simulated in its own world [default: newborns of a preset]
+        file: Option<PathBuf>,
+    },
     /// Check that this machine computes the same bits as the reference machine
     Verify,
     /// Examine champions: varied trials, other step rates, other stairs, a higher step, shoves

@@ -22,7 +22,7 @@ impl Args {
     pub fn preset(&self) -> Result<Preset, CliError> {
         let default = match self.command {
             // These are about the report's run.
-            Some(Subcommand::Table1 { .. } | Subcommand::Bench) => "report",
+            Some(Subcommand::Table1 { .. } | Subcommand::Bench { .. }) => "report",
             _ => DEFAULT_PRESET,
         };
         Ok(load_preset(self.preset.as_deref().unwrap_or(default))?)
