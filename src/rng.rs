@@ -38,6 +38,10 @@ pub enum Purpose {
     Learn = 12,
     /// Choosing what a study or a tuning changes in a genome.
     Study = 13,
+    /// Drawing the irregularities of a staircase.
+    StairNoise = 14,
+    /// Drawing the held-out staircases of the exam, which no run may use.
+    HeldOutStairs = 15,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

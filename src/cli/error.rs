@@ -144,6 +144,7 @@ impl From<SaveError> for CliError {
     fn from(error: SaveError) -> Self {
         match error {
             SaveError::UnknownPreset(invalid) => of_flag("--preset")(invalid).into(),
+            SaveError::UnknownStairs(invalid) => of_flag("--stairs")(invalid).into(),
             other => Self::Headless(other.into()),
         }
     }

@@ -12,11 +12,13 @@ use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
 use crate::check::Invalid;
 use crate::export::mjcf;
+use crate::genome::StairsClass;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::HeadlessError;
 use crate::run::markdown::markdown_table;
 use crate::run::mujoco::{CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials};
 use crate::run::progress_bar::with_bar;
+use crate::run::robust::Share;
 use crate::run::{Evaluator, RunControl, short};
 use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
 use crate::schema::Choices;
@@ -139,8 +141,13 @@ fn name(file: &Path) -> String {
 }
 
 fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
+    let kept_in = match result.suite {
+        ExamSuite::HeldOut => &[],
+        _ => result.each.as_slice(),
+    };
     let each: serde_json::Map<_, _> =
-        result.each.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
+        kept_in.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
+    let classes: Vec<_> = result.classes().into_iter().map(class_json).collect();
     let line = json!({
         "file": file.display().to_string(),
         "suite": result.suite.choice().name,
@@ -150,9 +157,24 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
         "median_steps": short(result.median_steps),
         "kept": short(result.kept),
         "kept_in": each,
+        "classes": classes,
         "matches": matches,
     });
     format!("{line}\n")
+}
+
+/// A class of the held-out stairs, with the 95 % interval of its share.
+fn class_json((class, landed, trials): (&str, u32, u32)) -> serde_json::Value {
+    let Share { seen, least, most } = Share::of(landed, trials);
+    json!({
+        "class": class, "trials": trials, "landed": landed, "share": seen, "least": least, "most": most,
+    })
+}
+
+/// A number of landings with the 95 % interval of their share.
+fn with_interval(landed: u32, trials: u32) -> String {
+    let Share { least, most, .. } = Share::of(landed, trials);
+    format!("{landed} of {trials} ({least:.2}–{most:.2})")
 }
 
 fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool) -> String {
@@ -177,7 +199,7 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
 }
 
 /// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
-/// share of the way that it keeps in each.
+/// share of the way that it keeps in each. The held-out stairs have 95 % intervals.
 fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     let mut head = vec!["champion".to_owned()];
     for suite in suites {
@@ -187,6 +209,10 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
                 head.extend(
                     of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()),
                 );
+            }
+            (ExamSuite::HeldOut, _) => {
+                head.push(suite.choice().name.to_owned());
+                head.extend(StairsClass::names().into_iter().map(str::to_owned));
             }
             _ => head.push(suite.choice().name.to_owned()),
         }
@@ -203,6 +229,11 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
             match results.iter().find(|result| result.suite == *suite) {
                 // The suite has no conditions for this champion.
                 None => cells.push("–".to_owned()),
+                Some(result) if *suite == ExamSuite::HeldOut => {
+                    cells.push(with_interval(result.landed, result.trials));
+                    let classes = result.classes().into_iter();
+                    cells.extend(classes.map(|(_, landed, of)| with_interval(landed, of)));
+                }
                 Some(result) if result.each.is_empty() => {
                     cells.push(format!("{} of {}", result.landed, result.trials));
                 }

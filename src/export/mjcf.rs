@@ -10,7 +10,7 @@ use std::io;
 
 use super::facts::{Fact, generator};
 use super::xml_text::{XmlText, spaced};
-use crate::world::{BodyPlan, JointPlan, Surface, WorldPlan};
+use crate::world::{BodyPlan, JointPlan, Rotation, Surface, WorldPlan};
 use tree::{limbs, start};
 
 /// Limit of a hinge that must not move, in rad: MuJoCo demands a range that is not empty.
@@ -195,19 +195,29 @@ fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             friction(&plan.ground),
         ],
     )?;
-    for (index, stair) in plan.stairs.boxes().iter().enumerate() {
-        let ends = || stair.min_m.into_iter().zip(stair.max_m);
-        xml.leaf(
-            "geom",
-            &[
-                ("name", format!("step {}", index + 1)),
-                ("type", "box".into()),
-                ("pos", spaced(ends().map(|(min, max)| (min + max) / 2.0))),
-                ("size", spaced(ends().map(|(min, max)| (max - min) / 2.0))),
-                ("rgba", rgba(STEP_COLORS[index % 2])),
-                friction(&plan.surface),
-            ],
-        )?;
+    // A step may consist of several solids, of which only the first has its plain name.
+    let mut last = None;
+    for (index, solid) in plan.stairs.solids().iter().enumerate() {
+        let number = solid.step + 1;
+        let again = if last == Some(number) || solid.pose.rotation != Rotation::IDENTITY {
+            format!(", solid {}", index + 1)
+        } else {
+            String::new()
+        };
+        last = Some(number);
+        let [x, y, z, w] = solid.pose.rotation.to_array();
+        let mut attributes = vec![
+            ("name", format!("step {number}{again}")),
+            ("type", "box".into()),
+            ("pos", spaced(solid.pose.translation.to_array())),
+            ("size", spaced(solid.half_m.to_array())),
+            ("rgba", rgba(STEP_COLORS[solid.step as usize % 2])),
+            friction(&plan.surface),
+        ];
+        if solid.pose.rotation != Rotation::IDENTITY {
+            attributes.push(("quat", spaced([w, x, y, z])));
+        }
+        xml.leaf("geom", &attributes)?;
     }
     Ok(())
 }

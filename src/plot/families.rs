@@ -56,6 +56,7 @@ fn role(suite: ExamSuite) -> Role {
         ExamSuite::Lesion => Role::Others,
         ExamSuite::StepRate => Role::Share(0.0),
         ExamSuite::Trials => Role::Share(0.8),
+        ExamSuite::HeldOut => Role::Share(0.4),
     }
 }
 

@@ -300,7 +300,14 @@ mod tests {
     use super::*;
 
     fn end(steps: u32, way: f32) -> ExamEnd {
-        ExamEnd { steps, way, landed_s: None, has_landed: steps == 10, is_disqualified: false }
+        ExamEnd {
+            steps,
+            way,
+            landed_s: None,
+            arrived_s: None,
+            has_landed: steps == 10,
+            is_disqualified: false,
+        }
     }
 
     #[test]

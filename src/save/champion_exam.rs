@@ -8,7 +8,7 @@ use super::files::read_text;
 use crate::Engine;
 use crate::check::Invalid;
 use crate::schema::Choices;
-use crate::score::SuiteResult;
+use crate::score::{ExamSuite, SuiteResult};
 
 /// Writes the results of an exam into a champion's file, atomically. Results of other suites and what the user wrote
 /// above the champion are kept.
@@ -64,6 +64,18 @@ pub(super) fn is_programs_comment(line: &str) -> bool {
 pub fn exam_in_words(exam: &[SuiteResult]) -> Option<String> {
     let words = exam.iter().map(|result| {
         let name = result.suite.choice().title.to_lowercase();
+        if result.suite == ExamSuite::HeldOut {
+            let classes = result.classes();
+            let each =
+                classes.iter().map(|(class, landed, of)| format!("{class} {landed} of {of}"));
+            let each: Vec<String> = each.collect();
+            return format!(
+                "{name} {} of {} landed ({})",
+                result.landed,
+                result.trials,
+                each.join(", ")
+            );
+        }
         if result.each.is_empty() {
             return format!("{name} {} of {} landed", result.landed, result.trials);
         }

@@ -88,6 +88,9 @@ pub enum SaveError {
     /// No preset and no file has this name.
     #[error("{0}")]
     UnknownPreset(Invalid),
+    /// No built-in stairs and no file have this name.
+    #[error("{0}")]
+    UnknownStairs(Invalid),
     /// A value in the file is not allowed.
     #[error("{}: {source}", path.display())]
     Invalid {

@@ -69,6 +69,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "bodies",
     "squishy",
     "creatures",
+    "house",
 ];
 
 /// The shipped presets, the default first.

@@ -8,10 +8,11 @@ pub use suites::varied;
 
 use serde::{Deserialize, Serialize};
 
+use super::way_up::{Arrival, mean_steps};
 use super::{Evaluation, Perturbation, Rollout, Trial};
 use crate::check::{Invalid, within};
-use crate::genome::Genome;
-use crate::schema::choices;
+use crate::genome::{Genome, HELD_OUT_PER_CLASS, StairsClass};
+use crate::schema::{Choices, choices};
 use crate::world::Stairs;
 
 choices! {
@@ -33,6 +34,9 @@ choices! {
         Lesion = "lesion", "Frozen senses",
             "The 100 other stairs, on which sight, touch and balance keep the values of the snake at rest: what remains is \
              what the snake does without them. Only for controllers that sense their surroundings.";
+        HeldOut = "held-out", "Held-out stairs",
+            "60 staircases on which no run may learn, 15 each with equal steps, irregular steps, the proportions of houses, and \
+             nosings; 30 s each. A landing counts once the whole body has stood on the landing for half a second.";
     }
 }
 
@@ -59,7 +63,9 @@ pub struct ExamEnd {
     pub way: f32,
     /// When the middle limb was first on the landing, in s; none if it never was.
     pub landed_s: Option<f32>,
-    /// Whether it ended there.
+    /// When the whole body had first stood on the landing for half a second, in s; none if it never did.
+    pub arrived_s: Option<f32>,
+    /// Whether the middle limb ended on the landing.
     pub has_landed: bool,
     /// Whether the snake was disqualified.
     pub is_disqualified: bool,
@@ -81,7 +87,8 @@ pub struct SuiteResult {
     /// Share of its way in its own trial that the champion keeps: the median over the trials, or, for the few trials
     /// of the step rates, the smallest.
     pub kept: f32,
-    /// The share in each condition, for a suite of few conditions.
+    /// The share in each condition, for a suite of few conditions; of the held-out stairs the share of each class on which
+    /// it landed.
     pub each: Vec<(String, f32)>,
 }
 
@@ -108,8 +115,14 @@ impl ExamCondition {
 
 impl ExamEnd {
     /// The end of a trial whose simulation panicked.
-    pub const CRASHED: Self =
-        Self { steps: 0, way: 0.0, landed_s: None, has_landed: false, is_disqualified: true };
+    pub const CRASHED: Self = Self {
+        steps: 0,
+        way: 0.0,
+        landed_s: None,
+        arrived_s: None,
+        has_landed: false,
+        is_disqualified: true,
+    };
 
     /// Checks every value.
     ///
@@ -118,7 +131,11 @@ impl ExamEnd {
     pub fn check(&self) -> Result<(), Invalid> {
         within("steps", self.steps, 0..=1000)?;
         within("way", self.way, 0.0..=1.0)?;
-        self.landed_s.map_or(Ok(()), |landed_s| within("landed_s", landed_s, 0.0..=1.0e4))
+        let time = |field, time_s: Option<f32>| {
+            time_s.map_or(Ok(()), |time_s| within(field, time_s, 0.0..=1.0e4))
+        };
+        time("landed_s", self.landed_s)?;
+        time("arrived_s", self.arrived_s)
     }
 
     /// Simulates a genome in a condition.
@@ -126,23 +143,22 @@ impl ExamEnd {
         let ExamCondition { trial, perturbation, .. } = condition;
         let mut rollout = Rollout::perturbed(genome, trial, perturbation);
         let mut landed_s = None;
+        let mut arrival = Arrival::default();
         while rollout.advance() {
             if rollout.is_on_landing() {
                 landed_s = landed_s.or(Some(rollout.time_s()));
             }
+            let steps = mean_steps(rollout.body(), rollout.poses(), rollout.stairs());
+            arrival.observe(steps, rollout.stairs(), rollout.time_s());
         }
         let evaluation = rollout.evaluation();
         let start_y_m = trial.middle_start_y_m(genome) + perturbation.ahead_m;
-        Self::new(&evaluation, rollout.stairs(), start_y_m, landed_s)
+        let arrived_s = arrival.arrived_s();
+        Self { landed_s, arrived_s, ..Self::new(&evaluation, rollout.stairs(), start_y_m) }
     }
 
-    /// The end of a simulated trial.
-    fn new(
-        evaluation: &Evaluation,
-        stairs: &Stairs,
-        start_y_m: f32,
-        landed_s: Option<f32>,
-    ) -> Self {
+    /// The end of a simulated trial, without its times.
+    fn new(evaluation: &Evaluation, stairs: &Stairs, start_y_m: f32) -> Self {
         let is_disqualified = evaluation.disqualified.is_some();
         let steps = match evaluation.behaviour {
             Some(behaviour) if !is_disqualified => behaviour.steps_climbed,
@@ -155,7 +171,8 @@ impl ExamEnd {
             } else {
                 way(evaluation.centre_y_m, steps, stairs, start_y_m)
             },
-            landed_s,
+            landed_s: None,
+            arrived_s: None,
             has_landed: evaluation.is_on_landing(stairs),
             is_disqualified,
         }
@@ -168,6 +185,7 @@ impl ExamEnd {
             steps,
             way: way(middle_m[1], steps, stairs, start_y_m),
             landed_s: None,
+            arrived_s: None,
             has_landed: stairs.steps > 0 && steps == stairs.steps,
             is_disqualified: false,
         }
@@ -199,6 +217,7 @@ impl SuiteResult {
                 let in_time = |(landed_s, latest_s)| landed_s <= latest_s;
                 !end.is_disqualified && end.landed_s.zip(latest_s).is_some_and(in_time)
             }
+            ExamSuite::HeldOut => !end.is_disqualified && end.arrived_s.is_some(),
             _ => end.has_landed,
         };
         let share = |end: &ExamEnd| if own.way > 0.0 { end.way / own.way } else { 0.0 };
@@ -206,6 +225,14 @@ impl SuiteResult {
             ExamSuite::StepRate => {
                 let labels = conditions.iter().map(|condition| condition.label.clone());
                 labels.zip(ends.iter().map(share)).collect()
+            }
+            ExamSuite::HeldOut => {
+                // The conditions of a class follow one another.
+                let each = ends.chunks(HELD_OUT_PER_CLASS as usize);
+                let share =
+                    |of: &[ExamEnd]| of.iter().filter(landed).count() as f32 / of.len() as f32;
+                let names = StairsClass::names().into_iter().map(str::to_owned);
+                names.zip(each.map(share)).collect()
             }
             _ => Vec::new(),
         };
@@ -223,6 +250,19 @@ impl SuiteResult {
             kept,
             each,
         }
+    }
+}
+
+impl SuiteResult {
+    /// The classes of the held-out stairs, each with the number of its staircases on which the champion landed and the
+    /// number of all; of other suites none.
+    pub fn classes(&self) -> Vec<(&str, u32, u32)> {
+        if self.suite != ExamSuite::HeldOut {
+            return Vec::new();
+        }
+        let landed = |share: f32| (share * HELD_OUT_PER_CLASS as f32).round() as u32;
+        let classes = self.each.iter();
+        classes.map(|(name, share)| (name.as_str(), landed(*share), HELD_OUT_PER_CLASS)).collect()
     }
 }
 

@@ -184,7 +184,8 @@ impl Perturbation {
         plan.start_y_m += self.ahead_m;
         plan.start_x_m += self.aside_m;
         plan.start_turn_rad += self.turn_rad;
-        plan.stairs.tread_m *= self.tread;
+        plan.stairs.tread_m = plan.stairs.tread_m.map(|tread_m| tread_m * self.tread);
+        plan.stairs.slope_m = plan.stairs.slope_m.map(|slope_m| slope_m * self.tread);
         let PhysicsSettings { steps_per_s, .. } = &mut plan.physics;
         let rate = (*steps_per_s as f32 * self.step_rate).round() as u32;
         *steps_per_s = rate.clamp(*STEP_RATES_HZ.start(), *STEP_RATES_HZ.end());
@@ -242,7 +243,7 @@ mod tests {
         let off = Perturbation { tread: 0.9, step_rate: 2.0, rise: 1.1, ..Perturbation::default() };
         off.apply(&mut plan);
         assert_eq!(plan.stairs.rise_m, PerPart::All(0.55));
-        assert_eq!((plan.stairs.tread_m, plan.physics.steps_per_s), (1.8, 120));
+        assert_eq!((plan.stairs.step_tread_m(0), plan.physics.steps_per_s), (1.8, 120));
         let slow = Perturbation { step_rate: 0.1, ..Perturbation::default() };
         slow.apply(&mut plan);
         assert_eq!(plan.physics.steps_per_s, 20, "the lowest that is allowed");

@@ -14,10 +14,33 @@ pub(super) struct WayUp {
     start_steps: f32,
     /// Whether a limb has touched each tread, the lowest first.
     touched: Vec<bool>,
-    /// Time since which the whole body stands on the landing, in s.
+    arrival: Arrival,
+}
+
+/// When the whole body has stood on the landing for long enough.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Arrival {
+    /// Time since which it stands there, in s.
     up_since_s: Option<f32>,
-    /// Time at which it stood there for long enough, in s.
+    /// Time at which it first had stood there for long enough, in s.
     arrived_s: Option<f32>,
+}
+
+impl Arrival {
+    /// Takes in the way of the body, see [`mean_steps`], at this simulated time.
+    pub fn observe(&mut self, steps: f32, stairs: &Stairs, time_s: f32) {
+        let is_up = steps >= stairs.steps as f32;
+        self.up_since_s = is_up.then(|| self.up_since_s.unwrap_or(time_s));
+        let stays = self.up_since_s.is_some_and(|since_s| time_s - since_s >= ARRIVAL_S);
+        if stays && self.arrived_s.is_none() {
+            self.arrived_s = Some(time_s);
+        }
+    }
+
+    /// Time at which it first had stood there for long enough, in s.
+    pub fn arrived_s(&self) -> Option<f32> {
+        self.arrived_s
+    }
 }
 
 impl WayUp {
@@ -45,12 +68,7 @@ impl WayUp {
                 (steps as usize).checked_sub(1).and_then(|tread| self.touched.get_mut(tread));
             tread.into_iter().for_each(|touched| *touched = true);
         }
-        let is_up = mean_steps(simulation.body(), poses, stairs) >= stairs.steps as f32;
-        self.up_since_s = is_up.then(|| self.up_since_s.unwrap_or(time_s));
-        let stays = self.up_since_s.is_some_and(|since_s| time_s - since_s >= ARRIVAL_S);
-        if stays && self.arrived_s.is_none() {
-            self.arrived_s = Some(time_s);
-        }
+        self.arrival.observe(mean_steps(simulation.body(), poses, stairs), stairs, time_s);
     }
 
     /// The share of the way from the start to the landing. A body that has leapt over treads can have at most twice the share
@@ -73,7 +91,8 @@ impl WayUp {
 
     /// The addition for an arrival at this time of the trial, of a body that still is where it arrived.
     pub fn bonus(&self, duration_s: f32) -> f32 {
-        let arrived_s = self.arrived_s.filter(|_| self.up_since_s.is_some());
+        let Arrival { up_since_s, arrived_s } = self.arrival;
+        let arrived_s = arrived_s.filter(|_| up_since_s.is_some());
         arrived_s.map_or(0.0, |arrived_s| ARRIVAL_BONUS * (1.0 - arrived_s / duration_s).max(0.0))
     }
 }
@@ -85,7 +104,7 @@ pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f3
     let (mut sum, mut mass_kg) = (0.0, 0.0);
     for (pose, limb) in poses.iter().zip(&body.parts) {
         let at_m = pose.translation;
-        let way = (at_m.y - stairs.first_riser_y_m) / stairs.tread_m;
+        let way = stairs.way_steps(at_m.y);
         let most = if stairs.steps_under(at_m.to_array()) > 0 { stairs.steps as f32 } else { 0.0 };
         sum += limb.mass_kg() * way.min(most);
         mass_kg += limb.mass_kg();
@@ -157,9 +176,10 @@ mod tests {
 
     #[test]
     fn an_early_arrival_has_a_bonus_as_long_as_the_body_stays() {
-        let mut way = WayUp { arrived_s: Some(3.0), up_since_s: Some(2.5), ..WayUp::default() };
+        let arrival = Arrival { arrived_s: Some(3.0), up_since_s: Some(2.5) };
+        let mut way = WayUp { arrival, ..WayUp::default() };
         assert!((way.bonus(15.0) - 0.08).abs() < 1e-6);
-        way.up_since_s = None;
+        way.arrival.up_since_s = None;
         assert_eq!(way.bonus(15.0), 0.0, "it has fallen off again");
     }
 }

@@ -1,18 +1,33 @@
 //! The staircase in profile, as a snake senses it: the next riser and the surface below a point.
 //!
-//! Every question is answered in constant time from the shape of the stairs, without a ray through the engine.
+//! Every question is answered from the shape of the stairs, without a ray through the engine: in constant time on equal
+//! treads, and on others in a time that grows with the logarithm of their number.
 
 use super::Stairs;
+use crate::schema::PerPart;
 
 /// The profile of a staircase.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StairProfile {
     first_riser_y_m: f32,
-    tread_m: f32,
+    /// Where the flat parts of the treads begin.
+    treads: Treads,
+    mean_tread_m: f32,
     half_width_m: f32,
     end_y_m: f32,
     /// Height over the ground after each number of steps, from none to all, in metres.
     heights_m: Vec<f32>,
+    /// Depth of the slope and of the nosing before each tread, in metres; empty if there are none.
+    edges_m: Vec<[f32; 2]>,
+}
+
+/// Where the flat parts of the treads begin, on the y axis, in metres.
+#[derive(Debug, Clone, PartialEq)]
+enum Treads {
+    /// A tread of this depth behind each vertical riser.
+    Equal(f32),
+    /// At these places.
+    At(Vec<f32>),
 }
 
 /// The next step ahead of a point.
@@ -31,7 +46,7 @@ pub struct ClimbProgress {
     pub steps: u32,
     /// Its y, in metres; without a step under it at most that of the first riser.
     pub way_m: f32,
-    /// Depth of a step, in metres.
+    /// Mean depth of a step, in metres.
     pub tread_m: f32,
     /// Whether all steps are under it.
     pub is_on_landing: bool,
@@ -40,43 +55,66 @@ pub struct ClimbProgress {
 impl StairProfile {
     /// The profile of a staircase.
     pub fn of(stairs: &Stairs) -> Self {
+        let steps = || 0..stairs.steps;
+        let edge_m = |step| [stairs.step_slope_m(step), stairs.step_nosing_m(step)];
+        let has_edges = steps().any(|step| edge_m(step) != [0.0; 2]);
+        let slopes = steps().any(|step| stairs.step_slope_m(step) > 0.0);
         Self {
             first_riser_y_m: stairs.first_riser_y_m,
-            tread_m: stairs.tread_m,
+            treads: match &stairs.tread_m {
+                PerPart::All(tread_m) if !slopes => Treads::Equal(*tread_m),
+                _ => Treads::At(steps().map(|step| stairs.tread_y_m(step)).collect()),
+            },
+            mean_tread_m: stairs.mean_tread_m(),
             half_width_m: stairs.width_m / 2.0,
             end_y_m: stairs.end_y_m(),
             heights_m: (0..=stairs.steps).map(|steps| stairs.height_m(steps)).collect(),
+            edges_m: if has_edges { steps().map(edge_m).collect() } else { Vec::new() },
         }
     }
 
-    /// The next step ahead of a point of the floor plan, in metres. None on the landing, beside the stairs and
-    /// behind them.
+    /// The next step ahead of a point of the floor plan, in metres: its riser, the edge of its nosing, or the foot of its
+    /// slope. None on the landing, beside the stairs and behind them.
     pub fn next_step(&self, x_m: f32, y_m: f32) -> Option<NextStep> {
         if !self.is_in_line(x_m, y_m) {
             return None;
         }
-        let passed = self.risers_passed(y_m);
+        let passed = self.treads_passed(y_m);
         let top_z_m = *self.heights_m.get(passed + 1)?;
-        let riser_y_m = self.first_riser_y_m + passed as f32 * self.tread_m;
-        Some(NextStep { gap_m: riser_y_m - y_m, top_z_m })
+        let [slope_m, nosing_m] = self.edge_m(passed);
+        let edge_y_m = self.tread_y_m(passed) - slope_m - nosing_m;
+        Some(NextStep { gap_m: edge_y_m - y_m, top_z_m })
     }
 
-    /// Height of the tread, the landing or the ground at a point of the floor plan, in metres.
+    /// Height of the tread, the slope, the landing or the ground at a point of the floor plan, in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
-        let passed = if self.is_in_line(x_m, y_m) { self.risers_passed(y_m) } else { 0 };
-        self.heights_m.get(passed).copied().unwrap_or(0.0)
+        let is_in_line = self.is_in_line(x_m, y_m);
+        let passed = if is_in_line { self.treads_passed(y_m) } else { 0 };
+        let below_m = self.heights_m.get(passed).copied().unwrap_or(0.0);
+        let Some(top_m) = self.heights_m.get(passed + 1).filter(|_| is_in_line) else {
+            return below_m;
+        };
+        let [slope_m, nosing_m] = self.edge_m(passed);
+        let before_tread_m = self.tread_y_m(passed) - y_m;
+        if slope_m > 0.0 && before_tread_m <= slope_m {
+            below_m + (top_m - below_m) * (1.0 - before_tread_m / slope_m)
+        } else if nosing_m > 0.0 && before_tread_m <= nosing_m {
+            *top_m
+        } else {
+            below_m
+        }
     }
 
     /// The progress up the stairs of a limb whose centre is at a place, in metres: see
     /// [`Stairs::steps_under`](super::Stairs::steps_under).
     pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> ClimbProgress {
-        let passed = if self.is_in_line(x_m, y_m) { self.risers_passed(y_m) } else { 0 };
+        let passed = if self.is_in_line(x_m, y_m) { self.treads_passed(y_m) } else { 0 };
         let is_over = self.heights_m.get(passed).is_some_and(|height_m| z_m >= *height_m);
         let steps = if is_over { passed } else { 0 };
         ClimbProgress {
             steps: steps as u32,
             way_m: if steps > 0 { y_m } else { y_m.min(self.first_riser_y_m) },
-            tread_m: self.tread_m,
+            tread_m: self.mean_tread_m,
             is_on_landing: steps > 0 && steps + 1 == self.heights_m.len(),
         }
     }
@@ -91,15 +129,32 @@ impl StairProfile {
         x_m.abs() <= self.half_width_m && y_m <= self.end_y_m
     }
 
-    /// Number of risers at or before a place on the y axis.
-    fn risers_passed(&self, y_m: f32) -> usize {
+    /// Number of treads whose flat part begins at or before a place on the y axis.
+    fn treads_passed(&self, y_m: f32) -> usize {
+        let tread_m = match &self.treads {
+            Treads::Equal(tread_m) => tread_m,
+            Treads::At(places_m) => return places_m.partition_point(|place_m| *place_m <= y_m),
+        };
         let steps = self.heights_m.len() - 1;
         if y_m < self.first_riser_y_m {
             return 0;
         }
         // A number that is not finite becomes 0 or the greatest.
-        let passed = libm::floorf((y_m - self.first_riser_y_m) / self.tread_m) as usize;
+        let passed = libm::floorf((y_m - self.first_riser_y_m) / tread_m) as usize;
         passed.saturating_add(1).min(steps)
+    }
+
+    /// Where the flat part of tread number `index` begins, on the y axis, in metres.
+    fn tread_y_m(&self, index: usize) -> f32 {
+        match &self.treads {
+            Treads::Equal(tread_m) => self.first_riser_y_m + index as f32 * tread_m,
+            Treads::At(places_m) => places_m.get(index).copied().unwrap_or(self.end_y_m),
+        }
+    }
+
+    /// Depth of the slope and of the nosing before tread number `index`, in metres.
+    fn edge_m(&self, index: usize) -> [f32; 2] {
+        self.edges_m.get(index).copied().unwrap_or_default()
     }
 }
 
@@ -136,14 +191,31 @@ mod tests {
 
     #[test]
     fn the_surface_is_that_of_the_stairs() {
-        let stairs = Stairs::default();
-        let profile = StairProfile::of(&stairs);
+        let uneven = Stairs {
+            steps: 5,
+            rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
+            tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
+            slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
+            nosing_m: 0.2,
+            ..Stairs::default()
+        };
+        crate::schema::check(&uneven).expect("allowed");
+        let nosed = Stairs { nosing_m: 0.3, ..Stairs::default() };
+        for stairs in [Stairs::default(), nosed, uneven] {
+            surface_is_that_of(&stairs);
+        }
+    }
+
+    fn surface_is_that_of(stairs: &Stairs) {
+        let profile = StairProfile::of(stairs);
         for x_m in [0.0, 2.4, -2.6] {
             for number in -40..500_i16 {
                 // Between the risers, where both agree whatever the rounding.
                 let y_m = f32::from(number) * 0.1 + 0.05;
                 let expected = stairs.surface_z_m(x_m, y_m);
-                assert_eq!(profile.surface_z_m(x_m, y_m), expected, "at {x_m}, {y_m}");
+                let found = profile.surface_z_m(x_m, y_m);
+                // On slopes the two compute in other orders.
+                assert!((found - expected).abs() < 1.0e-5, "at {x_m}, {y_m}: {found}, {expected}");
             }
         }
         assert_eq!(profile.surface_z_m(0.0, f32::NAN), 0.0);

@@ -1,18 +1,27 @@
 //! The staircase: its shape, and the meaning of a position on it.
 
+mod shape;
+
+pub use shape::{StairBox, StairSolid};
+
+use crate::check::Invalid;
 use crate::schema::{
-    Parts, PerPart, Section, SettingGroup, Walk, number, per_part, setting_group, settings, whole,
+    Parts, PerPart, Section, SettingGroup, Walk, is_default, number, per_part, setting_group,
+    settings, whole,
 };
 
 setting_group! {
-    /// A straight staircase that rises towards +y, with a landing behind its last step.
+    /// A straight staircase towards +y, with a landing behind its last step. A deep tread is a landing on the way, a
+    /// negative rise a step down, and a step down to the ground with a higher one behind it a gap where a step is missing.
     pub struct Stairs {
         /// Number of steps. The report has ten.
         steps: u32 = 10;
-        /// Height of each step over the one below, in metres, lowest first, or one height for all. The report has 0.5.
+        /// Height of each step over the one below, in metres, lowest first, or one height for all; negative for a step
+        /// down. The report has 0.5.
         rise_m: PerPart = 0.5.into();
-        /// Depth of one step along y, in metres. From Table 1 of the report: one step per 2 m.
-        tread_m: f32 = 2.0;
+        /// Depth of each step along y, in metres, lowest first, or one depth for all. From Table 1 of the report: one
+        /// step per 2 m.
+        tread_m: PerPart = 2.0.into();
         /// Width across x, in metres. The report has 5.
         width_m: f32 = 5.0;
         /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
@@ -21,25 +30,48 @@ setting_group! {
         /// Depth of the landing behind the last tread, in metres. Long enough by default that the
         /// whole snake (10 m) stands on it.
         landing_m: f32 = 14.0;
+        /// How far each tread overhangs its riser, in metres. Sloping rises and steps down have no nosing.
+        #[serde(default, skip_serializing_if = "is_default")]
+        nosing_m: f32 = 0.0;
+        /// Depth over which each rise slopes, in metres, lowest first, or one depth for all; 0 is a vertical riser.
+        #[serde(default = "no_slope", skip_serializing_if = "is_vertical")]
+        slope_m: PerPart = no_slope();
     }
 }
+
+fn no_slope() -> PerPart {
+    0.0.into()
+}
+
+fn is_vertical(slope_m: &PerPart) -> bool {
+    *slope_m == no_slope()
+}
+
+/// Least height of a step over the one below it, or below it, in metres. Below a centimetre the engine's tolerances are
+/// as high as the step.
+const LEAST_RISE_M: f32 = 0.01;
+/// A height over the ground below which a tread is the ground itself, in metres: sums of rises are not exact.
+const GROUND_M: f32 = 1.0e-4;
+/// Least depth of the flat part of a tread, in metres.
+const LEAST_FLAT_M: f32 = 0.1;
 
 impl SettingGroup for Stairs {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let each_step = Parts::Steps(self.steps as usize);
-        let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m } = self;
+        let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m, nosing_m, slope_m } =
+            self;
         walk.section(Section { title: "Stairs", about: "Shape and position of the staircase." });
         settings! { walk,
             // A hundred steps are far more than any snake climbs, and still quick.
             steps: whole("Steps", 0..=100)
                 .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0);
-            // From a doorsill to a wall. Below a centimetre the engine's tolerances are as high as the step.
-            rise_m: per_part("Rise", 0.01..=5.0, each_step)
+            // From a doorsill to a wall.
+            rise_m: per_part("Rise", -5.0..=5.0, each_step)
                 .unit("m")
-                .hint("Height of a step over the one below it")
+                .hint("Height of a step over the one below it; a negative rise leads down")
                 .slider(0.05, 2.0);
-            tread_m: number("Tread", 0.1..=20.0)
+            tread_m: per_part("Tread", 0.1..=20.0, each_step)
                 .unit("m")
                 .hint("Depth of a step. A deep tread gives the snake more room")
                 .slider(0.2, 5.0);
@@ -57,23 +89,116 @@ impl SettingGroup for Stairs {
                 .unit("m")
                 .hint("Depth of the landing beyond the last step")
                 .slider(0.0, 60.0);
+            nosing_m: number("Nosing", 0.0..=0.3).advanced()
+                .unit("m")
+                .hint("How far each tread overhangs its riser. Sloping rises have no nosing")
+                .slider(0.0, 0.3);
+            slope_m: per_part("Slope", 0.0..=19.9, each_step).advanced()
+                .unit("m")
+                .hint("Depth over which a rise slopes like a ramp; 0 is a vertical riser")
+                .slider(0.0, 2.0);
         }
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        let mut below_m = 0.0;
+        for step in 0..self.steps {
+            let (rise_m, top_m) = (self.step_rise_m(step), self.height_m(step + 1));
+            if rise_m.abs() < LEAST_RISE_M {
+                let allowed = format!("-5 to -{LEAST_RISE_M} or {LEAST_RISE_M} to 5 m");
+                return Err(Invalid::new("rise_m", rise_m, allowed));
+            }
+            if top_m < -GROUND_M || (GROUND_M..LEAST_RISE_M).contains(&top_m) {
+                let allowed = format!(
+                    "-{below_m}, down to the ground, or a rise that ends at least {LEAST_RISE_M} m over it"
+                );
+                return Err(Invalid::new(format!("rise_m of step {}", step + 1), rise_m, allowed));
+            }
+            below_m = top_m;
+            self.check_slope(step)?;
+            let most_m = (self.step_tread_m(step) - self.step_slope_m(step)) / 2.0;
+            if self.nosing_m > most_m {
+                let allowed = format!("0 to {most_m} m, half the flat tread of step {}", step + 1);
+                return Err(Invalid::new("nosing_m", self.nosing_m, allowed));
+            }
+        }
+        Ok(())
     }
 }
 
-/// One box of the staircase, in core axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StairBox {
-    /// The lower corner: least x, y and z, in metres.
-    pub min_m: [f32; 3],
-    /// The upper corner: greatest x, y and z, in metres.
-    pub max_m: [f32; 3],
+impl Stairs {
+    /// A slope needs a flat part of the tread above it, deep enough to hide the end of the board of which it is made.
+    fn check_slope(&self, step: u32) -> Result<(), Invalid> {
+        let slope_m = self.step_slope_m(step);
+        if slope_m == 0.0 {
+            return Ok(());
+        }
+        let rise_m = self.step_rise_m(step);
+        let flat_m = LEAST_FLAT_M.max(rise_m.abs() / 2.0);
+        let own_m =
+            (self.step_tread_m(step) - if rise_m > 0.0 { flat_m } else { LEAST_FLAT_M }).max(0.0);
+        if slope_m > own_m {
+            let allowed = format!("0 to {own_m} m, of a tread of {} m", self.step_tread_m(step));
+            return Err(Invalid::new(format!("slope_m of step {}", step + 1), slope_m, allowed));
+        }
+        let before = step.saturating_sub(1);
+        let above_m = self.step_tread_m(before) - self.step_slope_m(before);
+        if rise_m < 0.0 && above_m < flat_m {
+            let allowed = format!("0, or a flat tread of at least {flat_m} m before a slope down");
+            return Err(Invalid::new(format!("slope_m of step {}", step + 1), slope_m, allowed));
+        }
+        Ok(())
+    }
 }
 
 impl Stairs {
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
-        self.first_riser_y_m + index as f32 * self.tread_m
+        match &self.tread_m {
+            // Stairs of engine 2 and earlier have these bits.
+            PerPart::All(tread_m) => self.first_riser_y_m + index as f32 * tread_m,
+            PerPart::Each(_) => (0..index)
+                .fold(self.first_riser_y_m, |riser_m, step| riser_m + self.step_tread_m(step)),
+        }
+    }
+
+    /// Position at which the flat part of tread number `index` (0 is the first) begins, on the y axis, in metres: at its
+    /// riser, or at the end of its slope.
+    pub fn tread_y_m(&self, index: u32) -> f32 {
+        let slope_m = self.step_slope_m(index);
+        if slope_m > 0.0 { self.riser_y_m(index) + slope_m } else { self.riser_y_m(index) }
+    }
+
+    /// Depth of step number `index` (0 is the first) along y, in metres.
+    pub fn step_tread_m(&self, index: u32) -> f32 {
+        self.tread_m.at(index as usize)
+    }
+
+    /// Mean depth of the steps along y, in metres.
+    pub fn mean_tread_m(&self) -> f32 {
+        match &self.tread_m {
+            PerPart::All(tread_m) => *tread_m,
+            PerPart::Each(_) => {
+                (self.riser_y_m(self.steps) - self.first_riser_y_m) / self.steps.max(1) as f32
+            }
+        }
+    }
+
+    /// Depth over which the rise of step number `index` (0 is the first) slopes, in metres.
+    pub fn step_slope_m(&self, index: u32) -> f32 {
+        self.slope_m.at(index as usize)
+    }
+
+    /// How far the tread of step number `index` (0 is the first) overhangs its riser, in metres. Steps down, sloping
+    /// steps and those from which a slope leads down have no nosing.
+    pub fn step_nosing_m(&self, index: u32) -> f32 {
+        let leads_down = |step| self.step_rise_m(step) < 0.0;
+        let slopes = |step| self.step_slope_m(step) > 0.0;
+        let next = index + 1;
+        let has_none = leads_down(index)
+            || slopes(index)
+            || (next < self.steps && leads_down(next) && slopes(next));
+        if has_none { 0.0 } else { self.nosing_m }
     }
 
     /// Height of step number `index` (0 is the first) over the one below it, in metres.
@@ -86,36 +211,30 @@ impl Stairs {
         match &self.rise_m {
             // Stairs of engine 2 and earlier have these bits.
             PerPart::All(rise_m) => rise_m * steps as f32,
-            PerPart::Each(_) => (0..steps).map(|step| self.step_rise_m(step)).sum(),
+            PerPart::Each(_) => {
+                let sum_m = (0..steps).map(|step| self.step_rise_m(step)).sum::<f32>();
+                if sum_m.abs() < GROUND_M { 0.0 } else { sum_m }
+            }
         }
     }
 
-    /// Position from which on a snake's middle block is on the landing, on the y axis, in metres: the last riser. The
-    /// last tread is level with the landing and belongs to it. Without steps it is where the stairs would begin.
+    /// Greatest height of a tread over the ground, in metres.
+    pub fn highest_m(&self) -> f32 {
+        (0..=self.steps).map(|steps| self.height_m(steps)).fold(0.0, f32::max)
+    }
+
+    /// Position from which on a snake's middle block is on the landing, on the y axis, in metres: where the last tread
+    /// begins, which is level with the landing and belongs to it. Without steps it is where the stairs would begin.
     pub fn landing_y_m(&self) -> f32 {
-        self.riser_y_m(self.steps.saturating_sub(1))
+        match self.steps {
+            0 => self.first_riser_y_m,
+            steps => self.tread_y_m(steps - 1),
+        }
     }
 
     /// Position of the end of the landing on the y axis, in metres.
     pub fn end_y_m(&self) -> f32 {
         self.riser_y_m(self.steps) + self.landing_m
-    }
-
-    /// The steps as solid boxes that stand on the ground, lowest first.
-    ///
-    /// The landing belongs to the box of the last step: at a seam between two level boxes a sliding
-    /// block would trip over an edge that does not exist.
-    pub fn boxes(&self) -> Vec<StairBox> {
-        (0..self.steps)
-            .map(|index| {
-                let is_last = index + 1 == self.steps;
-                let back_y_m = if is_last { self.end_y_m() } else { self.riser_y_m(index + 1) };
-                StairBox {
-                    min_m: [-self.width_m / 2.0, self.riser_y_m(index), 0.0],
-                    max_m: [self.width_m / 2.0, back_y_m, self.height_m(index + 1)],
-                }
-            })
-            .collect()
     }
 
     /// Number of steps climbed by a snake whose centre stands at `y_m`.
@@ -124,7 +243,27 @@ impl Stairs {
     /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. Only y counts, as in the
     /// report: a snake that crawls past the stairs at their side would count too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
-        (0..self.steps).filter(|&index| y_m >= f64::from(self.riser_y_m(index))).count() as u32
+        (0..self.steps).take_while(|&index| y_m >= f64::from(self.tread_y_m(index))).count() as u32
+    }
+
+    /// The way of a point along the stairs, in steps: from the first riser, in treads. Before the first riser it is
+    /// negative, in depths of the first step; behind the last tread it goes on in depths of the last one.
+    pub fn way_steps(&self, y_m: f32) -> f32 {
+        match &self.tread_m {
+            PerPart::All(tread_m) => (y_m - self.first_riser_y_m) / tread_m,
+            PerPart::Each(_) => {
+                let mut riser_m = self.first_riser_y_m;
+                for step in 0..self.steps.saturating_sub(1) {
+                    let next_m = riser_m + self.step_tread_m(step);
+                    if y_m < next_m {
+                        return step as f32 + (y_m - riser_m) / self.step_tread_m(step);
+                    }
+                    riser_m = next_m;
+                }
+                let last = self.steps.saturating_sub(1);
+                last as f32 + (y_m - riser_m) / self.step_tread_m(last)
+            }
+        }
     }
 
     /// Number of steps under a point at `at_m`, in metres: the point is past their risers, above the tread
@@ -136,12 +275,24 @@ impl Stairs {
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
 
-    /// Height of the tread, the landing or the ground at a point of the floor plan, in metres.
+    /// Height of the tread, the slope, the landing or the ground at a point of the floor plan, in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
-        if x_m.abs() <= self.width_m / 2.0 && y_m <= self.end_y_m() {
-            self.height_m(self.steps_climbed(f64::from(y_m)))
+        if x_m.abs() > self.width_m / 2.0 || y_m > self.end_y_m() {
+            return 0.0;
+        }
+        let climbed = self.steps_climbed(f64::from(y_m));
+        let below_m = self.height_m(climbed);
+        if climbed == self.steps {
+            return below_m;
+        }
+        let (into_m, slope_m) = (y_m - self.riser_y_m(climbed), self.step_slope_m(climbed));
+        let top_m = self.height_m(climbed + 1);
+        if slope_m > 0.0 && into_m >= 0.0 {
+            below_m + (top_m - below_m) * (into_m / slope_m)
+        } else if self.nosing_m > 0.0 && into_m >= -self.step_nosing_m(climbed) {
+            top_m
         } else {
-            0.0
+            below_m
         }
     }
 

@@ -14,7 +14,7 @@ use snakes_and_stairs::genome::{
 use snakes_and_stairs::rng::{Purpose, stream};
 use snakes_and_stairs::save::{
     fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
-    parse_plan, parse_preset, parse_records,
+    parse_plan, parse_preset, parse_records, parse_stairs,
 };
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -207,6 +207,17 @@ fn every_graph_of_nodes_gives_a_creature_or_one_line() {
 #[test]
 fn every_preset_file_gives_a_preset_or_one_line() {
     read_corpus("preset", parse_preset);
+    read_corpus("stairs", |path, text| {
+        parse_stairs(path, text).map(|named| {
+            for solid in named.stairs.solids() {
+                let half_m = solid.half_m;
+                assert!(half_m.min_element() > 0.0 && half_m.is_finite(), "{solid:?}");
+            }
+            for [y_m, z_m] in named.stairs.outline_m() {
+                assert!(y_m.is_finite() && z_m >= 0.0, "{:?}", named.stairs);
+            }
+        })
+    });
 }
 
 #[test]

@@ -148,10 +148,9 @@ class Scene {
     const box = (min, max, colour) => list.push({ mesh: this.mesh([1, 1, 1], 0.0001), model: placed(min.map((low, i) => (low + max[i]) / 2), still, [0, 0, 0], max.map((high, i) => high - min[i])), colour });
     for (const lane of lanes) {
       const shift = lane.shift;
-      for (const [min, max] of lane.champion.stairs) {
-        box([min[0] + shift, min[1], min[2]], [max[0] + shift, max[1], max[2]], colours.stair);
-        box([min[0] + shift, min[1] - 0.012, max[2] - 0.06], [max[0] + shift, min[1] + 0.10, max[2] + 0.012], colours.edge);
-      }
+      const { stairs, edges, width_m } = lane.champion, half = width_m / 2;
+      for (const { at: [x, y, z], size, turn } of stairs) list.push({ mesh: this.mesh([1, 1, 1], 0.0001), model: placed([x + shift, y, z], turn, [0, 0, 0], size), colour: colours.stair });
+      for (const [y, z] of edges) box([shift - half, y - 0.012, z - 0.06], [shift + half, y + 0.10, z + 0.012], colours.edge);
       const { parts, limbs } = lane.champion;
       parts.forEach((size, index) => {
         const { at: [x, y, z], turn } = lane.poses[index], at = [x + shift, y, z], limb = limbs[index];

@@ -70,7 +70,7 @@ const OTHER_HELP: [(&str, &str, &str); 6] = [
 ];
 
 /// The flags that are not of a single subcommand, each with the tasks in which it has an effect.
-const FLAGS: [(&str, &[Task]); 29] = [
+const FLAGS: [(&str, &[Task]); 30] = [
     ("no_render", &[Run, CheckReplay]),
     (
         "json",
@@ -116,6 +116,10 @@ const FLAGS: [(&str, &[Task]); 29] = [
         ],
     ),
     ("fitness", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
+    (
+        "stairs",
+        &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
+    ),
     ("set", &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("resume", &[Window, Run, ReplayInWindow]),
     ("from", &[Window, Run]),

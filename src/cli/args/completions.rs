@@ -7,7 +7,7 @@ use clap_complete::Shell;
 use super::applicability;
 use super::flags::Args;
 use crate::run::mujoco::MUJOCO;
-use crate::save::{THEMES, shipped_preset_names};
+use crate::save::{THEMES, built_in_stairs_names, shipped_preset_names};
 use crate::schema::Choices;
 use crate::score::{ExamSuite, Fitness};
 
@@ -17,6 +17,7 @@ pub fn completions(shell: Shell) -> String {
     let mut command = applicability::with_own_flags(Args::command());
     for (flag, names) in [
         ("preset", shipped_preset_names()),
+        ("stairs", built_in_stairs_names()),
         ("fitness", Fitness::names()),
         ("theme", THEMES.to_vec()),
         ("suite", ExamSuite::names()),

@@ -13,6 +13,7 @@ use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use crate::run::evaluators::EVALUATORS;
 use crate::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
+use crate::save::built_in_stairs_names;
 use crate::schema::Choices;
 use crate::score::{ExamSuite, Fitness};
 
@@ -45,6 +46,8 @@ pub struct Args {
     pub(super) duration: Option<String>,
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN, help = fitness_help())]
     pub(super) fitness: Option<String>,
+    #[arg(long, global = true, value_name = "NAME", help_heading = RUN, help = stairs_help())]
+    pub(super) stairs: Option<String>,
     /// Change a single setting, such as surface.friction=0.8 (see `snakes settings`); angles are in radians; may be
     /// repeated
     #[arg(long, global = true, value_name = "FIELD=VALUE", help_heading = RUN)]
@@ -56,7 +59,7 @@ pub struct Args {
         value_name = "DIR",
         help_heading = RUN,
         conflicts_with_all = [
-            "preset", "seed", "population", "generations", "duration", "fitness", "set", "out", "restart", "from",
+            "preset", "seed", "population", "generations", "duration", "fitness", "stairs", "set", "out", "restart", "from",
         ]
     )]
     pub(super) resume: Option<PathBuf>,
@@ -232,6 +235,12 @@ pub enum Subcommand {
 /// Lists every fitness, so that the help follows the code.
 fn fitness_help() -> String {
     format!("The fitness that is maximised: {}", Fitness::names().join(", "))
+}
+
+/// Lists the built-in stairs.
+fn stairs_help() -> String {
+    let names = built_in_stairs_names().join(", ");
+    format!("The stairs, instead of those of the preset: {names}, or path of a file of stairs")
 }
 
 /// Lists every suite of an exam.

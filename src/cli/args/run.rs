@@ -10,7 +10,8 @@ use crate::cli::resume::run_in;
 use crate::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
 use crate::run::RunSource;
 use crate::save::{
-    DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, shipped_presets,
+    DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs,
+    shipped_presets,
 };
 use crate::schema::Choices;
 use crate::score::Fitness;
@@ -125,6 +126,9 @@ impl Args {
         if let Some(text) = &self.fitness {
             settings.trial.fitness = Fitness::named("--fitness", text)?;
         }
+        if let Some(named) = &self.stairs {
+            settings.trial.stairs = load_stairs(named)?.stairs;
+        }
         let mut changes = Vec::new();
         for text in &self.set {
             let (path, value) = text.split_once('=').ok_or_else(|| {
@@ -224,7 +228,7 @@ mod tests {
             ),
             (
                 "--preset nosuch",
-                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, or a file",
+                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, or a file",
             ),
             ("--threads 0", "--threads is 0; allowed: 1 to 1024"),
             (

@@ -12,7 +12,7 @@ use super::super::{ExportError, ExportProgress, ExportedChampion};
 use super::pieces::{Look, SceneParts};
 use super::shapes::TriangleSet;
 use crate::score::{Rollout, Trial};
-use crate::world::{BodyPlan, Pose, StairBox, Vector};
+use crate::world::{BodyPlan, Pose, Rotation, StairSolid, Vector};
 
 /// Samples of an animation per second, at most.
 const SAMPLES_PER_S: u32 = 60;
@@ -85,7 +85,7 @@ pub(super) fn add_lanes(
         let back_m = trial.start_y_m - body.length_m() / 2.0;
         bounds.min = bounds.min.min(Vector::new(x_m - half_m, back_m, 0.0));
         let end_y_m = samples.furthest_y_m(trial, &body);
-        let top_m = trial.stairs.height_m(trial.stairs.steps) + 1.0;
+        let top_m = trial.stairs.highest_m() + 1.0;
         bounds.max = bounds.max.max(Vector::new(x_m + half_m, end_y_m, top_m));
         let mut children = limbs(pieces, name, &body, &samples, &looks);
         let times = pieces.times(&samples.times_s);
@@ -240,6 +240,17 @@ impl Samples {
     }
 }
 
+/// The part of a solid before `end_y_m`.
+fn cut_off(solid: StairSolid, end_y_m: f32) -> StairSolid {
+    let over_m = solid.pose.translation.y + solid.half_m.y - end_y_m;
+    if over_m <= 0.0 || solid.pose.rotation != Rotation::IDENTITY {
+        return solid;
+    }
+    let ahead = Vector::Y * over_m / 2.0;
+    let pose = Pose::from_translation(solid.pose.translation - ahead);
+    StairSolid { pose, half_m: solid.half_m - ahead, ..solid }
+}
+
 /// The node of the stairs, if there are any: steps of two tones in turn. Of a long landing only the part up to `end_y_m`.
 fn stairs(
     pieces: &mut SceneParts,
@@ -249,9 +260,8 @@ fn stairs(
     looks: &Looks,
 ) -> Option<Index<Node>> {
     let mut tones = [TriangleSet::default(), TriangleSet::default()];
-    for (index, stair) in trial.stairs.boxes().iter().enumerate() {
-        let [x_m, y_m, z_m] = stair.max_m;
-        tones[index % 2].step(&StairBox { max_m: [x_m, y_m.min(end_y_m), z_m], ..*stair });
+    for solid in trial.stairs.solids() {
+        tones[solid.step as usize % 2].step(&cut_off(solid, end_y_m));
     }
     let shapes = tones.into_iter().zip(looks.steps);
     let shapes: Vec<_> = shapes.filter(|(shape, _)| !shape.indices.is_empty()).collect();

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use crate::export::rounded_box::RoundedBox;
-use crate::world::{StairBox, Vector};
+use crate::world::{StairSolid, Vector};
 
 /// Vertices and triangles.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -49,10 +49,11 @@ impl TriangleSet {
     }
 
     /// A box with sharp edges, without the face on which it stands.
-    pub fn step(&mut self, stair: &StairBox) {
-        let [min, max] = [stair.min_m, stair.max_m].map(Vector::from);
-        let (centre, half) = ((min + max) / 2.0, (max - min) / 2.0);
-        let [x, y, z] = [Vector::X * half.x, Vector::Y * half.y, Vector::Z * half.z];
+    pub fn step(&mut self, solid: &StairSolid) {
+        let (centre, turn) = (solid.pose.translation, solid.pose.rotation);
+        let half = solid.half_m;
+        let [x, y, z] =
+            [Vector::X * half.x, Vector::Y * half.y, Vector::Z * half.z].map(|to| turn * to);
         for (out, right, up) in [(x, y, z), (-x, -y, z), (y, -x, z), (-y, x, z), (z, x, y)] {
             self.rectangle(centre + out, right, up);
         }
@@ -97,6 +98,7 @@ impl TriangleSet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::Pose;
 
     /// The enclosed volume in m³; triangles that face inward count negative.
     fn volume_m3(shape: &TriangleSet) -> f32 {
@@ -123,7 +125,8 @@ mod tests {
     #[test]
     fn a_step_has_five_faces_that_look_outward() {
         let mut shape = TriangleSet::default();
-        shape.step(&StairBox { min_m: [-1.0, 0.0, 0.0], max_m: [1.0, 2.0, 0.5] });
+        let pose = Pose::from_translation(Vector::new(0.0, 1.0, 0.25));
+        shape.step(&StairSolid { step: 0, pose, half_m: Vector::new(1.0, 1.0, 0.25) });
         assert_eq!(shape.indices.len(), 5 * 6);
         let centre = Vector::new(0.0, 1.0, 0.25);
         for corners in shape.indices.chunks(3) {

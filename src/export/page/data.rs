@@ -9,8 +9,9 @@ use crate::export::motion::follow;
 use crate::export::source::{ExportSource, ExportedChampion};
 use crate::export::{ExportError, ExportProgress};
 use crate::save::champion_text;
-use crate::schema::Choices;
+use crate::schema::{Choices, PerPart};
 use crate::score::{Fitness, Rollout, arrived_y_m};
+use crate::world::{StairSolid, Stairs};
 
 /// Everything that the page's script reads.
 #[derive(Debug, Serialize)]
@@ -27,6 +28,22 @@ pub struct PageData {
     pub champions: Vec<PageChampion>,
 }
 
+/// A solid of the stairs: its middle and its size across, along and upwards, in metres, and its turn as x, y, z, w.
+#[derive(Debug, Serialize)]
+struct PageSolid {
+    at: [f32; 3],
+    size: [f32; 3],
+    turn: [f32; 4],
+}
+
+impl PageSolid {
+    fn of(solid: StairSolid) -> Self {
+        let StairSolid { pose, half_m, .. } = solid;
+        let size = (half_m * 2.0).to_array();
+        Self { at: pose.translation.to_array(), size, turn: pose.rotation.to_array() }
+    }
+}
+
 /// A champion with its recorded motion.
 #[derive(Debug, Serialize)]
 pub struct PageChampion {
@@ -41,8 +58,13 @@ pub struct PageChampion {
     /// Width of its stairs, in metres.
     width_m: f32,
     step_count: u32,
-    /// The boxes of its stairs, each with its lower and its upper corner, in metres.
-    pub stairs: Vec<[[f32; 3]; 2]>,
+    /// The solids of its stairs.
+    stairs: Vec<PageSolid>,
+    /// The edges of its steps: y and z, in metres.
+    edges: Vec<[f32; 2]>,
+    /// The outline of its stairs from the side, for the drawing: y and z, in metres.
+    #[serde(skip)]
+    pub outline: Vec<[f32; 2]>,
     /// The size of each part across, along and upwards, in metres; the head first.
     pub parts: Vec<[f32; 3]>,
     /// The index of the limb of each part; the head is 0.
@@ -166,7 +188,9 @@ impl PageChampion {
             friction: trial.surface.friction,
             width_m: stairs.width_m,
             step_count: stairs.steps,
-            stairs: stairs.boxes().iter().map(|step| [step.min_m, step.max_m]).collect(),
+            stairs: stairs.solids().into_iter().map(PageSolid::of).collect(),
+            edges: (0..stairs.steps).map(|step| stairs.edge_m(step)).collect(),
+            outline: stairs.outline_m(),
             parts: champion.body().parts.iter().map(|part| part.size_m()).collect(),
             limbs: champion.body().parts.iter().map(|part| part.limb).collect(),
             step_s: trial.physics.step_s(),
@@ -195,6 +219,15 @@ fn packed(numbers: impl Iterator<Item = f32>) -> String {
     STANDARD.encode(bytes)
 }
 
+/// The number of steps, and their depth.
+fn stairs_in_words(stairs: &Stairs) -> String {
+    let depth = match &stairs.tread_m {
+        PerPart::All(tread_m) => format!("each {tread_m} m deep"),
+        PerPart::Each(_) => format!("{:.2} m deep on average", stairs.mean_tread_m()),
+    };
+    format!("{} steps, {depth}", stairs.steps)
+}
+
 /// Facts about a champion: result, body, world and origin.
 fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
     let champion = &exported.loaded.champion;
@@ -221,7 +254,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
                 body.mass_kg()
             ),
         ),
-        ("Stairs", format!("{} steps, each {} m deep", stairs.steps, stairs.tread_m)),
+        ("Stairs", stairs_in_words(stairs)),
         (
             "Trial",
             format!(

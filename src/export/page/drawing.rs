@@ -36,12 +36,18 @@ fn drawing(champion: &PageChampion) -> String {
         // Writing to a text cannot fail.
         let _ = svg.write_fmt(text);
     };
-    for [min, max] in &champion.stairs {
-        let ((x, bottom), (end, top)) = (place(min[1], min[2]), place(max[1], max[2]));
-        let (width, height) = (end - x, bottom - top);
-        add(format_args!(
-            "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"#cfccc7\"/>\n"
-        ));
+    if let (Some([first_m, _]), Some([last_m, _])) =
+        (champion.outline.first(), champion.outline.last())
+    {
+        let feet = [[*last_m, 0.0], [*first_m, 0.0]];
+        let corners = champion.outline.iter().chain(&feet);
+        let corners: Vec<String> = corners
+            .map(|[y_m, z_m]| {
+                let (x, y) = place(*y_m, *z_m);
+                format!("{x:.1},{y:.1}")
+            })
+            .collect();
+        add(format_args!("<polygon points=\"{}\" fill=\"#cfccc7\"/>\n", corners.join(" ")));
     }
     for (moment, limbs) in moments.iter().enumerate() {
         let opacity = 0.25 + 0.75 * moment as f32 / (MOMENTS - 1) as f32;

@@ -116,6 +116,12 @@ const CASES: &[Case] = &[
         "stairs.steps=3; rise_m=[0.5, 0.2, 0.7]; start_y_m=-2.2",
     ),
     (
+        "treads of different depths, slopes up and down, a step down to the ground, nosings",
+        [3, 6, 2],
+        "stairs.steps=5; rise_m=[0.5, 0.3, -0.4, -0.4, 0.4]; tread_m=[1.5, 2, 2, 0.8, 2]; \
+         slope_m=[0.8, 0, 1.2, 0, 0]; nosing_m=0.2; first_riser_y_m=-1.5",
+    ),
+    (
         "champions chosen on varied trials, the same for all",
         [3, 12, 2],
         "controller=gait; repeats.trials=3; repeats.list=fixed; champion_trials=2; off.tread=0.2; step_rate=0.4; \

@@ -70,13 +70,8 @@ impl Thumbnail {
 }
 
 fn stairs(trial: &Trial) -> Vec<[f32; 2]> {
-    let stairs = &trial.stairs;
-    let mut outline = vec![[stairs.first_riser_y_m, 0.0]];
-    for step in stairs.boxes() {
-        let ([_, front_y_m, _], [_, back_y_m, top_z_m]) = (step.min_m, step.max_m);
-        outline.extend([[front_y_m, top_z_m], [back_y_m, top_z_m]]);
-    }
-    outline.push([stairs.end_y_m(), 0.0]);
+    let mut outline = trial.stairs.outline_m();
+    outline.push([trial.stairs.end_y_m(), 0.0]);
     outline
 }
 

@@ -47,12 +47,12 @@ impl StairsGrid {
         let all: Vec<(&Trial, &ExamEnd)> =
             conditions.iter().map(|condition| &condition.trial).zip(ends).collect();
         let rises_m = ascending(all.iter().map(|(trial, _)| rise_m(trial)));
-        let treads_m = ascending(all.iter().map(|(trial, _)| trial.stairs.tread_m));
+        let treads_m = ascending(all.iter().map(|(trial, _)| trial.stairs.step_tread_m(0)));
         let mut cells = Vec::new();
         for &rise in &rises_m {
             for &tread in &treads_m {
                 let is_here = |(trial, _): &&(&Trial, &ExamEnd)| {
-                    rise_m(trial) == rise && trial.stairs.tread_m == tread
+                    rise_m(trial) == rise && trial.stairs.step_tread_m(0) == tread
                 };
                 let here: Vec<(&Trial, &ExamEnd)> = all.iter().filter(is_here).copied().collect();
                 cells.extend(StairsCell::of(rise, tread, own, &here));
@@ -115,7 +115,7 @@ mod tests {
 
     fn end(steps: u32, has_landed: bool) -> ExamEnd {
         let landed_s = has_landed.then_some(9.0);
-        ExamEnd { steps, way: 0.5, landed_s, has_landed, is_disqualified: false }
+        ExamEnd { steps, way: 0.5, landed_s, arrived_s: None, has_landed, is_disqualified: false }
     }
 
     #[test]

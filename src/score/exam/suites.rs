@@ -2,7 +2,9 @@
 
 use super::{ExamCondition, ExamSuite};
 use crate::control::ActiveSenses;
+use crate::genome::{HELD_OUT_PER_CLASS, StairsClass, held_out};
 use crate::rng::{Purpose, stream};
+use crate::schema::Choices;
 use crate::score::perturbation::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
 use crate::world::Stairs;
@@ -33,7 +35,9 @@ impl ExamSuite {
     pub fn undisturbed(self, trial: &Trial) -> ExamCondition {
         let trial = match self {
             Self::Trials | Self::StepRate => trial.clone(),
-            Self::Stairs | Self::Surprise | Self::Shove | Self::Lesion => long(trial),
+            Self::Stairs | Self::Surprise | Self::Shove | Self::Lesion | Self::HeldOut => {
+                long(trial)
+            }
         };
         condition("undisturbed", trial)
     }
@@ -47,6 +51,7 @@ impl ExamSuite {
             Self::Surprise => higher_steps(trial),
             Self::Shove => shoves(trial),
             Self::Lesion => other_stairs(&without_senses(trial)),
+            Self::HeldOut => held_out_stairs(trial),
         }
     }
 }
@@ -108,7 +113,13 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
                 let mut other = long(trial);
                 let first_riser_y_m = other.stairs.first_riser_y_m + further_m;
                 let rise = rise_m.into();
-                other.stairs = Stairs { rise_m: rise, tread_m, first_riser_y_m, ..other.stairs };
+                other.stairs = Stairs {
+                    rise_m: rise,
+                    tread_m: tread_m.into(),
+                    slope_m: 0.0.into(),
+                    first_riser_y_m,
+                    ..other.stairs
+                };
                 let label =
                     format!("rise {rise_m} m, tread {tread_m} m, from {first_riser_y_m:.1} m");
                 all.push(condition(&label, other));
@@ -116,6 +127,20 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
         }
     }
     all
+}
+
+/// The held-out stairs, class by class; the first riser is where the champion's own trial has it.
+fn held_out_stairs(trial: &Trial) -> Vec<ExamCondition> {
+    let on = |class: StairsClass, number: u32| {
+        let mut other = long(trial);
+        let Stairs { first_riser_y_m, landing_m, .. } = other.stairs;
+        other.stairs = Stairs { first_riser_y_m, landing_m, ..held_out(class, number).stairs() };
+        condition(&format!("{} {}", class.choice().name, number + 1), other)
+    };
+    let classes = StairsClass::OPTIONS.iter();
+    classes
+        .flat_map(|&class| (0..HELD_OUT_PER_CLASS).map(move |number| on(class, number)))
+        .collect()
 }
 
 fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
@@ -129,7 +154,11 @@ fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
             let first_riser_y_m = other.stairs.first_riser_y_m + further_m;
             let rises = (0..steps).map(|step| {
                 let rise_m = other.stairs.step_rise_m(step);
-                if step == high { (rise_m * SURPRISE).min(HIGHEST_RISE_M) } else { rise_m }
+                if step == high && rise_m > 0.0 {
+                    (rise_m * SURPRISE).min(HIGHEST_RISE_M)
+                } else {
+                    rise_m
+                }
             });
             let rise_m = crate::schema::PerPart::Each(rises.collect());
             other.stairs = Stairs { rise_m, first_riser_y_m, ..other.stairs };

@@ -6,7 +6,7 @@ use crate::score::PerPart;
 
 fn end(steps: u32, way: f32, landed_s: Option<f32>) -> ExamEnd {
     let has_landed = landed_s.is_some();
-    ExamEnd { steps, way, landed_s, has_landed, is_disqualified: false }
+    ExamEnd { steps, way, landed_s, arrived_s: None, has_landed, is_disqualified: false }
 }
 
 #[test]

@@ -125,12 +125,13 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
     let end_m = stairs.end_y_m();
     let at = |y_m: f32, z_m: f32| Vec3::new(x_m, y_m, z_m);
     // The handrail follows the middles of the treads, then the landing.
-    let on_tread =
-        |step: u32| at(stairs.riser_y_m(step) + stairs.tread_m / 2.0, stairs.height_m(step + 1));
+    let on_tread = |step: u32| {
+        at(stairs.riser_y_m(step) + stairs.step_tread_m(step) / 2.0, stairs.height_m(step + 1))
+    };
     let last = stairs.steps.saturating_sub(1);
-    let mut bends: Vec<Vec3> = match stairs.rise_m {
-        PerPart::All(_) => vec![on_tread(0), on_tread(last)],
-        PerPart::Each(_) => (0..=last).map(on_tread).collect(),
+    let mut bends: Vec<Vec3> = match (&stairs.rise_m, &stairs.tread_m) {
+        (PerPart::All(_), PerPart::All(_)) => vec![on_tread(0), on_tread(last)],
+        _ => (0..=last).map(on_tread).collect(),
     };
     bends.push(at(end_m, top_m));
     let straights = || bends.windows(2).map(|ends| (ends[0], ends[1]));
@@ -240,7 +241,8 @@ pub(crate) fn finish_y_m(stairs: &Stairs) -> f32 {
 
 /// Whether the landing is deep enough for a finish.
 fn has_finish(stairs: &Stairs) -> bool {
-    stairs.landing_m + stairs.tread_m >= SHORTEST_M
+    let last = stairs.steps.saturating_sub(1);
+    stairs.landing_m + stairs.step_tread_m(last) - stairs.step_slope_m(last) >= SHORTEST_M
 }
 
 #[cfg(test)]
@@ -269,6 +271,7 @@ mod tests {
         for (steps, width_m, landing_m, tread_m) in
             [(1, 1.0, 0.0, 0.1), (100, 100.0, 100.0, 20.0), (3, 5.0, 0.5, 2.0)]
         {
+            let tread_m = PerPart::All(tread_m);
             let stairs = Stairs { steps, width_m, landing_m, tread_m, ..Stairs::default() };
             for at in parts(&stairs).iter().flat_map(|solid| &solid.positions) {
                 assert!(at.is_finite() && at.x.abs() <= width_m / 2.0 + 0.05, "{at} of {stairs:?}");

@@ -65,6 +65,16 @@ impl MeshBuilder {
         self.patch(1, 1, |column, row| (centre + right * share(column) + up * share(row), normal));
     }
 
+    /// A flat triangle, whose corners are counterclockwise seen from outside.
+    pub fn triangle(&mut self, corners: [Vec3; 3]) {
+        let first = self.positions.len() as u32;
+        let [a, b, c] = corners;
+        self.positions.extend(corners);
+        self.normals.extend([(b - a).cross(c - a).normalize_or_zero(); 3]);
+        self.tones.extend([self.tone.unwrap_or(Vec3::ONE); 3]);
+        self.indices.extend([first, first + 1, first + 2]);
+    }
+
     /// A cylinder between two points.
     pub fn cylinder(&mut self, from: Vec3, to: Vec3, radius: f32) {
         let axis = (to - from).normalize_or_zero();

@@ -10,7 +10,7 @@ use super::surface_texture::TILE_M;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::Stairs;
+use crate::world::{StairBox, Stairs};
 
 /// How far the strip of ground reaches beyond the stairs on both sides, in metres.
 pub(crate) const STRIP_ASIDE_M: f32 = 0.4;
@@ -86,31 +86,53 @@ fn build(
 fn solid(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let half_m = stairs.width_m / 2.0;
-    let boxes = stairs.boxes();
-    let mut below_m = 0.0;
-    for (index, step) in boxes.iter().enumerate() {
-        solid.tone(Vec3::splat(if index % 2 == 0 { 1.0 } else { OTHER_STEP }));
-        let ([_, from_m, _], [_, to_m, top_m]) = (step.min_m, step.max_m);
-        let (middle_m, depth) = ((from_m + to_m) / 2.0, Vec3::Y * (to_m - from_m) / 2.0);
-        // Tread, riser, and both sides down to the ground.
-        solid.sheet(Vec3::new(0.0, middle_m, top_m), Vec3::X * half_m, depth);
-        let rise_m = top_m - below_m;
-        let riser = Vec3::new(0.0, from_m, below_m + rise_m / 2.0);
-        solid.sheet(riser, Vec3::X * half_m, Vec3::Z * rise_m / 2.0);
-        for side in [1.0, -1.0] {
-            let middle = Vec3::new(half_m * side, middle_m, top_m / 2.0);
-            solid.sheet(middle, depth * side, Vec3::Z * top_m / 2.0);
+    let outline = stairs.outline_m();
+    let mut corner = 0;
+    for step in 0..stairs.steps {
+        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        // Riser or slope, with the two faces of a nosing between, and tread.
+        let faces = if stairs.step_nosing_m(step) > 0.0 { 4 } else { 2 };
+        for ends in outline[corner..=corner + faces].windows(2) {
+            let [from, to] = [ends[0], ends[1]].map(|[y_m, z_m]| Vec3::new(0.0, y_m, z_m));
+            if from != to {
+                solid.sheet((from + to) / 2.0, Vec3::X * half_m, (to - from) / 2.0);
+            }
         }
-        below_m = top_m;
+        corner += faces;
     }
-    if let (Some(first), Some(last)) = (boxes.first(), boxes.last()) {
-        let (begin_m, end_m, top_m) = (first.min_m[1], last.max_m[1], last.max_m[2]);
-        let back = Vec3::new(0.0, end_m, top_m / 2.0);
+    sides(&mut solid, stairs);
+    if let (Some([begin_m, _]), Some([end_m, top_m])) = (outline.first(), outline.last()) {
+        let back = Vec3::new(0.0, *end_m, top_m / 2.0);
         solid.sheet(back, Vec3::NEG_X * half_m, Vec3::Z * top_m / 2.0);
         let bottom = Vec3::new(0.0, (begin_m + end_m) / 2.0, 0.0);
         solid.sheet(bottom, Vec3::NEG_X * half_m, Vec3::Y * (end_m - begin_m) / 2.0);
     }
     solid
+}
+
+/// Both sides of the stairs, down to the ground.
+fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
+    let half_m = stairs.width_m / 2.0;
+    for StairBox { step, min_m, max_m } in stairs.boxes() {
+        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        let (middle, half) =
+            ((Vec3::from(min_m) + Vec3::from(max_m)) / 2.0, Vec3::from(max_m) - Vec3::from(min_m));
+        let (along, up) = (Vec3::Y * half.y / 2.0, Vec3::Z * half.z / 2.0);
+        for side in [1.0, -1.0] {
+            solid.sheet(middle.with_x(half_m * side), along * side, up);
+        }
+    }
+    for step in (0..stairs.steps).filter(|&step| stairs.step_slope_m(step) > 0.0) {
+        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        let foot = [stairs.riser_y_m(step), stairs.height_m(step)];
+        let top = [stairs.tread_y_m(step), stairs.height_m(step + 1)];
+        // The triangle over the lower of both levels; on a slope down it lies below the upper end.
+        let corner = if top[1] > foot[1] { [top[0], foot[1]] } else { [foot[0], top[1]] };
+        for x_m in [half_m, -half_m] {
+            let [foot, corner, top] = [foot, corner, top].map(|[y, z]| Vec3::new(x_m, y, z));
+            solid.triangle(if x_m > 0.0 { [foot, corner, top] } else { [foot, top, corner] });
+        }
+    }
 }
 
 /// Start and end of the strip of ground along y, in metres, for a snake whose tail begins at `start_m`.
@@ -133,41 +155,56 @@ fn strip(stairs: &Stairs, start_m: f32) -> MeshBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::schema::PerPart;
 
-    #[test]
-    fn every_point_of_the_stairs_lies_on_the_boxes_of_the_physics() {
-        let stairs = Stairs::default();
-        let solid = solid(&stairs);
-        let boxes = stairs.boxes();
-        for at in &solid.positions {
-            let is_on = |step: &crate::world::StairBox| {
-                at.to_array().into_iter().zip(step.min_m).all(|(at, min)| at >= min - 1.0e-4)
-                    && at.to_array().into_iter().zip(step.max_m).all(|(at, max)| at <= max + 1.0e-4)
-            };
-            assert!(boxes.iter().any(is_on), "{at}");
-        }
-        let top_m = solid.positions.iter().map(|at| at.z).fold(0.0, f32::max);
-        assert_eq!((top_m, boxes.len()), (5.0, 10));
+    fn samples() -> [Stairs; 3] {
+        let uneven = Stairs {
+            steps: 5,
+            rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
+            tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
+            slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
+            nosing_m: 0.2,
+            ..Stairs::default()
+        };
+        [Stairs::default(), Stairs { nosing_m: 0.3, ..Stairs::default() }, uneven]
     }
 
     #[test]
-    fn the_stairs_have_the_volume_of_their_boxes_and_face_outward() {
-        let stairs = Stairs::default();
-        let solid = solid(&stairs);
-        let volume: f32 = solid
-            .indices
-            .chunks(3)
-            .map(|corners| {
-                let [a, b, c] = [0, 1, 2].map(|corner| solid.positions[corners[corner] as usize]);
-                a.dot(b.cross(c)) / 6.0
-            })
-            .sum();
-        let of_boxes: f32 = stairs
-            .boxes()
-            .iter()
-            .map(|step| (Vec3::from(step.max_m) - Vec3::from(step.min_m)).element_product())
-            .sum();
-        assert!((volume / of_boxes - 1.0).abs() < 1.0e-4, "{volume} of {of_boxes}");
+    fn every_point_of_the_stairs_lies_on_the_solids_of_the_physics() {
+        for stairs in samples() {
+            let solids = stairs.solids();
+            for at in &solid(&stairs).positions {
+                let is_on = |of: &crate::world::StairSolid| {
+                    (of.pose.inverse() * *at).abs().cmple(of.half_m + 1.0e-4).all()
+                };
+                // The bottom also covers treads at the level of the ground.
+                assert!(at.z == 0.0 || solids.iter().any(is_on), "{at} of {stairs:?}");
+            }
+        }
+        let top_m = solid(&Stairs::default()).positions.iter().map(|at| at.z).fold(0.0, f32::max);
+        assert_eq!(top_m, 5.0);
+    }
+
+    #[test]
+    fn the_stairs_have_the_volume_below_their_outline_and_face_outward() {
+        for stairs in samples() {
+            let solid = solid(&stairs);
+            let corners = solid.indices.chunks(3);
+            let volume: f32 = corners
+                .map(|corners| {
+                    let [a, b, c] = [0, 1, 2].map(|at| solid.positions[corners[at] as usize]);
+                    a.dot(b.cross(c)) / 6.0
+                })
+                .sum();
+            // The area between the outline and the ground, by trapezia.
+            let outline = stairs.outline_m();
+            let area: f32 = outline
+                .windows(2)
+                .map(|ends| (ends[1][0] - ends[0][0]) * (ends[0][1] + ends[1][1]) / 2.0)
+                .sum();
+            let expected = area * stairs.width_m;
+            assert!((volume / expected - 1.0).abs() < 1.0e-4, "{volume} of {expected}");
+        }
     }
 
     #[test]

@@ -33,6 +33,7 @@ const OUT_M: f32 = 0.012;
 /// Extent of the glow over the tread and down the riser, in metres.
 const GLOW_BACK_M: f32 = 0.55;
 const GLOW_DOWN_M: f32 = 0.3;
+const GLOW_ON_NOSING_M: f32 = 0.1;
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Strips>()
@@ -78,7 +79,9 @@ fn build(
             for step in 0..stairs.steps {
                 let edge = edge(stairs, step);
                 let size = Vec3::new(stairs.width_m + OUT_M, DEPTH_M, HEIGHT_M);
-                let to_middle = Vec3::new(0.0, DEPTH_M / 2.0 - OUT_M, OUT_M - HEIGHT_M / 2.0);
+                let ahead = if stairs.step_rise_m(step) < 0.0 { -1.0 } else { 1.0 };
+                let to_middle =
+                    Vec3::new(0.0, (DEPTH_M / 2.0 - OUT_M) * ahead, OUT_M - HEIGHT_M / 2.0);
                 parent.spawn((
                     StepEdge { step, is_lit: false },
                     Mesh3d(props.cube.clone()),
@@ -90,7 +93,7 @@ fn build(
                     StepEdge { step, is_lit: false },
                     Mesh3d(glow.clone()),
                     MeshMaterial3d(strips.glow.clone()),
-                    Transform::from_translation(edge),
+                    Transform::from_translation(edge).with_scale(Vec3::new(1.0, ahead, 1.0)),
                     Visibility::Hidden,
                     NotShadowCaster,
                 ));
@@ -99,17 +102,25 @@ fn build(
     }
 }
 
-/// Middle of a step's front edge.
+/// Middle of a step's front edge, or of the edge from which it leads down.
 fn edge(stairs: &Stairs, step: u32) -> Vec3 {
-    Vec3::new(0.0, stairs.riser_y_m(step), stairs.height_m(step + 1))
+    let [y_m, z_m] = stairs.edge_m(step);
+    Vec3::new(0.0, y_m, z_m)
 }
 
 /// Two patches over the tread and down the riser that fade out away from the edge.
 fn glow(stairs: &Stairs) -> Mesh {
     let mut solid = MeshBuilder::default();
     let half = Vec3::X * stairs.width_m / 2.0;
-    let lowest_m = (0..stairs.steps).map(|step| stairs.step_rise_m(step)).fold(f32::MAX, f32::min);
-    let (back_m, down_m) = (GLOW_BACK_M.min(stairs.tread_m), GLOW_DOWN_M.min(lowest_m));
+    let least = |of: &dyn Fn(u32) -> f32| (0..stairs.steps).map(of).fold(f32::MAX, f32::min);
+    let back_m = GLOW_BACK_M.min(least(&|step| stairs.step_tread_m(step)));
+    let lowest_m = least(&|step| stairs.step_rise_m(step).abs());
+    // A nosing's front is 0.1 m high, or half the rise.
+    let down_m = if stairs.nosing_m > 0.0 {
+        GLOW_ON_NOSING_M.min(lowest_m / 2.0)
+    } else {
+        GLOW_DOWN_M.min(lowest_m)
+    };
     let out_m = OUT_M / 2.0;
     solid.sheet(Vec3::new(0.0, back_m / 2.0, out_m), half, Vec3::Y * back_m / 2.0);
     solid.sheet(Vec3::new(0.0, -out_m, -down_m / 2.0), half, Vec3::Z * down_m / 2.0);

@@ -81,20 +81,21 @@ fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
     }
 }
 
-/// Step numbers on the risers.
+/// Step numbers on the risers, on the fronts of nosings, and at the upper ends of slopes. Steps down have none: they face
+/// away.
 fn numbers(writing: &mut TextMeshBuilder<'_>, stairs: &Stairs) {
-    for step in 0..stairs.steps {
-        let rise_m = stairs.step_rise_m(step);
+    for step in (0..stairs.steps).filter(|&step| stairs.step_rise_m(step) > 0.0) {
+        let (rise_m, slope_m) = (stairs.step_rise_m(step), stairs.step_slope_m(step));
+        let (below_m, nosing_m) = (stairs.height_m(step), stairs.step_nosing_m(step));
         let digit_m = (rise_m * NUMBER_SHARE).min(MAX_NUMBER_M);
-        let place = TextPlacement {
-            middle: Vec3::new(
-                stairs.width_m / 2.0 - NUMBER_ASIDE_M,
-                stairs.riser_y_m(step) - PAINT_M,
-                stairs.height_m(step) + 0.46 * rise_m,
-            ),
-            right: Dir3::X,
-            up: Dir3::Z,
-        };
+        let riser = Vec3::new(0.0, slope_m, rise_m);
+        // Under an overhang the number would be hidden; the lower half of the riser is in sight from afar.
+        let share = if nosing_m > 0.0 { 0.3 } else { 0.46 };
+        let foot =
+            Vec3::new(stairs.width_m / 2.0 - NUMBER_ASIDE_M, stairs.riser_y_m(step), below_m);
+        let up = Dir3::new(riser).unwrap_or(Dir3::Z);
+        let out = Vec3::X.cross(*up) * -PAINT_M;
+        let place = TextPlacement { middle: foot + riser * share - out, right: Dir3::X, up };
         writing.text(&(step + 1).to_string(), digit_m, place);
     }
 }

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use super::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
-use crate::world::{BodyPlan, JointPlan, PartPlan, PhysicsWorld, SpringPlan, Surface};
+use crate::world::{BodyPlan, JointPlan, PartPlan, PhysicsWorld, SpringPlan, StairSolid, Surface};
 
 /// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
@@ -44,12 +44,10 @@ pub(super) fn insert_ground(
     }
 }
 
-/// Inserts the steps, the lowest first.
+/// Inserts the steps, the lowest first, and then their slopes.
 pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &ContactLaw) {
-    for stair in plan.stairs.boxes() {
-        let min = Vector::from(stair.min_m);
-        let half = (Vector::from(stair.max_m) - min) / 2.0;
-        let shape = ColliderBuilder::cuboid(half.x, half.y, half.z).translation(min + half);
+    for StairSolid { pose, half_m, .. } in plan.stairs.solids() {
+        let shape = ColliderBuilder::cuboid(half_m.x, half_m.y, half_m.z).position(pose);
         physics.insert_collider(material(shape, &plan.surface, law), None);
     }
 }

@@ -150,9 +150,9 @@ mod tests {
     #[test]
     fn messages_have_label_value_and_range() {
         for (field, text, message) in [
-            ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: 0.01 to 5 m"),
-            ("trial.stairs.rise_m", "high", "Rise is \"high\"; allowed: 0.01 to 5 m"),
-            ("trial.stairs.rise_m", "NaN", "Rise is \"NaN\"; allowed: 0.01 to 5 m"),
+            ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: -5 to 5 m"),
+            ("trial.stairs.rise_m", "high", "Rise is \"high\"; allowed: -5 to 5 m"),
+            ("trial.stairs.rise_m", "NaN", "Rise is \"NaN\"; allowed: -5 to 5 m"),
             ("trial.stairs.steps", "2.5", "Steps is \"2.5\"; allowed: 0 to 100, whole numbers"),
             (
                 "genome.bend_limits_rad",

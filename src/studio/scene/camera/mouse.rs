@@ -18,7 +18,7 @@ use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::{HeldLimb, Selection};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::viewport::StageArea;
-use crate::world::{Pose, Pull, StairBox, Vector};
+use crate::world::{Pose, Pull, StairSolid, Vector};
 
 /// Presses of the mouse button that later presses and releases are compared with.
 #[derive(Resource, Debug, Default)]
@@ -72,10 +72,8 @@ fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<RayHit> {
             let size = Vector::from(plan.size_m());
             hit(Some(part), &Cuboid::new(size / 2.0), &pose);
         }
-        for StairBox { min_m, max_m } in lane.trial().stairs.boxes() {
-            let (min, max) = (Vector::from(min_m), Vector::from(max_m));
-            let pose = Pose::from_translation((min + max) / 2.0);
-            hit(None, &Cuboid::new((max - min) / 2.0), &pose);
+        for StairSolid { pose, half_m, .. } in lane.trial().stairs.solids() {
+            hit(None, &Cuboid::new(half_m), &pose);
         }
         hit(None, &HalfSpace::new(Vector::Z), &Pose::IDENTITY);
     }

@@ -13,8 +13,14 @@ fn staged() -> StagedChampion {
 /// A made-up exam in which no snake lands.
 fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
     let conditions = suite.conditions(own);
-    let end =
-        ExamEnd { steps: 2, way: 0.2, landed_s: None, has_landed: false, is_disqualified: false };
+    let end = ExamEnd {
+        steps: 2,
+        way: 0.2,
+        landed_s: None,
+        arrived_s: None,
+        has_landed: false,
+        is_disqualified: false,
+    };
     StairsGrid::of(suite, own, &conditions, &vec![end; conditions.len()])
 }
 
@@ -46,7 +52,10 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
     let show = exams.apply(&watch, Some(&staged)).expect("allowed").expect("examined");
     let [there] = show.champions.as_slice() else { panic!("a single lane") };
     assert_eq!(show.mode, StageMode::Solo);
-    assert_eq!((there.trial().stairs.step_rise_m(0), there.trial().stairs.tread_m), (0.6, 1.5));
+    assert_eq!(
+        (there.trial().stairs.step_rise_m(0), there.trial().stairs.step_tread_m(0)),
+        (0.6, 1.5)
+    );
     there.check().expect("it can be shown");
     assert!(there.is_on_stairs_of_exam() && !there.must_match_record());
     let score = staged.champion().score();
@@ -94,7 +103,7 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
 
 #[test]
 fn an_end_is_said_in_a_few_words() {
-    let end = |steps, landed_s, has_landed| ExamEnd {
+    let end = |steps, landed_s, arrived_s: None, has_landed| ExamEnd {
         steps,
         way: 0.0,
         landed_s,

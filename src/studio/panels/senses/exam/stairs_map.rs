@@ -198,8 +198,12 @@ fn fill(landed: u32, trials: u32) -> Color32 {
 
 /// Whether the stairs on which a champion evolved have the rise and the tread of a cell.
 fn is_own(cell: &StairsCell, own: &Trial) -> bool {
-    let is_rise = |step| (own.stairs.step_rise_m(step) - cell.rise_m).abs() < 1.0e-4;
-    (0..own.stairs.steps).all(is_rise) && (own.stairs.tread_m - cell.tread_m).abs() < 1.0e-4
+    let near = |own_m: f32, cell_m: f32| (own_m - cell_m).abs() < 1.0e-4;
+    let is_like = |step| {
+        near(own.stairs.step_rise_m(step), cell.rise_m)
+            && near(own.stairs.step_tread_m(step), cell.tread_m)
+    };
+    (0..own.stairs.steps).all(is_like)
 }
 
 /// Draws what the colours and the dot mean.

@@ -36,7 +36,7 @@ fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
         let has_landed = index % 5 < 5 - index / 20;
         let landed_s = has_landed.then_some(12.0);
         let steps = if has_landed { 10 } else { 3 };
-        ExamEnd { steps, way: 0.5, landed_s, has_landed, is_disqualified: false }
+        ExamEnd { steps, way: 0.5, landed_s, arrived_s: None, has_landed, is_disqualified: false }
     };
     let ends: Vec<ExamEnd> = (0..conditions.len()).map(end).collect();
     StairsGrid::of(suite, own, &conditions, &ends)

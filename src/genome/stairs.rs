@@ -1,0 +1,272 @@
+//! Stairs as a genome: a few numbers from which a staircase is built, and the held-out stairs of the exam.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use crate::check::{Invalid, within};
+use crate::rng::{Purpose, stream};
+use crate::schema::{PerPart, choices, number, setting_group, whole};
+use crate::world::Stairs;
+
+setting_group! {
+    /// The numbers from which a staircase is built. All lengths are of the mean step; a staircase without irregularities
+    /// and features has equal steps.
+    pub struct StairsGenome {
+        /// Number of steps.
+        steps: u32 = 10,
+            whole("Steps", 3..=20).hint("Number of steps");
+        /// Mean height of a step over the one below it, in metres.
+        rise_m: f32 = 0.5,
+            number("Rise", 0.1..=1.2).unit("m").hint("Mean height of a step over the one below it");
+        /// Mean depth of a step, in metres.
+        tread_m: f32 = 2.0,
+            number("Tread", 0.6..=3.0).unit("m").hint("Mean depth of a step");
+        /// Greatest relative deviation of a rise from the mean.
+        rise_noise: f32 = 0.0,
+            number("Irregular rises", 0.0..=0.4).hint("Greatest relative deviation of a rise from the mean");
+        /// Greatest relative deviation of a tread from the mean.
+        tread_noise: f32 = 0.0,
+            number("Irregular treads", 0.0..=0.4).hint("Greatest relative deviation of a tread from the mean");
+        /// Seed of the deviations.
+        noise_seed: u32 = 0,
+            whole("Seed of the irregularities", 0..=0xff_ffff).hint("Another seed gives other deviations");
+        /// How far each tread overhangs its riser, in metres; at most half of the shallowest flat tread.
+        nosing_m: f32 = 0.0,
+            number("Nosing", 0.0..=0.3).unit("m").hint("How far each tread overhangs its riser");
+        /// Width across, in metres.
+        width_m: f32 = 5.0,
+            number("Width", 2.5..=6.0).unit("m").hint("Width of the stairs");
+        /// How much of each tread is a ramp that leads up to it: 0 for vertical risers.
+        ramp: f32 = 0.0,
+            number("Ramp", 0.0..=1.0).hint("How much of each tread is a ramp that leads up to it");
+        /// Number of the step whose tread is a landing of [`LANDING_M`] or more; the lowest is 1, and 0 means none.
+        landing: u32 = 0,
+            whole("Landing", 0..=20).hint("Number of the step that is a landing on the way; 0 for none");
+        /// Number of the step that is missing, of the second to the last but one that leads up; 0 means none.
+        missing: u32 = 0,
+            whole("Missing step", 0..=19).hint("Number of the step that is missing; 0 for none");
+        /// Number of the last steps, which lead down: at most half of all.
+        down: u32 = 0,
+            whole("Steps down", 0..=10).hint("Number of the last steps, which lead down");
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        within("down", self.down, 0..=self.steps / 2)?;
+        let up = self.steps - self.down;
+        within("landing", self.landing, 0..=self.steps)?;
+        // The first step cannot be missing: there would be one less.
+        match self.missing {
+            0 => Ok(()),
+            missing if (2..up).contains(&missing) => Ok(()),
+            missing => Err(Invalid::new("missing", missing, format!("0, or 2 to {}", up.max(3) - 1))),
+        }
+    }
+}
+
+/// Least depth of a landing on the way, in metres: a snake of five blocks has room on two of them.
+pub const LANDING_M: f32 = 5.0;
+/// Least difference in height between treads that follow one another, in metres.
+const LEAST_RISE_M: f32 = 0.02;
+/// Least depth of a flat tread behind a ramp, in metres.
+const LEAST_FLAT_M: f32 = 0.1;
+
+impl StairsGenome {
+    /// The staircase of these numbers, with the first riser and the landing of the default one.
+    pub fn stairs(&self) -> Stairs {
+        let plain = Stairs {
+            steps: self.steps,
+            rise_m: self.rise_m.into(),
+            tread_m: self.tread_m.into(),
+            width_m: self.width_m,
+            ..Stairs::default()
+        };
+        let is_regular = self.rise_noise == 0.0 && self.tread_noise == 0.0;
+        let has_features = self.landing > 0 || self.missing > 0 || self.down > 0;
+        let mut stairs = if is_regular && !has_features { plain } else { self.uneven(plain) };
+        let slope_m = |step: u32| {
+            let flat_m = LEAST_FLAT_M.max(stairs.step_rise_m(step).abs() / 2.0);
+            let leads_up = stairs.step_rise_m(step) > 0.0;
+            if leads_up { self.ramp * (stairs.step_tread_m(step) - flat_m).max(0.0) } else { 0.0 }
+        };
+        if self.ramp > 0.0 {
+            stairs.slope_m = PerPart::Each((0..self.steps).map(slope_m).collect());
+        }
+        let flat_m = |step| stairs.step_tread_m(step) - stairs.step_slope_m(step);
+        let shallowest_m = (0..self.steps).map(flat_m).fold(f32::MAX, f32::min);
+        stairs.nosing_m = self.nosing_m.min(shallowest_m / 2.0);
+        stairs
+    }
+
+    fn uneven(&self, plain: Stairs) -> Stairs {
+        let mut rng = stream(self.noise_seed.into(), 0, 0, Purpose::StairNoise);
+        let mut varied = |mean: f32, noise: f32| {
+            let deviation: f32 = rng.random_range(-1.0..=1.0);
+            mean * (1.0 + noise * deviation)
+        };
+        let (mut rises_m, mut treads_m) = (Vec::new(), Vec::new());
+        for _ in 0..self.steps {
+            rises_m.push(varied(self.rise_m, self.rise_noise).max(LEAST_RISE_M));
+            treads_m.push(varied(self.tread_m, self.tread_noise));
+        }
+        if let Some(tread_m) =
+            self.landing.checked_sub(1).and_then(|at| treads_m.get_mut(at as usize))
+        {
+            *tread_m = tread_m.max(LANDING_M);
+        }
+        let first_down = (self.steps - self.down) as usize;
+        let missing = (self.missing as usize).checked_sub(1);
+        let mut height_m = 0.0;
+        let mut owed_m = 0.0;
+        for (step, rise_m) in rises_m.iter_mut().enumerate() {
+            if step >= first_down {
+                *rise_m = -lowered_m(height_m, *rise_m);
+            } else if Some(step) == missing {
+                // A gap one rise deep, behind which the stairs go on where they would have been.
+                let depth_m = lowered_m(height_m, self.rise_m);
+                owed_m = depth_m + *rise_m;
+                *rise_m = -depth_m;
+            } else {
+                *rise_m += owed_m;
+                owed_m = 0.0;
+            }
+            height_m += *rise_m;
+        }
+        Stairs { rise_m: PerPart::Each(rises_m), tread_m: PerPart::Each(treads_m), ..plain }
+    }
+}
+
+/// How far a step leads down from a height that should lead down by `rise_m`: to the ground, if it would come near it. In
+/// metres.
+fn lowered_m(height_m: f32, rise_m: f32) -> f32 {
+    if height_m - rise_m < LEAST_RISE_M { height_m } else { rise_m }
+}
+
+choices! {
+    /// A class of held-out stairs.
+    pub enum StairsClass {
+        Equal = "equal", "Equal steps", "All steps have the same rise and tread.";
+        Irregular = "irregular", "Irregular steps", "Rises and treads deviate from the mean by up to 20 to 40 %.";
+        House = "house", "House stairs", "The rise is half to four fifths of the tread, as in houses.";
+        Nosing = "nosing", "Steps with nosing", "Each tread overhangs its riser by 0.1 to 0.3 m.";
+    }
+}
+
+/// Number of held-out staircases of each class.
+pub const HELD_OUT_PER_CLASS: u32 = 15;
+/// Seed of the held-out stairs.
+const HELD_OUT_SEED: u64 = 60;
+
+/// Held-out staircase number `number` of a class, from 0 to [`HELD_OUT_PER_CLASS`] less one. No run may learn on it.
+pub fn held_out(class: StairsClass, number: u32) -> StairsGenome {
+    let mut rng = stream(HELD_OUT_SEED, class as u32, number, Purpose::HeldOutStairs);
+    let mut genome = StairsGenome {
+        steps: rng.random_range(6..=12),
+        rise_m: rng.random_range(0.2..=0.8),
+        tread_m: rng.random_range(1.0..=3.0),
+        noise_seed: rng.random_range(0..=0xff_ffff),
+        ..StairsGenome::default()
+    };
+    let mut draw = |from: f32, to: f32| drawn_between(&mut rng, from, to);
+    match class {
+        StairsClass::Equal => {}
+        StairsClass::Irregular => {
+            genome.rise_noise = draw(0.2, 0.4);
+            genome.tread_noise = draw(0.2, 0.4);
+        }
+        StairsClass::House => {
+            genome.tread_m = draw(0.6, 1.0);
+            genome.rise_m = genome.tread_m * draw(0.5, 0.8);
+        }
+        StairsClass::Nosing => genome.nosing_m = draw(0.1, 0.3),
+    }
+    genome
+}
+
+fn drawn_between(rng: &mut ChaCha8Rng, from: f32, to: f32) -> f32 {
+    rng.random_range(from..=to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{Choices, check};
+
+    #[test]
+    fn equal_steps_are_plain_stairs() {
+        assert_eq!(StairsGenome::default().stairs(), Stairs::default());
+    }
+
+    #[test]
+    fn every_staircase_that_can_be_drawn_is_allowed() {
+        let mut rng = stream(1, 0, 0, Purpose::Study);
+        for number in 0..2000 {
+            let steps = rng.random_range(3..=20);
+            let down = rng.random_range(0..=steps / 2);
+            let mut draw = |from: f32, to: f32| drawn_between(&mut rng, from, to);
+            let mut genome = StairsGenome {
+                steps,
+                down,
+                rise_m: draw(0.1, 1.2),
+                tread_m: draw(0.6, 3.0),
+                rise_noise: draw(0.0, 0.4),
+                tread_noise: draw(0.0, 0.4),
+                noise_seed: number,
+                nosing_m: draw(0.0, 0.3),
+                width_m: draw(2.5, 6.0),
+                ramp: draw(-0.5, 1.0).max(0.0),
+                ..StairsGenome::default()
+            };
+            genome.landing = rng.random_range(0..=steps);
+            if steps - down > 2 && number % 2 == 0 {
+                genome.missing = rng.random_range(2..steps - down);
+            }
+            check(&genome).expect("drawn from the ranges");
+            let stairs = genome.stairs();
+            check(&stairs).unwrap_or_else(|error| panic!("{error} of {genome:?}: {stairs:?}"));
+        }
+    }
+
+    #[test]
+    fn a_missing_step_is_a_gap_behind_which_the_stairs_go_on() {
+        let stairs = StairsGenome { missing: 3, ..StairsGenome::default() }.stairs();
+        let heights_m = [2, 3, 4, 5].map(|steps| stairs.height_m(steps));
+        assert_eq!(heights_m, [1.0, 0.5, 2.0, 2.5]);
+    }
+
+    #[test]
+    fn a_landing_is_deep_and_the_last_steps_lead_down() {
+        let genome = StairsGenome { steps: 6, down: 3, landing: 3, ..StairsGenome::default() };
+        let stairs = genome.stairs();
+        assert_eq!([3, 4, 6].map(|steps| stairs.height_m(steps)), [1.5, 1.0, 0.0]);
+        assert_eq!((stairs.step_tread_m(2), stairs.step_tread_m(3)), (LANDING_M, 2.0));
+    }
+
+    #[test]
+    fn what_cannot_be_built_is_refused() {
+        let refused = |genome: StairsGenome| check(&genome).expect_err("refused").to_string();
+        let plain = StairsGenome::default;
+        assert_eq!(refused(StairsGenome { steps: 0, ..plain() }), "steps is 0; allowed: 3 to 20");
+        assert_eq!(refused(StairsGenome { down: 6, ..plain() }), "down is 6; allowed: 0 to 5");
+        let missing = refused(StairsGenome { missing: 10, ..plain() });
+        assert_eq!(missing, "missing is 10; allowed: 0, or 2 to 9");
+        assert!(refused(StairsGenome { rise_m: f32::NAN, ..plain() }).starts_with("rise_m is NaN"));
+    }
+
+    #[test]
+    fn the_sixty_held_out_staircases_are_allowed_and_differ() {
+        let mut seen: Vec<Stairs> = Vec::new();
+        for &class in StairsClass::OPTIONS {
+            for number in 0..HELD_OUT_PER_CLASS {
+                let genome = held_out(class, number);
+                check(&genome).expect("within the ranges");
+                let stairs = genome.stairs();
+                check(&stairs).expect("can be built");
+                let steepness = genome.rise_m / genome.tread_m;
+                assert!(class != StairsClass::House || (0.5..=0.8).contains(&steepness));
+                assert!(!seen.contains(&stairs));
+                seen.push(stairs);
+            }
+        }
+        assert_eq!(seen.len(), 60);
+    }
+}

@@ -1,0 +1,201 @@
+//! Staircases as files: named and described, as RON. The built-in ones are embedded in the program.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::SaveError;
+use super::files::{Header, parse, pretty, read_text};
+use super::whole_file::write_new;
+use crate::check::{self, Invalid, quoted, within};
+use crate::schema;
+use crate::world::Stairs;
+
+/// A named and described staircase.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedStairs {
+    /// A short name for the command line and for file names.
+    pub name: String,
+    /// A sentence that describes it.
+    pub about: String,
+    /// The staircase.
+    pub stairs: Stairs,
+}
+
+/// The whole file. Once released, it never changes.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StairsFile {
+    kind: String,
+    format: u32,
+    name: String,
+    about: String,
+    stairs: Stairs,
+}
+
+const KIND: &str = "snakes stairs";
+const FORMAT: u32 = 1;
+/// Maximum length of a description, in bytes.
+const MAX_ABOUT_BYTES: usize = 2_000;
+
+/// Lists the built-in stairs by their file names.
+macro_rules! built_in {
+    ($($name:literal),* $(,)?) => {
+        &[$((
+            concat!($name, ".ron"),
+            include_str!(concat!("../../assets/stairs/", $name, ".ron")),
+        )),*]
+    };
+}
+
+const BUILT_IN: &[(&str, &str)] = built_in![
+    "house",
+    "public",
+    "garden",
+    "irregular",
+    "nosing",
+    "landing",
+    "missing-step",
+    "ramps",
+    "over-the-top",
+];
+
+/// The built-in stairs.
+///
+/// # Errors
+/// An embedded file is broken; a test prevents this.
+pub fn built_in_stairs() -> Result<Vec<NamedStairs>, SaveError> {
+    BUILT_IN.iter().map(|(file, text)| parse_stairs(Path::new(file), text)).collect()
+}
+
+/// The names of the built-in stairs.
+pub fn built_in_stairs_names() -> Vec<&'static str> {
+    BUILT_IN.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
+}
+
+/// Loads stairs by the name of built-in ones, or by the path of a file.
+///
+/// # Errors
+/// There are no such stairs and no such file, or a value in it is not allowed.
+pub fn load_stairs(name_or_path: &str) -> Result<NamedStairs, SaveError> {
+    let built_in = built_in_stairs()?;
+    if let Some(stairs) = built_in.iter().find(|stairs| stairs.name == name_or_path) {
+        return Ok(stairs.clone());
+    }
+    let path = PathBuf::from(name_or_path);
+    if path.exists() {
+        return parse_stairs(&path, &read_text(&path)?);
+    }
+    let allowed = format!("{}, or a file", built_in_stairs_names().join(", "));
+    Err(SaveError::UnknownStairs(Invalid::new("stairs", format!("{name_or_path:?}"), allowed)))
+}
+
+/// Writes stairs to a new file; never overwrites one.
+///
+/// # Errors
+/// The file exists, or cannot be written.
+pub fn store_new_stairs(path: &Path, stairs: &NamedStairs) -> Result<(), SaveError> {
+    let NamedStairs { name, about, stairs } = stairs.clone();
+    let file = StairsFile { kind: KIND.to_owned(), format: FORMAT, name, about, stairs };
+    write_new(path, pretty(path, &file)?.as_bytes())
+}
+
+/// Parses stairs; `path` is the file's name in errors.
+///
+/// # Errors
+/// The text is damaged, or a value in it is not allowed.
+pub fn parse_stairs(path: &Path, text: &str) -> Result<NamedStairs, SaveError> {
+    Header::check(path, text, KIND, FORMAT)?;
+    let StairsFile { name, about, stairs, .. } = parse(path, text)?;
+    let invalid = SaveError::invalid(path);
+    check::name("name", &name).map_err(invalid)?;
+    within("about", about.len(), 0..=MAX_ABOUT_BYTES).map_err(invalid)?;
+    if about.contains(char::is_control) {
+        let allowed = "a text without line breaks and control characters";
+        return Err(invalid(Invalid::new("about", quoted(&about), allowed)));
+    }
+    schema::check(&stairs).map_err(|error| invalid(error.inside("stairs")))?;
+    Ok(NamedStairs { name, about, stairs })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::StairsGenome;
+
+    #[test]
+    fn the_built_in_stairs_are_well_formed() {
+        let all = built_in_stairs().expect("well formed");
+        for (stairs, (file, _)) in all.iter().zip(BUILT_IN) {
+            assert_eq!(format!("{}.ron", stairs.name), *file);
+            assert!(stairs.about.len() > 40, "{file} has no description");
+        }
+    }
+
+    /// The feature stairs are what their genome builds, so that both agree on what a missing step is.
+    #[test]
+    fn built_in_stairs_with_features_are_those_of_their_genome() {
+        let plain = || StairsGenome { steps: 8, ..StairsGenome::default() };
+        for (name, genome) in [
+            ("landing", StairsGenome { steps: 10, landing: 5, ..plain() }),
+            ("missing-step", StairsGenome { missing: 4, ..plain() }),
+            ("ramps", StairsGenome { ramp: 1.0, ..plain() }),
+            ("over-the-top", StairsGenome { landing: 4, down: 4, ..plain() }),
+        ] {
+            let built = load_stairs(name).expect("built in").stairs;
+            let landing_m = built.landing_m;
+            assert_eq!(built, Stairs { landing_m, ..genome.stairs() }, "{name}");
+        }
+    }
+
+    #[test]
+    fn stairs_are_read_back_from_their_file_which_is_never_overwritten() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("own.ron");
+        let mut stairs = load_stairs("over-the-top").expect("built in");
+        stairs.name = "own".to_owned();
+        store_new_stairs(&path, &stairs).expect("written");
+        assert_eq!(load_stairs(&path.to_string_lossy()).expect("read"), stairs);
+        assert!(store_new_stairs(&path, &stairs).is_err());
+    }
+
+    #[test]
+    fn stairs_that_cannot_be_built_are_refused_in_one_line() {
+        let text = BUILT_IN[0].1;
+        for (from, to, message) in [
+            ("steps: 10", "steps: 1000000", "stairs.steps is 1000000; allowed: 0 to 100"),
+            ("rise_m: 0.5", "rise_m: -0.5", "stairs.rise_m of step 1 is -0.5; allowed: -0, down"),
+            (
+                "rise_m: 0.5",
+                "rise_m: 0.0",
+                "stairs.rise_m is 0; allowed: -5 to -0.01 or 0.01 to 5 m",
+            ),
+            ("rise_m: 0.5", "rise_m: NaN", "stairs.rise_m is NaN; allowed: -5 to 5 m"),
+            (
+                "tread_m: 0.8",
+                "tread_m: 0.000001",
+                "stairs.tread_m is 0.000001; allowed: 0.1 to 20 m",
+            ),
+            ("tread_m: 0.8", "tread_m: [1.0, 2.0]", "stairs.tread_m is "),
+            (
+                "steps: 10",
+                "steps: 10, nosing_m: 0.41",
+                "stairs.nosing_m is 0.41; allowed: 0 to 0.3 m",
+            ),
+            (
+                "steps: 10",
+                "steps: 10, slope_m: 0.8",
+                "stairs.slope_m of step 1 is 0.8; allowed: 0 to 0.55",
+            ),
+            ("snakes stairs", "snakes preset", "it is a "),
+            ("format: 1", "format: 9", "format"),
+        ] {
+            assert!(text.contains(from), "{from}");
+            let error = parse_stairs(Path::new("x"), &text.replacen(from, to, 1));
+            let said = error.expect_err(to).to_string();
+            assert!(said.contains(message) && !said.contains('\n'), "{to}: {said}");
+        }
+        let unknown = load_stairs("escalator").expect_err("unknown").to_string();
+        assert!(unknown.contains("house, public, garden"), "{unknown}");
+    }
+}
