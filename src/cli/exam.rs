@@ -199,9 +199,11 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
 }
 
 /// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
-/// share of the way that it keeps in each. The held-out stairs have 95 % intervals.
+/// share of the way that it keeps in each. The held-out stairs have 95 % intervals, and their
+/// classes have columns if there is no other suite.
 fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     let mut head = vec!["champion".to_owned()];
+    let shows_classes = suites == [ExamSuite::HeldOut];
     for suite in suites {
         match (suite, champions.first()) {
             (ExamSuite::StepRate, Some(first)) => {
@@ -212,7 +214,9 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
             }
             (ExamSuite::HeldOut, _) => {
                 head.push(suite.choice().name.to_owned());
-                head.extend(StairsClass::names().into_iter().map(str::to_owned));
+                if shows_classes {
+                    head.extend(StairsClass::names().into_iter().map(str::to_owned));
+                }
             }
             _ => head.push(suite.choice().name.to_owned()),
         }
@@ -231,7 +235,7 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
                 None => cells.push("–".to_owned()),
                 Some(result) if *suite == ExamSuite::HeldOut => {
                     cells.push(with_interval(result.landed, result.trials));
-                    let classes = result.classes().into_iter();
+                    let classes = result.classes().into_iter().filter(|_| shows_classes);
                     cells.extend(classes.map(|(_, landed, of)| with_interval(landed, of)));
                 }
                 Some(result) if result.each.is_empty() => {
@@ -287,6 +291,21 @@ mod tests {
 
     fn row(name: &str, results: Vec<SuiteResult>, in_mujoco: Option<MujocoResult>) -> ExamRow {
         ExamRow { name: name.to_owned(), results, in_mujoco }
+    }
+
+    #[test]
+    fn held_out_stairs_have_an_interval_and_alone_a_column_for_each_class() {
+        let classes = [("equal", 0.6), ("irregular", 1.0), ("house", 0.0), ("nosing", 0.2)];
+        let result =
+            || SuiteResult { trials: 60, landed: 27, ..result(ExamSuite::HeldOut, &classes) };
+        let row = || row("climber", vec![result()], None);
+        let alone = table(&[ExamSuite::HeldOut], &[row()]);
+        let last = alone.lines().last().expect("a row");
+        for cell in ["27 of 60 (0.33–0.58)", "9 of 15 (0.36–0.80)", "0 of 15 (0.00–0.20)"] {
+            assert!(last.contains(cell), "{cell} in {last}");
+        }
+        let among = table(&[ExamSuite::Trials, ExamSuite::HeldOut], &[row()]);
+        assert!(among.contains("27 of 60 (0.33–0.58)") && !among.contains("of 15"), "{among}");
     }
 
     #[test]

@@ -25,9 +25,10 @@ impl Champion {
         self.trial.agent.body_plan(&self.genome)
     }
 
-    /// The number by which a run compares its champions: the greater is the better one.
-    pub fn rank(&self) -> f32 {
-        self.chosen_by.unwrap_or(self.evaluation.fitness)
+    /// The numbers by which a run compares its champions: the greater are the better one. Higher stairs, to which a ladder
+    /// leads, come before greater fitness.
+    pub fn rank(&self) -> [f32; 2] {
+        [self.trial.stairs.highest_m(), self.chosen_by.unwrap_or(self.evaluation.fitness)]
     }
 
     /// A short description of its result: fitness, and where it ended.

@@ -21,7 +21,7 @@ pub use plan::{
 };
 pub use settings::{
     BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
-    HalvingSettings, LARGEST_POPULATION, MapElitesSettings, Mutation, NeatSettings,
+    HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, Mutation, NeatSettings,
     NoveltySettings, ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo,
     StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field, with_fields,
 };

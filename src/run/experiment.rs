@@ -2,6 +2,7 @@
 
 mod changes;
 mod choice;
+mod ladder;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -21,9 +22,10 @@ use crate::evolve::{
 };
 use crate::genome::Genome;
 use crate::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
-use crate::score::{Evaluation, Scored};
+use crate::score::{Evaluation, Scored, Trial};
 use crate::world::Disqualification;
 use choice::choose_champion;
+use ladder::Ladder;
 
 /// A run, between two generations.
 pub struct Experiment {
@@ -32,6 +34,7 @@ pub struct Experiment {
     /// Recorded changes that take effect with later generations, the earliest first.
     ahead: VecDeque<SettingChange>,
     strategy: Box<dyn Strategy>,
+    ladder: Option<Ladder>,
     front: Front,
     finished: u32,
     evaluated: u64,
@@ -56,6 +59,7 @@ impl Experiment {
     pub fn new(plan: RunPlan) -> Self {
         Self {
             strategy: begin(&plan),
+            ladder: Ladder::after(&plan.settings, &[]),
             plan,
             ahead: VecDeque::new(),
             front: Front::default(),
@@ -92,6 +96,7 @@ impl Experiment {
             let hash = record.generation_hash().unwrap_or(0);
             experiment.hash.update(&hash.to_le_bytes());
         }
+        experiment.ladder = Ladder::after(&experiment.plan.settings, &progress.records);
         experiment.finished = finished;
         experiment.evaluated =
             progress.records.iter().map(|record| u64::from(record.evaluations)).sum();
@@ -229,7 +234,8 @@ impl Experiment {
         let generation = self.finished + 1;
         let (genomes, parents) = (self.strategy.ask(), self.strategy.parents());
         let record = |individual, evaluation: &_| record(generation, individual, evaluation);
-        let results = self.evaluate(&genomes, evaluator, control, &record)?;
+        let trial = self.trial_in(generation);
+        let results = self.evaluate(&genomes, &trial, evaluator, control, &record)?;
         let (mut evaluations, mut episodes, mut messages) = (Vec::new(), Vec::new(), Vec::new());
         for result in results {
             let (scored, message) = match result {
@@ -249,6 +255,8 @@ impl Experiment {
         let evaluated = EvaluatedGeneration {
             plan: &self.plan,
             generation,
+            trial: &trial,
+            rung: self.ladder.as_ref().map(|ladder| ladder.rung_of(&evaluations, &trial)),
             genomes: &genomes,
             evaluations: &evaluations,
             species: &bands,
@@ -258,7 +266,6 @@ impl Experiment {
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();
 
-        let trial = &self.plan.settings.trial;
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
             if !self.strategy.may_be_champion(index) {
                 continue;
@@ -275,6 +282,14 @@ impl Experiment {
         self.strategy.learn(episodes);
         self.strategy.tell(&genomes, &evaluations);
         self.finished = generation;
+        if let Some((ladder, rung)) = self.ladder.as_mut().zip(report.rung) {
+            let before_m = ladder.rise_m();
+            ladder.tell(rung.successes, report.evaluations);
+            if ladder.rise_m() != before_m {
+                // Its members climbed other stairs than those that follow.
+                self.front = Front::default();
+            }
+        }
         self.evaluated += evaluations.len() as u64;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
@@ -289,11 +304,11 @@ impl Experiment {
     fn evaluate(
         &self,
         genomes: &[Genome],
+        trial: &Trial,
         evaluator: &dyn Evaluator,
         control: &RunControl,
         record: &(dyn Fn(u32, &Evaluation) + Sync),
     ) -> Result<Vec<EvaluationResult>, Cancelled> {
-        let trial = &self.plan.trial_in(self.finished + 1);
         // A journal of evaluations has no experience to learn from; it is computed again, with the same bits.
         let is_enough = !self.strategy.learns_from_episodes();
         let result_of = |index: usize| match self.known.get(&(index as u32)) {
@@ -330,6 +345,15 @@ impl Experiment {
             }
         }
         Ok(results.into_iter().filter_map(OnceLock::into_inner).collect())
+    }
+
+    /// The trial of a generation: that of the plan, on the rung that the ladder has reached.
+    fn trial_in(&self, generation: u32) -> Trial {
+        let trial = self.plan.trial_in(generation);
+        match &self.ladder {
+            Some(ladder) => ladder.trial(trial),
+            None => trial,
+        }
     }
 
     /// Keeps the generation that was just finished, and its possible parents in the lineage.

@@ -302,6 +302,7 @@ mod tests {
             crashes: Vec::new(),
             on_landing: 0,
             first_on_landing: None,
+            rung: None,
             statistics: Some(statistics),
             species: Vec::new(),
             meaning: "starting position".to_owned(),

@@ -26,7 +26,7 @@ pub struct RecordedRun {
 pub struct RunRecorder {
     folder: RunFolder,
     /// The file of the best champion, and its rank.
-    best: Option<(PathBuf, f32)>,
+    best: Option<(PathBuf, [f32; 2])>,
 }
 
 /// A setting was not changed.

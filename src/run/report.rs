@@ -8,7 +8,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::evolve::{Champion, Origin, RunPlan};
 use crate::genome::Genome;
-use crate::save::{GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord};
+use crate::save::{GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StatisticsRecord};
 use crate::score::{Evaluation, Trial};
 use crate::world::Disqualification;
 
@@ -27,10 +27,12 @@ pub struct GenerationReport {
     pub crashed: u32,
     /// The first few of these.
     pub crashes: Vec<Crash>,
-    /// Number of healthy individuals that ended on the landing.
+    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads.
     pub on_landing: u32,
     /// The index of the first of them.
     pub first_on_landing: Option<u32>,
+    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    pub rung: Option<Rung>,
     /// Fitness statistics over the healthy ones; none if all were disqualified.
     pub statistics: Option<Statistics>,
     /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
@@ -63,6 +65,10 @@ pub(super) struct EvaluatedGeneration<'a> {
     pub plan: &'a RunPlan,
     /// Its number; the first is 1.
     pub generation: u32,
+    /// The trial of all its individuals.
+    pub trial: &'a Trial,
+    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    pub rung: Option<Rung>,
     /// In the order of the individuals, as the evaluations.
     pub genomes: &'a [Genome],
     pub evaluations: &'a [Evaluation],
@@ -75,7 +81,7 @@ impl EvaluatedGeneration<'_> {
     pub fn individual(&self, index: usize) -> Champion {
         Champion {
             genome: self.genomes[index].clone(),
-            trial: self.plan.trial_in(self.generation),
+            trial: self.trial.clone(),
             evaluation: self.evaluations[index],
             chosen_by: None,
             origin: Origin {
@@ -94,13 +100,14 @@ impl EvaluatedGeneration<'_> {
         messages: Vec<Option<String>>,
         elapsed: Duration,
     ) -> GenerationReport {
-        let (evaluations, trial) = (self.evaluations, &self.plan.settings.trial);
+        let (evaluations, trial) = (self.evaluations, self.trial);
+        let is_goal = trial.stairs == self.plan.settings.trial.stairs;
         let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
             Some(Crash { individual: self.individual(index), message: message? })
         });
         let reasons = reasons(evaluations);
         let statistics = Statistics::of(evaluations);
-        let landed = |evaluation: &&Evaluation| evaluation.is_on_landing(&trial.stairs);
+        let landed = |evaluation: &&Evaluation| is_goal && evaluation.is_on_landing(&trial.stairs);
         let first_on_landing = evaluations.iter().position(|e| landed(&e));
         GenerationReport {
             generation: self.generation,
@@ -111,9 +118,10 @@ impl EvaluatedGeneration<'_> {
             crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
             reasons,
             crashes: crashes.take(MAX_CRASHES).collect(),
+            rung: self.rung,
             statistics,
             species: species(self.species, evaluations),
-            meaning: meaning(statistics.as_ref(), trial),
+            meaning: meaning(statistics.as_ref(), trial, self.rung),
             hash: generation_hash(evaluations),
             elapsed_s: elapsed.as_secs_f64(),
             champion,
@@ -148,6 +156,7 @@ impl GenerationReport {
             }),
             chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
             species: self.species.clone(),
+            rung: self.rung,
             hash: format!("{:016x}", self.hash),
             elapsed_s: self.elapsed_s,
         }
@@ -170,9 +179,10 @@ impl GenerationReport {
             crashes: Vec::new(),
             on_landing: record.on_landing,
             first_on_landing: record.first_on_landing,
+            rung: record.rung,
             statistics,
             species: record.species.clone(),
-            meaning: meaning(statistics.as_ref(), trial),
+            meaning: meaning(statistics.as_ref(), trial, record.rung),
             // Reading the log has checked it.
             hash: record.generation_hash().unwrap_or(0),
             elapsed_s: record.elapsed_s,
@@ -181,11 +191,17 @@ impl GenerationReport {
     }
 }
 
-/// Meaning of a generation's mean.
-fn meaning(statistics: Option<&Statistics>, trial: &Trial) -> String {
-    match statistics {
+/// Meaning of a generation's mean, and the rung of the ladder.
+fn meaning(statistics: Option<&Statistics>, trial: &Trial, rung: Option<Rung>) -> String {
+    let words = match statistics {
         Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
         None => "all disqualified".to_owned(),
+    };
+    match rung {
+        Some(Rung { rise_m, .. }) => {
+            format!("{words}, rise {} m", (rise_m * 1000.0).round() / 1000.0)
+        }
+        None => words,
     }
 }
 

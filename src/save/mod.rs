@@ -74,8 +74,8 @@ pub use preset::{
 };
 pub use preset_list::PresetList;
 pub use record::{
-    GenerationRecord, MOST_SPECIES_RECORDED, SpeciesCount, StatisticsRecord, generations_hash,
-    load_log, parse_evaluations, parse_records,
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StatisticsRecord,
+    generations_hash, load_log, parse_evaluations, parse_records,
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};

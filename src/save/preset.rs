@@ -70,6 +70,7 @@ const SHIPPED: &[(&str, &str)] = shipped![
     "squishy",
     "creatures",
     "house",
+    "ladder",
 ];
 
 /// The shipped presets, the default first.

@@ -44,6 +44,9 @@ pub struct GenerationRecord {
     /// numbers of blocks. Empty for a strategy without both, and in older logs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<SpeciesCount>,
+    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rung: Option<Rung>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
     /// Wall-clock time since the generation began or the program was started, in seconds.
@@ -66,6 +69,17 @@ pub struct StatisticsRecord {
     pub lower_quartile: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_quartile: Option<f64>,
+}
+
+/// A rung of a ladder of stairs, and the success of a generation on it. The ladder's next rung follows from these of all
+/// generations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rung {
+    /// Rise of the stairs, in m.
+    pub rise_m: f32,
+    /// Number of individuals that succeeded.
+    pub successes: u32,
 }
 
 /// Maximum number of species that the log has of a generation, so that the log of the longest run can be read again.
@@ -186,6 +200,10 @@ pub fn parse_records(
             values.try_for_each(|value| within("statistics", value, least..=most))?;
         }
         check_species(record)?;
+        if let Some(Rung { rise_m, successes }) = record.rung {
+            within("rung.rise_m", rise_m, 0.0..=5.0)?;
+            within("rung.successes", successes, 0..=record.evaluations)?;
+        }
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
@@ -266,6 +284,7 @@ mod tests {
             statistics: None,
             chosen_by: None,
             species: Vec::new(),
+            rung: None,
             hash: "0123456789abcdef".to_owned(),
             elapsed_s: 1.0,
         }
@@ -285,6 +304,21 @@ mod tests {
         let text = serde_json::to_string(&record()).expect("written");
         assert!(!text.contains("species"), "{text}");
         assert_eq!(read_again(&record()).expect("read"), [record()]);
+    }
+
+    #[test]
+    fn a_rung_is_read_again_and_an_impossible_one_is_refused() {
+        assert!(!serde_json::to_string(&record()).expect("written").contains("rung"));
+        let with = |rise_m, successes| {
+            let rung = Some(Rung { rise_m, successes });
+            read_again(&GenerationRecord { rung, ..record() })
+        };
+        let read = with(0.35, 5).expect("allowed");
+        assert_eq!(read[0].rung, Some(Rung { rise_m: 0.35, successes: 5 }));
+        let error = with(0.35, 6).expect_err("refused").to_string();
+        assert!(error.contains("rung.successes is 6; allowed: 0 to 5"), "{error}");
+        let error = with(7.0, 1).expect_err("refused").to_string();
+        assert!(error.contains("rung.rise_m is 7; allowed: 0 to 5"), "{error}");
     }
 
     #[test]

@@ -33,7 +33,7 @@ struct StairsFile {
     stairs: Stairs,
 }
 
-const KIND: &str = "snakes stairs";
+const KIND: &str = "snakes-and-stairs stairs";
 const FORMAT: u32 = 1;
 /// Maximum length of a description, in bytes.
 const MAX_ABOUT_BYTES: usize = 2_000;
@@ -187,7 +187,7 @@ mod tests {
                 "steps: 10, slope_m: 0.8",
                 "stairs.slope_m of step 1 is 0.8; allowed: 0 to 0.55",
             ),
-            ("snakes stairs", "snakes preset", "it is a "),
+            ("snakes-and-stairs stairs", "snakes preset", "it is a "),
             ("format: 1", "format: 9", "format"),
         ] {
             assert!(text.contains(from), "{from}");

@@ -138,6 +138,11 @@ impl ExamEnd {
         time("arrived_s", self.arrived_s)
     }
 
+    /// The share of the way to the landing with which an evaluation ended, 0 to 1; 0 after a disqualification.
+    pub fn way_of(evaluation: &Evaluation, trial: &Trial) -> f32 {
+        Self::new(evaluation, &trial.stairs, trial.start_y_m).way
+    }
+
     /// Simulates a genome in a condition.
     pub fn of(genome: &Genome, condition: &ExamCondition) -> Self {
         let ExamCondition { trial, perturbation, .. } = condition;

@@ -7,6 +7,7 @@ mod cma_es;
 mod creatures;
 mod ga;
 mod halving;
+mod ladder;
 mod learning;
 mod map_elites;
 mod neat;
@@ -21,6 +22,7 @@ pub use cma_es::{CmaEsSettings, RestartKind};
 pub use creatures::CreatureGaSettings;
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
 pub use halving::HalvingSettings;
+pub use ladder::LadderSettings;
 pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRunSettings};
 pub use map_elites::MapElitesSettings;
 pub use neat::NeatSettings;
@@ -94,6 +96,9 @@ setting_group! {
         /// The genetic algorithm over creatures.
         #[serde(default, skip_serializing_if = "is_default")]
         creature_ga: CreatureGaSettings = CreatureGaSettings::default();
+        /// The ladder of stairs.
+        #[serde(default, skip_serializing_if = "is_default")]
+        ladder: LadderSettings = LadderSettings::default();
         /// Exploration of all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
@@ -119,6 +124,7 @@ impl SettingGroup for EvolutionSettings {
             body_map_elites,
             islands,
             creature_ga,
+            ladder,
             exploration,
         } = self;
         walk.section(Self::RUN);
@@ -157,6 +163,8 @@ impl SettingGroup for EvolutionSettings {
             walk.used_if(used.contains(&name));
             walk.group(name, group);
         }
+        walk.used_if(true);
+        walk.group("ladder", ladder);
     }
 }
 
@@ -191,9 +199,19 @@ impl SettingGroup for Settings {
         // Novelty search has the group's other settings in common with the genetic algorithm.
         let takes_over = evolution.strategy == StrategyKind::Ga
             && genome.controller.uses("network.library_waves");
+        let mut unused = Vec::new();
         if !takes_over {
-            walk.without_effect(vec!["evolution.ga.wave_takeover"]);
+            unused.push("evolution.ga.wave_takeover");
         }
+        if !evolution.ladder.is_used() {
+            unused.extend([
+                "evolution.ladder.step_m",
+                "evolution.ladder.share",
+                "evolution.ladder.way",
+                "evolution.ladder.patience",
+            ]);
+        }
+        walk.without_effect(unused);
         walk.group("evolution", evolution);
         walk.fixed(
             "Takes effect with the next run, because existing genomes would not fit new ones.",
@@ -219,6 +237,7 @@ impl SettingGroup for Settings {
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
         self.check_bodies()?;
+        self.check_ladder()?;
         let points = self.genome.points(self.trial.duration_s);
         let torque_points = 2 * self.trial.agent.joints() * points;
         if torque_points > LARGEST_GENOME_TORQUES {

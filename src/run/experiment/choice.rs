@@ -22,7 +22,7 @@ pub(super) fn choose_champion(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Option<Champion>, Cancelled> {
-    let Some(trial) = evaluated.plan.settings.trial.that_chooses_champions() else {
+    let Some(trial) = evaluated.trial.that_chooses_champions() else {
         return Ok(ranking.first().map(|&index| evaluated.individual(index)));
     };
     let candidates = &ranking[..ranking.len().min(CANDIDATES)];

@@ -122,6 +122,12 @@ const CASES: &[Case] = &[
          slope_m=[0.8, 0, 1.2, 0, 0]; nosing_m=0.2; first_riser_y_m=-1.5",
     ),
     (
+        "gaits, CMA-ES, a ladder of stairs",
+        [3, 8, 3],
+        "controller=gait; strategy=cma_es; ladder.first_rise_m=0.1; ladder.step_m=0.2; ladder.share=0.1; way=0.02; \
+         patience=1; first_riser_y_m=-1.5",
+    ),
+    (
         "champions chosen on varied trials, the same for all",
         [3, 12, 2],
         "controller=gait; repeats.trials=3; repeats.list=fixed; champion_trials=2; off.tread=0.2; step_rate=0.4; \

@@ -17,6 +17,7 @@ fn every_condition_is_one_of_an_allowed_trial_and_differs_from_all_others() {
         let expected = match suite {
             ExamSuite::StepRate => 5,
             ExamSuite::Surprise => 30,
+            ExamSuite::HeldOut => 60,
             _ => 100,
         };
         assert_eq!(conditions.len(), expected, "{suite:?}");
@@ -78,4 +79,28 @@ fn the_way_counts_up_to_the_landing_and_beside_the_stairs_to_the_first_riser() {
     assert_eq!(at(30.0, 10), 1.0);
     assert!((at(30.0, 0) - 10.0 / 28.0).abs() < 1e-6, "behind the stairs");
     assert_eq!(at(-9.0, 0), 0.0, "backwards");
+}
+
+#[test]
+fn the_held_out_stairs_keep_the_place_of_the_champions_own_and_count_whole_bodies() {
+    let mut own = Trial::default();
+    own.stairs.first_riser_y_m = 4.0;
+    let conditions = ExamSuite::HeldOut.conditions(&own);
+    assert_eq!(conditions.len(), 60);
+    for condition in &conditions {
+        condition.check().expect("allowed");
+        assert_eq!(condition.trial.stairs.first_riser_y_m, 4.0, "{}", condition.label);
+    }
+    // The middle limb lands everywhere, the whole body on the first staircase of each class alone.
+    let ends: Vec<ExamEnd> = (0..60)
+        .map(|index| {
+            let arrived_s = (index % 15 == 0).then_some(12.0);
+            ExamEnd { arrived_s, has_landed: true, ..end(10, 1.0, Some(9.0)) }
+        })
+        .collect();
+    let result = SuiteResult::of(ExamSuite::HeldOut, &ends[0], &conditions, &ends);
+    assert_eq!((result.landed, result.trials), (4, 60));
+    let classes: Vec<(&str, u32, u32)> =
+        ["equal", "irregular", "house", "nosing"].map(|class| (class, 1, 15)).to_vec();
+    assert_eq!(result.classes(), classes);
 }

@@ -3,6 +3,7 @@
 mod climbs;
 mod columns;
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use bevy_egui::egui;
@@ -45,8 +46,11 @@ impl ReportSummary {
     fn of(reports: &[GenerationReport]) -> Self {
         let champions = reports.iter().filter_map(|report| report.champion.as_ref());
         // The earliest of equally good champions wins.
-        let best = champions.clone().rev().max_by(|a, b| a.rank().total_cmp(&b.rank()));
-        let mut most = f32::MIN;
+        let best = champions.clone().rev().max_by(|a, b| {
+            let pairs = a.rank().into_iter().zip(b.rank());
+            pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(&b)))
+        });
+        let mut most = [f32::MIN; 2];
         let is_better = |report: &GenerationReport| {
             let rank = report.champion.as_ref().map(Champion::rank).filter(|rank| *rank > most);
             most = rank.unwrap_or(most);

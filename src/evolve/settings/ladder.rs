@@ -1,0 +1,94 @@
+//! Settings of the ladder: stairs whose rise grows as the population learns to climb them.
+
+use super::{Settings, StrategyKind};
+use crate::check::Invalid;
+use crate::schema::{PerPart, number, setting_group, whole};
+
+setting_group! {
+    /// A ladder of stairs: a run begins on low ones, whose rise grows up to that of its trial as its snakes succeed.
+    #[derive(Copy)]
+    pub struct LadderSettings in "Ladder of stairs": "Begins with low stairs, and raises them as the snakes succeed." {
+        /// Rise of the first stairs, in m; 0: no ladder.
+        first_rise_m: f32 = 0.0,
+            number("First rise", 0.0..=5.0)
+                .unit("m")
+                .hint("Rise of the first stairs; 0 begins with the rise of the stairs themselves")
+                .slider(0.0, 1.0)
+                .fixed(BEGUN);
+
+        /// How much higher the next rung is, in m.
+        step_m: f32 = 0.05,
+            number("Rung", 0.001..=1.0)
+                .unit("m")
+                .hint("How much the rise grows from one rung to the next")
+                .slider(0.01, 0.2)
+                .fixed(BEGUN);
+
+        /// Share of a generation that has to succeed before the rise grows.
+        share: f32 = 0.7,
+            number("Success of a rung", 0.01..=1.0)
+                .hint("Share of a generation that has to succeed before the rise grows")
+                .slider(0.1, 1.0)
+                .fixed(BEGUN);
+
+        /// Share of the way to the landing that a snake has to cover to succeed.
+        way: f32 = 0.85,
+            number("Way of a success", 0.01..=1.0).advanced()
+                .hint("Share of the way to the landing that a snake has to cover to succeed")
+                .slider(0.1, 1.0)
+                .fixed(BEGUN);
+
+        /// Number of generations without a success after which the rise falls by a rung.
+        patience: u32 = 15,
+            whole("Patience", 1..=1000).advanced()
+                .hint("Number of generations without a success after which the rise falls by a rung")
+                .slider(1.0, 50.0)
+                .fixed(BEGUN);
+    }
+}
+
+const BEGUN: &str =
+    "Takes effect with the next run, because this one has begun to climb its ladder.";
+
+/// The strategies that compare only snakes of one generation, which all have the same stairs.
+const STRATEGIES: [StrategyKind; 2] = [StrategyKind::CmaEs, StrategyKind::Ga];
+
+impl LadderSettings {
+    /// Whether there is a ladder.
+    pub fn is_used(&self) -> bool {
+        self.first_rise_m > 0.0
+    }
+}
+
+impl Settings {
+    /// Checks that the ladder, if there is one, leads up to the stairs of the trial, and that the strategy can climb it.
+    pub(super) fn check_ladder(&self) -> Result<(), Invalid> {
+        let ladder = &self.evolution.ladder;
+        if !ladder.is_used() {
+            return Ok(());
+        }
+        let field = "evolution.ladder.first_rise_m";
+        let strategy = self.evolution.strategy;
+        if !STRATEGIES.contains(&strategy) {
+            let allowed = format!(
+                "0 with evolution.strategy {strategy}, which compares snakes of different generations"
+            );
+            return Err(Invalid::new(field, ladder.first_rise_m, allowed));
+        }
+        match &self.trial.stairs.rise_m {
+            PerPart::All(rise_m)
+                if ladder.first_rise_m >= 0.01 && ladder.first_rise_m <= *rise_m =>
+            {
+                Ok(())
+            }
+            PerPart::All(rise_m) => {
+                let allowed = format!("0, or 0.01 m to {rise_m} m, the rise of the stairs");
+                Err(Invalid::new(field, ladder.first_rise_m, allowed))
+            }
+            PerPart::Each(_) => {
+                let allowed = "0 with steps of different heights";
+                Err(Invalid::new(field, ladder.first_rise_m, allowed))
+            }
+        }
+    }
+}

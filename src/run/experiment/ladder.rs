@@ -1,0 +1,98 @@
+//! The ladder of a run: which rise its next generation has.
+
+use crate::evolve::{LadderSettings, Settings};
+use crate::save::{GenerationRecord, Rung};
+use crate::schema::PerPart;
+use crate::score::{Evaluation, ExamEnd, Trial};
+
+/// The place on a ladder, between two generations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ladder {
+    settings: LadderSettings,
+    /// The number of the rung; the lowest is 0.
+    rung: u32,
+    /// The rise of the stairs to which the ladder leads, in m.
+    goal_m: f32,
+    /// Generations since the last success or the last change of the rung.
+    barren: u32,
+}
+
+impl Ladder {
+    /// The ladder of a run after the generations of its log; none without one.
+    pub fn after(settings: &Settings, records: &[GenerationRecord]) -> Option<Self> {
+        let ladder = settings.evolution.ladder;
+        let goal_m = settings.trial.stairs.step_rise_m(0);
+        let mut ladder =
+            ladder.is_used().then_some(Self { settings: ladder, rung: 0, goal_m, barren: 0 })?;
+        for record in records {
+            ladder.tell(record.rung.map_or(0, |rung| rung.successes), record.evaluations);
+        }
+        Some(ladder)
+    }
+
+    /// The rise of the stairs of the next generation, in m.
+    pub fn rise_m(&self) -> f32 {
+        (self.settings.first_rise_m + self.rung as f32 * self.settings.step_m).min(self.goal_m)
+    }
+
+    /// A trial on the stairs of the next generation.
+    pub fn trial(&self, mut trial: Trial) -> Trial {
+        trial.stairs.rise_m = PerPart::All(self.rise_m());
+        trial
+    }
+
+    /// The rung of a generation with these evaluations in this trial.
+    pub fn rung_of(&self, evaluations: &[Evaluation], trial: &Trial) -> Rung {
+        let succeeds =
+            |evaluation: &&Evaluation| ExamEnd::way_of(evaluation, trial) >= self.settings.way;
+        let successes = evaluations.iter().filter(succeeds).count() as u32;
+        Rung { rise_m: self.rise_m(), successes }
+    }
+
+    /// Takes in how many of a generation's individuals succeeded.
+    pub fn tell(&mut self, successes: u32, evaluations: u32) {
+        let is_climbed = successes as f32 >= self.settings.share * evaluations as f32;
+        if is_climbed && self.rise_m() < self.goal_m {
+            self.rung += 1;
+            self.barren = 0;
+        } else if successes > 0 {
+            self.barren = 0;
+        } else {
+            self.barren += 1;
+            if self.barren >= self.settings.patience {
+                self.rung = self.rung.saturating_sub(1);
+                self.barren = 0;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ladder() -> Ladder {
+        let settings = LadderSettings { first_rise_m: 0.4, patience: 3, ..Default::default() };
+        Ladder { settings, rung: 0, goal_m: 0.48, barren: 0 }
+    }
+
+    #[test]
+    fn the_rise_grows_with_success_up_to_the_goal_and_falls_without() {
+        let mut ladder = ladder();
+        assert_eq!(ladder.rise_m(), 0.4);
+        ladder.tell(69, 100);
+        assert_eq!(ladder.rise_m(), 0.4, "too few");
+        ladder.tell(70, 100);
+        assert_eq!(ladder.rise_m(), 0.45);
+        ladder.tell(100, 100);
+        assert_eq!(ladder.rise_m(), 0.48, "not beyond the goal");
+        ladder.tell(100, 100);
+        assert_eq!(ladder.rise_m(), 0.48);
+        [0, 0, 1, 0, 0].map(|successes| ladder.tell(successes, 100));
+        assert_eq!(ladder.rise_m(), 0.48, "a success in time");
+        ladder.tell(0, 100);
+        assert_eq!(ladder.rise_m(), 0.45);
+        [0; 20].map(|successes| ladder.tell(successes, 100));
+        assert_eq!(ladder.rise_m(), 0.4, "not below the first rung");
+    }
+}
