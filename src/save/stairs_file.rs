@@ -170,24 +170,20 @@ mod tests {
                 "rise_m: 0.0",
                 "stairs.rise_m is 0; allowed: -5 to -0.01 or 0.01 to 5 m",
             ),
-            ("rise_m: 0.5", "rise_m: NaN", "stairs.rise_m is NaN; allowed: -5 to 5 m"),
-            (
-                "tread_m: 0.8",
-                "tread_m: 0.000001",
-                "stairs.tread_m is 0.000001; allowed: 0.1 to 20 m",
-            ),
+            ("rise_m: 0.5", "rise_m: NaN", "stairs.rise_m is NaN; allowed: -5 to 5"),
+            ("tread_m: 0.8", "tread_m: 0.000001", "stairs.tread_m is 0.000001; allowed: 0.1 to 20"),
             ("tread_m: 0.8", "tread_m: [1.0, 2.0]", "stairs.tread_m is "),
             (
                 "steps: 10",
                 "steps: 10, nosing_m: 0.41",
-                "stairs.nosing_m is 0.41; allowed: 0 to 0.3 m",
+                "stairs.nosing_m is 0.41; allowed: 0 to 0.3",
             ),
             (
                 "steps: 10",
                 "steps: 10, slope_m: 0.8",
                 "stairs.slope_m of step 1 is 0.8; allowed: 0 to 0.55",
             ),
-            ("snakes-and-stairs stairs", "snakes preset", "it is a "),
+            ("snakes-and-stairs stairs", "snakes preset", "kind is "),
             ("format: 1", "format: 9", "format"),
         ] {
             assert!(text.contains(from), "{from}");

@@ -32,7 +32,9 @@ impl Ladder {
 
     /// The rise of the stairs of the next generation, in m.
     pub fn rise_m(&self) -> f32 {
-        (self.settings.first_rise_m + self.rung as f32 * self.settings.step_m).min(self.goal_m)
+        // To a tenth of a millimetre: 0.45 m, not 0.45000002.
+        let rise_m = self.settings.first_rise_m + self.rung as f32 * self.settings.step_m;
+        (libm::roundf(rise_m * 1.0e4) / 1.0e4).min(self.goal_m)
     }
 
     /// A trial on the stairs of the next generation.
@@ -88,11 +90,11 @@ mod tests {
         assert_eq!(ladder.rise_m(), 0.48, "not beyond the goal");
         ladder.tell(100, 100);
         assert_eq!(ladder.rise_m(), 0.48);
-        [0, 0, 1, 0, 0].map(|successes| ladder.tell(successes, 100));
+        [0, 0, 1, 0, 0].into_iter().for_each(|successes| ladder.tell(successes, 100));
         assert_eq!(ladder.rise_m(), 0.48, "a success in time");
         ladder.tell(0, 100);
         assert_eq!(ladder.rise_m(), 0.45);
-        [0; 20].map(|successes| ladder.tell(successes, 100));
+        (0..20).for_each(|_| ladder.tell(0, 100));
         assert_eq!(ladder.rise_m(), 0.4, "not below the first rung");
     }
 }

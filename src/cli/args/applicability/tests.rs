@@ -6,12 +6,13 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 23] = [
+const TASKS: [(Task, &str); 24] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
     (CheckReplay, "replay a.ron --no-render"),
     (Bench, "bench"),
+    (BenchChampion, "bench a.ron"),
     (Body, "body a.ron"),
     (BodyStudy, "body-study"),
     (Verify, "verify"),

@@ -37,6 +37,7 @@ pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
 fn run_with_all_given() -> CurrentRun {
     let mut run = prepared_run();
     let given = [
+        ("evolution.strategy", "cma_es"),
         ("trial.ground.friction", "0.5"),
         ("trial.agent.density_kg_m3", "2"),
         ("trial.agent.bend_limit_rad", "1"),

@@ -103,7 +103,8 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
 
 #[test]
 fn an_end_is_said_in_a_few_words() {
-    let end = |steps, landed_s, arrived_s: None, has_landed| ExamEnd {
+    let end = |steps, landed_s, has_landed| ExamEnd {
+        arrived_s: None,
         steps,
         way: 0.0,
         landed_s,
