@@ -13,7 +13,7 @@ use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use crate::check::{Invalid, within};
 use crate::evolve::RunPlan;
-use crate::score::{Evaluation, FITNESS_RANGE};
+use crate::score::{Evaluation, FITNESS_RANGE, Trial};
 use crate::world::Disqualification;
 
 pub const LOG_FILE: &str = "log.jsonl";
@@ -80,6 +80,14 @@ pub struct Rung {
     pub rise_m: f32,
     /// Number of individuals that succeeded.
     pub successes: u32,
+}
+
+impl Rung {
+    /// A trial on the stairs of this rung.
+    pub fn on(&self, mut trial: Trial) -> Trial {
+        trial.stairs.rise_m = self.rise_m.into();
+        trial
+    }
 }
 
 /// Maximum number of species that the log has of a generation, so that the log of the longest run can be read again.

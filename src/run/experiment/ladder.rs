@@ -2,7 +2,6 @@
 
 use crate::evolve::{LadderSettings, Settings};
 use crate::save::{GenerationRecord, Rung};
-use crate::schema::PerPart;
 use crate::score::{Evaluation, ExamEnd, Trial};
 
 /// The place on a ladder, between two generations.
@@ -38,9 +37,8 @@ impl Ladder {
     }
 
     /// A trial on the stairs of the next generation.
-    pub fn trial(&self, mut trial: Trial) -> Trial {
-        trial.stairs.rise_m = PerPart::All(self.rise_m());
-        trial
+    pub fn trial(&self, trial: Trial) -> Trial {
+        Rung { rise_m: self.rise_m(), successes: 0 }.on(trial)
     }
 
     /// The rung of a generation with these evaluations in this trial.

@@ -296,6 +296,7 @@ mod tests {
     fn of_many_better_generations_some_are_shown_and_the_first_landing_always() {
         let milestone = |generation, is_landed| Milestone {
             generation,
+            stairs_m: 5.0,
             fitness: generation as f32,
             is_landed,
             members: Arc::default(),

@@ -12,6 +12,8 @@ use crate::studio::stage::{MAX_GENERATION, evenly};
 pub(crate) struct Milestone {
     /// The first is 1.
     pub generation: u32,
+    /// Height of its stairs, in metres.
+    pub stairs_m: f32,
     /// Fitness of its best snake.
     pub fitness: f32,
     /// Whether its best snake ended on the landing.
@@ -57,11 +59,14 @@ impl Milestones {
     pub fn note(&mut self, report: &GenerationReport, snakes: Option<&Generation>) {
         let Some(champion) = &report.champion else { return };
         let fitness = champion.evaluation.fitness;
-        if self.0.last().is_some_and(|last| fitness <= last.fitness) {
+        let stairs_m = champion.trial.stairs.highest_m();
+        // On a ladder, higher stairs come before greater fitness.
+        if self.0.last().is_some_and(|last| [stairs_m, fitness] <= [last.stairs_m, last.fitness]) {
             return;
         }
         self.0.push(Milestone {
             generation: report.generation,
+            stairs_m,
             fitness,
             is_landed: champion.evaluation.is_on_landing(&champion.trial.stairs),
             members: snakes.map_or_else(Arc::default, members_to_show),

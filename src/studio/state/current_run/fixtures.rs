@@ -4,7 +4,7 @@ use super::*;
 use crate::evolve::{RunPlan, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::run::{Experiment, LocalPool, RunControl};
-use crate::save::{SavesFolder, shipped_champion, store_csv};
+use crate::save::{Rung, SavesFolder, shipped_champion, store_csv};
 use crate::score::evaluate;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::options::Options;
@@ -158,4 +158,12 @@ fn elites_and_front_members_are_evaluated_as_they_were_found() {
     }
     assert_eq!(run.front_member(9, 9), None);
     assert_eq!(run.elite(u32::MAX), None);
+}
+
+#[test]
+fn snakes_of_a_ladders_generation_stand_on_the_stairs_of_its_rung() {
+    let mut run = explored_run();
+    run.reports[0].rung = Some(Rung { rise_m: 0.15, successes: 1 });
+    let rise_m = |generation| run.trial_in(generation).stairs.step_rise_m(0);
+    assert_eq!([1, 2].map(rise_m), [0.15, 0.5]);
 }

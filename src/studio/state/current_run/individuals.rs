@@ -52,7 +52,13 @@ impl CurrentRun {
 
     /// The trial in which the individuals of a generation were evaluated.
     pub(super) fn trial_in(&self, generation: u32) -> Trial {
-        self.plan_now.trial_in(generation)
+        let trial = self.plan_now.trial_in(generation);
+        let index = generation.checked_sub(1).map(|index| index as usize);
+        let report = index.and_then(|index| self.reports.get(index));
+        match report.and_then(|report| report.rung) {
+            Some(rung) => rung.on(trial),
+            None => trial,
+        }
     }
 
     pub(super) fn origin(&self, generation: u32, individual: u32) -> Origin {
