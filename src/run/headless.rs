@@ -12,7 +12,7 @@ use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::{Champion, RunPlan, SettingChange};
-use crate::save::{SaveError, SpeciesCount};
+use crate::save::{Rung, SaveError, SpeciesCount};
 
 /// A headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -264,6 +264,9 @@ fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
         let (list, number) = if bodies_vary { ("bodies", "blocks") } else { ("species", "id") };
         let of = |species: &SpeciesCount| json!({number: species.id, "size": species.size, "best": species.best.map(short)});
         line[list] = report.species.iter().map(of).collect();
+    }
+    if let Some(Rung { rise_m, successes }) = report.rung {
+        line["rung"] = json!({"rise_m": short(rise_m), "successes": successes});
     }
     line
 }

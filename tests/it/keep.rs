@@ -25,6 +25,10 @@ const TINY: &str = "--no-render --json --preset report --population 4 --generati
 /// What lets bodies evolve in such a run.
 const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
 
+/// Stairs that rise and fall every few generations.
+const WITH_LADDER: &str = "--set stairs.steps=1 --set first_riser_y_m=-2.2 --set ladder.first_rise_m=0.1 \
+                           --set ladder.step_m=0.1 --set ladder.share=0.3 --set ladder.way=0.01 --set patience=1";
+
 /// Settings for soft blocks in such a run, without and with bodies that evolve. The report's snake weighs half a kilogram per m³,
 /// and its blocks are rigid from 4,600 Pa on.
 const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=2000";
@@ -87,8 +91,13 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let of_bodies = ["body_ga", "body_novelty", "body_map_elites", "islands", "creature_ga"];
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let soft = ["soft cma_es", "soft body_ga"];
-    let strategies: Vec<&str> = strategies.into_iter().chain(of_bodies).chain(soft).collect();
+    let on_ladders = ["ladder cma_es"];
+    let strategies: Vec<&str> =
+        strategies.into_iter().chain(of_bodies).chain(soft).chain(on_ladders).collect();
     let tiny = |strategy: &str| {
+        if let Some(strategy) = strategy.strip_prefix("ladder ") {
+            return format!("{TINY} --set strategy={strategy} {WITH_LADDER}");
+        }
         let (strategy, is_soft) =
             strategy.strip_prefix("soft ").map_or((strategy, false), |strategy| (strategy, true));
         let softness = match strategy {
