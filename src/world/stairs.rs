@@ -55,12 +55,18 @@ const GROUND_M: f32 = 1.0e-4;
 /// Least depth of the flat part of a tread, in metres.
 const LEAST_FLAT_M: f32 = 0.1;
 
+impl Stairs {
+    /// The section of these settings.
+    pub const SECTION: Section =
+        Section { title: "Stairs", about: "Shape and position of the staircase." };
+}
+
 impl SettingGroup for Stairs {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let each_step = Parts::Steps(self.steps as usize);
         let Self { steps, rise_m, tread_m, width_m, first_riser_y_m, landing_m, nosing_m, slope_m } =
             self;
-        walk.section(Section { title: "Stairs", about: "Shape and position of the staircase." });
+        walk.section(Self::SECTION);
         settings! { walk,
             // A hundred steps are far more than any snake climbs, and still quick.
             steps: whole("Steps", 0..=100)

@@ -1,6 +1,7 @@
 //! World and snake of the next run, section by section, with a search over all settings.
 
 pub mod presets;
+mod stairs_choice;
 pub mod surface_readout;
 
 use std::collections::BTreeSet;
@@ -17,8 +18,10 @@ use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
+use crate::world::Stairs;
 
 use presets::PresetChoice;
+use stairs_choice::stairs_choice;
 use surface_readout::{ReadLanes, ReadSurface};
 
 /// The panel with its search text and fields.
@@ -100,6 +103,9 @@ impl WorldPanel {
             let shown = header.show_unindented(ui, |ui| {
                 if section == Trial::GROUND {
                     ground_switch(ui, run, commands);
+                }
+                if section == Stairs::SECTION {
+                    stairs_choice(ui, run, commands);
                 }
                 if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
                     on_stage.ui(ui, *surface);
