@@ -41,6 +41,10 @@ pub trait Strategy: Send {
     /// Learns from the evaluations of the genomes that the last `ask` returned, in the same order.
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
 
+    /// Forgets the values of all generations so far, with which those of later ones cannot be compared, because a ladder may
+    /// put them on other stairs. A search that ends when its values no longer change would end too early.
+    fn forget_values(&mut self) {}
+
     /// Whether it learns from the experience of episodes, beside their evaluations.
     fn learns_from_episodes(&self) -> bool {
         false

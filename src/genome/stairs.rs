@@ -58,7 +58,10 @@ setting_group! {
         match self.missing {
             0 => Ok(()),
             missing if (2..up).contains(&missing) => Ok(()),
-            missing => Err(Invalid::new("missing", missing, format!("0, or 2 to {}", up.max(3) - 1))),
+            missing if up < 3 => {
+                Err(Invalid::new("missing", missing, "0 with fewer than three steps up"))
+            }
+            missing => Err(Invalid::new("missing", missing, format!("0, or 2 to {}", up - 1))),
         }
     }
 }
@@ -90,6 +93,7 @@ impl StairsGenome {
         };
         if self.ramp > 0.0 {
             stairs.slope_m = PerPart::Each((0..self.steps).map(slope_m).collect());
+            stairs = stairs.with_room_for_slopes();
         }
         let flat_m = |step| stairs.step_tread_m(step) - stairs.step_slope_m(step);
         let shallowest_m = (0..self.steps).map(flat_m).fold(f32::MAX, f32::min);
@@ -119,7 +123,9 @@ impl StairsGenome {
         let mut owed_m = 0.0;
         for (step, rise_m) in rises_m.iter_mut().enumerate() {
             if step >= first_down {
-                *rise_m = -lowered_m(height_m, *rise_m);
+                // Each of the steps that follow leads down, too.
+                let left_m = (self.steps as usize - 1 - step) as f32 * LEAST_RISE_M;
+                *rise_m = -lowered_m(height_m - left_m, *rise_m);
             } else if Some(step) == missing {
                 // A gap one rise deep, behind which the stairs go on where they would have been.
                 let depth_m = lowered_m(height_m, self.rise_m);
@@ -223,6 +229,21 @@ mod tests {
             check(&genome).expect("drawn from the ranges");
             let stairs = genome.stairs();
             check(&stairs).unwrap_or_else(|error| panic!("{error} of {genome:?}: {stairs:?}"));
+        }
+    }
+
+    #[test]
+    fn irregular_steps_down_never_reach_the_ground_too_early() {
+        for noise_seed in 0..500 {
+            let genome = StairsGenome {
+                steps: 20,
+                down: 10,
+                rise_noise: 0.4,
+                noise_seed,
+                ..StairsGenome::default()
+            };
+            let stairs = genome.stairs();
+            check(&stairs).unwrap_or_else(|error| panic!("{error}: {stairs:?}"));
         }
     }
 

@@ -59,7 +59,7 @@ impl Experiment {
     pub fn new(plan: RunPlan) -> Self {
         Self {
             strategy: begin(&plan),
-            ladder: Ladder::after(&plan.settings, &[]),
+            ladder: Ladder::begin(&plan.settings),
             plan,
             ahead: VecDeque::new(),
             front: Front::default(),
@@ -96,7 +96,7 @@ impl Experiment {
             let hash = record.generation_hash().unwrap_or(0);
             experiment.hash.update(&hash.to_le_bytes());
         }
-        experiment.ladder = Ladder::after(&experiment.plan.settings, &progress.records);
+        experiment.ladder = Ladder::after(&experiment.plan.settings, &progress.records)?;
         experiment.finished = finished;
         experiment.evaluated =
             progress.records.iter().map(|record| u64::from(record.evaluations)).sum();
@@ -283,6 +283,7 @@ impl Experiment {
         self.strategy.tell(&genomes, &evaluations);
         self.finished = generation;
         if let Some((ladder, rung)) = self.ladder.as_mut().zip(report.rung) {
+            self.strategy.forget_values();
             let before_m = ladder.rise_m();
             ladder.tell(rung.successes, report.evaluations);
             if ladder.rise_m() != before_m {

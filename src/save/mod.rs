@@ -81,7 +81,6 @@ pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
     NamedStairs, built_in_stairs, built_in_stairs_names, load_stairs, parse_stairs,
-    store_new_stairs,
 };
 pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};
 pub use v5::RecordedV5;

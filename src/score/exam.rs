@@ -36,7 +36,7 @@ choices! {
              what the snake does without them. Only for controllers that sense their surroundings.";
         HeldOut = "held-out", "Held-out stairs",
             "60 staircases on which no run may learn, 15 each with equal steps, irregular steps, the proportions of houses, and \
-             nosings; 30 s each. A landing counts once the whole body has stood on the landing for half a second.";
+             nosings; 30 s each. A landing counts once the middles of all blocks have been behind the last tread for half a second.";
     }
 }
 
@@ -63,7 +63,8 @@ pub struct ExamEnd {
     pub way: f32,
     /// When the middle limb was first on the landing, in s; none if it never was.
     pub landed_s: Option<f32>,
-    /// When the whole body had first stood on the landing for half a second, in s; none if it never did.
+    /// When the middles of all blocks had first been behind the last tread for half a second, in s; none if they never
+    /// were.
     pub arrived_s: Option<f32>,
     /// Whether the middle limb ended on the landing.
     pub has_landed: bool,

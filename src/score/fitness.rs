@@ -139,7 +139,7 @@ impl FinalState<'_> {
         match fitness {
             Fitness::Centre => middle.y,
             Fitness::Climb => {
-                let is_up = self.stairs.steps_under(middle.to_array()) > 0;
+                let is_up = self.stairs.is_over(middle.to_array());
                 let arrived_y_m = arrived_y_m(self.stairs, self.body);
                 let max_y_m = if is_up { arrived_y_m } else { self.stairs.first_riser_y_m };
                 middle.y.min(max_y_m)

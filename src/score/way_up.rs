@@ -105,7 +105,7 @@ pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f3
     for (pose, limb) in poses.iter().zip(&body.parts) {
         let at_m = pose.translation;
         let way = stairs.way_steps(at_m.y);
-        let most = if stairs.steps_under(at_m.to_array()) > 0 { stairs.steps as f32 } else { 0.0 };
+        let most = if stairs.is_over(at_m.to_array()) { stairs.steps as f32 } else { 0.0 };
         sum += limb.mass_kg() * way.min(most);
         mass_kg += limb.mass_kg();
     }

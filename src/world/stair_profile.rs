@@ -109,7 +109,9 @@ impl StairProfile {
     /// [`Stairs::steps_under`](super::Stairs::steps_under).
     pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> ClimbProgress {
         let passed = if self.is_in_line(x_m, y_m) { self.treads_passed(y_m) } else { 0 };
-        let is_over = self.heights_m.get(passed).is_some_and(|height_m| z_m >= *height_m);
+        let least_z_m = |height_m: f32| height_m.min(self.surface_z_m(x_m, y_m));
+        let is_over =
+            self.heights_m.get(passed).is_some_and(|height_m| z_m >= least_z_m(*height_m));
         let steps = if is_over { passed } else { 0 };
         ClimbProgress {
             steps: steps as u32,

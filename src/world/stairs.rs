@@ -54,6 +54,8 @@ const LEAST_RISE_M: f32 = 0.01;
 const GROUND_M: f32 = 1.0e-4;
 /// Least depth of the flat part of a tread, in metres.
 const LEAST_FLAT_M: f32 = 0.1;
+/// Least depth of a slope, in metres: a shallower one would be a board without depth.
+const LEAST_SLOPE_M: f32 = 0.01;
 
 impl Stairs {
     /// The section of these settings.
@@ -115,9 +117,13 @@ impl SettingGroup for Stairs {
                 return Err(Invalid::new("rise_m", rise_m, allowed));
             }
             if top_m < -GROUND_M || (GROUND_M..LEAST_RISE_M).contains(&top_m) {
-                let allowed = format!(
-                    "-{below_m}, down to the ground, or a rise that ends at least {LEAST_RISE_M} m over it"
-                );
+                let down = if below_m > 0.0 {
+                    format!("-{below_m}, down to the ground, or ")
+                } else {
+                    String::new()
+                };
+                let allowed =
+                    format!("{down}a rise that ends at least {LEAST_RISE_M} m over the ground");
                 return Err(Invalid::new(format!("rise_m of step {}", step + 1), rise_m, allowed));
             }
             below_m = top_m;
@@ -140,13 +146,13 @@ impl Stairs {
             return Ok(());
         }
         let rise_m = self.step_rise_m(step);
-        let flat_m = LEAST_FLAT_M.max(rise_m.abs() / 2.0);
-        let own_m =
-            (self.step_tread_m(step) - if rise_m > 0.0 { flat_m } else { LEAST_FLAT_M }).max(0.0);
-        if slope_m > own_m {
-            let allowed = format!("0 to {own_m} m, of a tread of {} m", self.step_tread_m(step));
+        let own_m = self.deepest_slope_m(step);
+        if !(LEAST_SLOPE_M..=own_m).contains(&slope_m) {
+            let tread_m = self.step_tread_m(step);
+            let allowed = format!("0, or {LEAST_SLOPE_M} m to {own_m} m of a tread of {tread_m} m");
             return Err(Invalid::new(format!("slope_m of step {}", step + 1), slope_m, allowed));
         }
+        let flat_m = LEAST_FLAT_M.max(rise_m.abs() / 2.0);
         let before = step.saturating_sub(1);
         let above_m = self.step_tread_m(before) - self.step_slope_m(before);
         if rise_m < 0.0 && above_m < flat_m {
@@ -158,6 +164,26 @@ impl Stairs {
 }
 
 impl Stairs {
+    /// These stairs with each slope as deep as is allowed at most, after rises have grown.
+    #[must_use]
+    pub fn with_room_for_slopes(mut self) -> Self {
+        if self.slope_m != no_slope() {
+            let fitting = |step| {
+                let slope_m = self.step_slope_m(step).min(self.deepest_slope_m(step));
+                if slope_m < LEAST_SLOPE_M { 0.0 } else { slope_m }
+            };
+            self.slope_m = PerPart::Each((0..self.steps).map(fitting).collect());
+        }
+        self
+    }
+
+    /// The greatest depth of the slope of a step, in metres: a flat part of its tread has to remain.
+    fn deepest_slope_m(&self, step: u32) -> f32 {
+        let rise_m = self.step_rise_m(step);
+        let flat_m = if rise_m > 0.0 { LEAST_FLAT_M.max(rise_m / 2.0) } else { LEAST_FLAT_M };
+        (self.step_tread_m(step) - flat_m).max(0.0)
+    }
+
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         match &self.tread_m {
@@ -249,7 +275,20 @@ impl Stairs {
     /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. Only y counts, as in the
     /// report: a snake that crawls past the stairs at their side would count too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
-        (0..self.steps).take_while(|&index| y_m >= f64::from(self.tread_y_m(index))).count() as u32
+        if let PerPart::All(_) = self.tread_m {
+            let is_passed = |index: &u32| y_m >= f64::from(self.tread_y_m(*index));
+            return (0..self.steps).take_while(is_passed).count() as u32;
+        }
+        let mut riser_m = self.first_riser_y_m;
+        for step in 0..self.steps {
+            let slope_m = self.step_slope_m(step);
+            let tread_m = if slope_m > 0.0 { riser_m + slope_m } else { riser_m };
+            if y_m < f64::from(tread_m) || y_m.is_nan() {
+                return step;
+            }
+            riser_m += self.step_tread_m(step);
+        }
+        self.steps
     }
 
     /// The way of a point along the stairs, in steps: from the first riser, in treads. Before the first riser it is
@@ -277,8 +316,21 @@ impl Stairs {
     pub fn steps_under(&self, at_m: [f32; 3]) -> u32 {
         let [x_m, y_m, z_m] = at_m;
         let climbed = self.steps_climbed(f64::from(y_m));
-        let is_over = z_m >= self.height_m(climbed) && x_m.abs() <= self.width_m / 2.0;
+        // On a slope down the surface is below the last tread, and on one up the tread counts only from its end.
+        let least_z_m = self.surface_z_m(x_m, y_m).min(self.height_m(climbed));
+        let is_over = z_m >= least_z_m && x_m.abs() <= self.width_m / 2.0;
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
+    }
+
+    /// Whether a point at `at_m`, in metres, is above the stairs: past the first riser, above the tread or slope there, and
+    /// within the width.
+    pub fn is_over(&self, at_m: [f32; 3]) -> bool {
+        let [x_m, y_m, z_m] = at_m;
+        let is_along = y_m >= self.first_riser_y_m && y_m <= self.end_y_m();
+        self.steps > 0
+            && is_along
+            && x_m.abs() <= self.width_m / 2.0
+            && z_m >= self.surface_z_m(x_m, y_m)
     }
 
     /// Height of the tread, the slope, the landing or the ground at a point of the floor plan, in metres.

@@ -150,7 +150,10 @@ class Scene {
       const shift = lane.shift;
       const { stairs, edges, width_m } = lane.champion, half = width_m / 2;
       for (const { at: [x, y, z], size, turn } of stairs) list.push({ mesh: this.mesh([1, 1, 1], 0.0001), model: placed([x + shift, y, z], turn, [0, 0, 0], size), colour: colours.stair });
-      for (const [y, z] of edges) box([shift - half, y - 0.012, z - 0.06], [shift + half, y + 0.10, z + 0.012], colours.edge);
+      for (const [y, z, ahead] of edges) {
+        const ends = [y - 0.012 * ahead, y + 0.10 * ahead].sort((a, b) => a - b);
+        box([shift - half, ends[0], z - 0.06], [shift + half, ends[1], z + 0.012], colours.edge);
+      }
       const { parts, limbs } = lane.champion;
       parts.forEach((size, index) => {
         const { at: [x, y, z], turn } = lane.poses[index], at = [x + shift, y, z], limb = limbs[index];

@@ -132,6 +132,10 @@ impl Strategy for CmaEs {
         self.runs.as_ref().map_or(random, |runs| runs.population() as usize)
     }
 
+    fn forget_values(&mut self) {
+        self.runs.iter_mut().for_each(RestartedCma::forget_values);
+    }
+
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
         let points = self.points();
         let order = full_ranking(evaluations);

@@ -60,8 +60,8 @@ pub struct PageChampion {
     step_count: u32,
     /// The solids of its stairs.
     stairs: Vec<PageSolid>,
-    /// The edges of its steps: y and z, in metres.
-    edges: Vec<[f32; 2]>,
+    /// The edges of its steps: y and z, in metres, and 1, or -1 for one that leads down.
+    edges: Vec<[f32; 3]>,
     /// The outline of its stairs from the side, for the drawing: y and z, in metres.
     #[serde(skip)]
     pub outline: Vec<[f32; 2]>,
@@ -189,7 +189,7 @@ impl PageChampion {
             width_m: stairs.width_m,
             step_count: stairs.steps,
             stairs: stairs.solids().into_iter().map(PageSolid::of).collect(),
-            edges: (0..stairs.steps).map(|step| stairs.edge_m(step)).collect(),
+            edges: (0..stairs.steps).map(|step| edge(stairs, step)).collect(),
             outline: stairs.outline_m(),
             parts: champion.body().parts.iter().map(|part| part.size_m()).collect(),
             limbs: champion.body().parts.iter().map(|part| part.limb).collect(),
@@ -217,6 +217,12 @@ impl PageChampion {
 fn packed(numbers: impl Iterator<Item = f32>) -> String {
     let bytes: Vec<u8> = numbers.flat_map(|number| (number.round() as i16).to_le_bytes()).collect();
     STANDARD.encode(bytes)
+}
+
+/// The edge of a step, and where its tread lies: behind it, or before it if it leads down.
+fn edge(stairs: &Stairs, step: u32) -> [f32; 3] {
+    let [y_m, z_m] = stairs.edge_m(step);
+    [y_m, z_m, stairs.step_rise_m(step).signum()]
 }
 
 /// The number of steps, and their depth.

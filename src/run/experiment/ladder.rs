@@ -1,5 +1,6 @@
 //! The ladder of a run: which rise its next generation has.
 
+use crate::check::Invalid;
 use crate::evolve::{LadderSettings, Settings};
 use crate::save::{GenerationRecord, Rung};
 use crate::score::{Evaluation, ExamEnd, Trial};
@@ -18,15 +19,35 @@ pub struct Ladder {
 
 impl Ladder {
     /// The ladder of a run after the generations of its log; none without one.
-    pub fn after(settings: &Settings, records: &[GenerationRecord]) -> Option<Self> {
+    ///
+    /// # Errors
+    /// A generation of the log was not on the rung that follows from those before it.
+    pub fn after(
+        settings: &Settings,
+        records: &[GenerationRecord],
+    ) -> Result<Option<Self>, Invalid> {
+        let mut ladder = Self::begin(settings);
+        for record in records {
+            let expected = ladder.as_ref().map(Self::rise_m);
+            let found = record.rung.map(|rung| rung.rise_m);
+            if found != expected {
+                let words =
+                    |rise_m: Option<f32>| rise_m.map_or("none".to_owned(), |m| m.to_string());
+                let field = format!("rung.rise_m of generation {}", record.generation);
+                return Err(Invalid::new(field, words(found), words(expected)));
+            }
+            if let Some((ladder, rung)) = ladder.as_mut().zip(record.rung) {
+                ladder.tell(rung.successes, record.evaluations);
+            }
+        }
+        Ok(ladder)
+    }
+
+    /// The ladder at the beginning of a run; none without one.
+    pub fn begin(settings: &Settings) -> Option<Self> {
         let ladder = settings.evolution.ladder;
         let goal_m = settings.trial.stairs.step_rise_m(0);
-        let mut ladder =
-            ladder.is_used().then_some(Self { settings: ladder, rung: 0, goal_m, barren: 0 })?;
-        for record in records {
-            ladder.tell(record.rung.map_or(0, |rung| rung.successes), record.evaluations);
-        }
-        Some(ladder)
+        ladder.is_used().then_some(Self { settings: ladder, rung: 0, goal_m, barren: 0 })
     }
 
     /// The rise of the stairs of the next generation, in m.
@@ -94,5 +115,35 @@ mod tests {
         assert_eq!(ladder.rise_m(), 0.45);
         (0..20).for_each(|_| ladder.tell(0, 100));
         assert_eq!(ladder.rise_m(), 0.4, "not below the first rung");
+    }
+
+    #[test]
+    fn a_log_that_its_ladder_cannot_have_is_refused() {
+        let mut settings = Settings::default();
+        settings.evolution.ladder = LadderSettings { first_rise_m: 0.4, ..Default::default() };
+        let record = |generation, rise_m, successes| GenerationRecord {
+            generation,
+            evaluations: 10,
+            disqualified: 0,
+            crashed: 0,
+            on_landing: 0,
+            first_on_landing: None,
+            statistics: None,
+            chosen_by: None,
+            species: Vec::new(),
+            rung: Some(Rung { rise_m, successes }),
+            hash: "0123456789abcdef".to_owned(),
+            elapsed_s: 1.0,
+        };
+        let log = [record(1, 0.4, 9), record(2, 0.45, 0)];
+        let after = Ladder::after(&settings, &log).expect("allowed").expect("a ladder");
+        assert_eq!(after.rise_m(), 0.45);
+        let refused = |log: &[GenerationRecord], settings: &Settings| {
+            Ladder::after(settings, log).expect_err("refused").to_string()
+        };
+        let skipped = refused(&[record(1, 0.4, 9), record(2, 0.4, 9)], &settings);
+        assert_eq!(skipped, "rung.rise_m of generation 2 is 0.4; allowed: 0.45");
+        let without = refused(&log, &Settings::default());
+        assert_eq!(without, "rung.rise_m of generation 1 is 0.4; allowed: none");
     }
 }

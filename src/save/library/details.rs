@@ -183,7 +183,11 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     champions.retain(|generation| *generation as usize <= records.len());
     let best_of = |record: &GenerationRecord| record.statistics.map(|of| of.best as f32);
     let best_of_each: Vec<Option<f32>> = records.iter().map(best_of).collect();
-    let rank = |record: &GenerationRecord| record.chosen_by.or(record.statistics.map(|of| of.best));
+    // As in the run: on a ladder, higher stairs come before greater fitness.
+    let rank = |record: &GenerationRecord| {
+        let fitness = record.chosen_by.or(record.statistics.map(|of| of.best))?;
+        Some([record.rung.map_or(0.0, |rung| f64::from(rung.rise_m)), fitness])
+    };
     let ranked = records.iter().zip(1..).filter_map(|(of, number)| Some((number, rank(of)?)));
     // Of equal ones, the first.
     let best = ranked.reduce(|best, next| if next.1 > best.1 { next } else { best });

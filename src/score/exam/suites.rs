@@ -148,20 +148,19 @@ fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
     let steps = trial.stairs.steps;
     // Index 0 is the first step. Shorter stairs surprise with any of theirs.
     let places = if steps > 3 { 3..steps.min(9) } else { 0..steps };
+    // Of a step down nothing could be higher.
+    let places = places.filter(|step| trial.stairs.step_rise_m(*step) > 0.0);
     for high in places {
         for further_m in FURTHER_M {
             let mut other = long(trial);
             let first_riser_y_m = other.stairs.first_riser_y_m + further_m;
             let rises = (0..steps).map(|step| {
                 let rise_m = other.stairs.step_rise_m(step);
-                if step == high && rise_m > 0.0 {
-                    (rise_m * SURPRISE).min(HIGHEST_RISE_M)
-                } else {
-                    rise_m
-                }
+                if step == high { (rise_m * SURPRISE).min(HIGHEST_RISE_M) } else { rise_m }
             });
             let rise_m = crate::schema::PerPart::Each(rises.collect());
-            other.stairs = Stairs { rise_m, first_riser_y_m, ..other.stairs };
+            other.stairs =
+                Stairs { rise_m, first_riser_y_m, ..other.stairs }.with_room_for_slopes();
             let label = format!("step {} higher, from {first_riser_y_m:.1} m", high + 1);
             all.push(condition(&label, other));
         }

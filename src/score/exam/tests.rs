@@ -1,12 +1,30 @@
 //! Tests of the exam's suites.
 
 use super::*;
+use crate::genome::StairsGenome;
 use crate::schema::Choices;
 use crate::score::PerPart;
 
 fn end(steps: u32, way: f32, landed_s: Option<f32>) -> ExamEnd {
     let has_landed = landed_s.is_some();
     ExamEnd { steps, way, landed_s, arrived_s: None, has_landed, is_disqualified: false }
+}
+
+#[test]
+fn stairs_with_ramps_nosings_and_steps_down_have_allowed_conditions() {
+    let plain = || StairsGenome { steps: 8, ..StairsGenome::default() };
+    for genome in [
+        StairsGenome { ramp: 1.0, ..plain() },
+        StairsGenome { nosing_m: 0.3, missing: 4, ..plain() },
+        StairsGenome { landing: 4, down: 4, ..plain() },
+    ] {
+        let trial = Trial { stairs: genome.stairs(), ..Trial::default() };
+        for &suite in ExamSuite::OPTIONS {
+            for condition in suite.conditions(&trial) {
+                condition.check().unwrap_or_else(|error| panic!("{}: {error}", condition.label));
+            }
+        }
+    }
 }
 
 #[test]

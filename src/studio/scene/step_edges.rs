@@ -1,5 +1,7 @@
 //! Strips at the front edges of the steps. Those of the steps below the snake glow.
 
+use std::f32::consts::PI;
+
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
@@ -93,7 +95,9 @@ fn build(
                     StepEdge { step, is_lit: false },
                     Mesh3d(glow.clone()),
                     MeshMaterial3d(strips.glow.clone()),
-                    Transform::from_translation(edge).with_scale(Vec3::new(1.0, ahead, 1.0)),
+                    // Turned, not mirrored: of a mirrored mesh the back would be seen, which is not drawn.
+                    Transform::from_translation(edge)
+                        .with_rotation(Quat::from_rotation_z(if ahead < 0.0 { PI } else { 0.0 })),
                     Visibility::Hidden,
                     NotShadowCaster,
                 ));

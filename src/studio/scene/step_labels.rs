@@ -81,8 +81,7 @@ fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
     }
 }
 
-/// Step numbers on the risers, on the fronts of nosings, and at the upper ends of slopes. Steps down have none: they face
-/// away.
+/// Step numbers on the risers, under the nosings, and on the slopes. Steps down have none: they face away.
 fn numbers(writing: &mut TextMeshBuilder<'_>, stairs: &Stairs) {
     for step in (0..stairs.steps).filter(|&step| stairs.step_rise_m(step) > 0.0) {
         let (rise_m, slope_m) = (stairs.step_rise_m(step), stairs.step_slope_m(step));

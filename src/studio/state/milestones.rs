@@ -68,7 +68,9 @@ impl Milestones {
             generation: report.generation,
             stairs_m,
             fitness,
-            is_landed: champion.evaluation.is_on_landing(&champion.trial.stairs),
+            // On a ladder, only on the stairs to which it leads.
+            is_landed: report.on_landing > 0
+                && champion.evaluation.is_on_landing(&champion.trial.stairs),
             members: snakes.map_or_else(Arc::default, members_to_show),
             size: report.evaluations,
         });

@@ -187,6 +187,23 @@ mod tests {
     }
 
     #[test]
+    fn a_point_above_the_surface_is_over_the_stairs_and_beyond_a_first_ramp_over_steps() {
+        let stairs = varied();
+        for number in 0..1400_i16 {
+            let y_m = 3.0 + f32::from(number) * 0.01 + 0.003;
+            let at = [0.0, y_m, stairs.surface_z_m(0.0, y_m) + 0.3];
+            assert!(stairs.is_over(at), "{y_m}");
+            let expected = stairs.steps_climbed(f64::from(y_m));
+            assert_eq!(stairs.steps_under(at), expected, "{y_m}");
+            assert_eq!(
+                crate::world::stair_profile::StairProfile::of(&stairs).climb(at).steps,
+                expected
+            );
+        }
+        assert!(!stairs.is_over([0.0, 4.5, 0.4]), "inside a slope");
+    }
+
+    #[test]
     fn boards_of_slopes_end_inside_the_boxes_around_them() {
         let stairs = varied();
         let boxes = stairs.boxes();

@@ -82,6 +82,11 @@ impl RestartedCma {
         &self.parameters
     }
 
+    /// Forgets the values of all iterations so far: see [`Cma::forget_values`].
+    pub fn forget_values(&mut self) {
+        self.current.forget_values();
+    }
+
     /// The current run.
     pub fn current(&self) -> &Cma {
         &self.current

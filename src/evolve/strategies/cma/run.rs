@@ -155,6 +155,12 @@ impl Cma {
         Ok(())
     }
 
+    /// Forgets the values of all iterations so far, so that the criteria that compare them begin anew: values of later
+    /// iterations cannot be compared with them.
+    pub fn forget_values(&mut self) {
+        self.history = ValueHistory::default();
+    }
+
     /// Checks a state from a file. A run that passes cannot panic, and its candidates have at most
     /// [`LARGEST_SAMPLE`] coordinates.
     pub fn check(&self) -> Result<(), Invalid> {

@@ -375,3 +375,21 @@ fn the_bits_equal_the_recorded_ones() {
         ]
     );
 }
+
+/// On a rung of a ladder whose best snakes were all as fit as possible, the search once stopped for the whole run.
+#[test]
+fn a_search_whose_values_are_forgotten_does_not_end_because_they_are_equal() {
+    let ends = |forgets: bool| {
+        let mut run = run(5, 1.0, 0.5, CovarianceShape::Full, true);
+        for _ in 0..60 {
+            step(&mut run, |_| 1.0, 1);
+            if forgets {
+                run.forget_values();
+            }
+        }
+        run.check().expect("a state that can be resumed");
+        run.stop()
+    };
+    assert_eq!(ends(false), Some(StopReason::EqualValues));
+    assert_eq!(ends(true), None);
+}
