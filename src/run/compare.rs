@@ -7,7 +7,7 @@ use super::report::{GenerationReport, Quartiles};
 use super::run_control::{Cancelled, RunControl};
 use super::whole_runs::whole_runs;
 use crate::check::{Invalid, within};
-use crate::evolve::{Descriptor, RunPlan, Settings, StrategyKind};
+use crate::evolve::{Champion, Descriptor, RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::save::{CURVE_POINTS, ComparedBest, ComparedRun, Comparison};
 
@@ -81,6 +81,12 @@ pub fn run_all(
     whole_runs(plans.len(), evaluator, control, work, done)
 }
 
+/// The best individual so far on the stairs of the run's trial; none while a ladder has not led to them.
+fn best_of<'a>(experiment: &'a Experiment, plan: &RunPlan) -> Option<&'a Champion> {
+    let goal = &plan.settings.trial.stairs;
+    experiment.best().filter(|best| best.trial.stairs == *goal)
+}
+
 fn run_one(
     experiment: &mut Experiment,
     plan: &RunPlan,
@@ -96,12 +102,12 @@ fn run_one(
             |index: u32| u32::try_from(before).unwrap_or(u32::MAX).saturating_add(index + 1);
         first_on_landing = first_on_landing.or(report.first_on_landing.map(number));
         last_mean = report.statistics.map(|statistics| statistics.mean);
-        let best = experiment.best().map(|best| best.evaluation.fitness);
+        let best = best_of(experiment, plan).map(|best| best.evaluation.fitness);
         // A point of the curve is the best fitness when that share of the budget was spent.
         let reached = (experiment.evaluated() * CURVE_POINTS as u64).div_ceil(budget.max(1));
         curve.iter_mut().skip((reached as usize).saturating_sub(1)).for_each(|at| *at = best);
     }
-    let best = experiment.best().map(|best| ComparedBest {
+    let best = best_of(experiment, plan).map(|best| ComparedBest {
         fitness: best.evaluation.fitness,
         steps_climbed: best.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed),
         energy_j_per_m: Descriptor::EnergyPerMetre

@@ -1,6 +1,5 @@
 //! Settings of the ladder: stairs whose rise grows as the population learns to climb them.
 
-use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::schema::{PerPart, number, setting_group, whole};
 
@@ -50,45 +49,37 @@ setting_group! {
 const BEGUN: &str =
     "Takes effect with the next run, because this one has begun to climb its ladder.";
 
-/// The strategies that compare only snakes of one generation, which all have the same stairs.
-const STRATEGIES: [StrategyKind; 2] = [StrategyKind::CmaEs, StrategyKind::Ga];
-
 impl LadderSettings {
     /// Whether there is a ladder.
     pub fn is_used(&self) -> bool {
         self.first_rise_m > 0.0
     }
-}
 
-impl Settings {
-    /// Checks that the ladder, if there is one, leads up to the stairs of the trial, and that the strategy can climb it.
-    pub(super) fn check_ladder(&self) -> Result<(), Invalid> {
-        let ladder = &self.evolution.ladder;
-        if !ladder.is_used() {
+    /// Checks that the ladder, if there is one, leads up to stairs of these rises, and that the strategy, of this name, can
+    /// climb it.
+    pub(super) fn check_with(
+        &self,
+        strategy: &str,
+        can_climb: bool,
+        rises_m: &PerPart,
+    ) -> Result<(), Invalid> {
+        if !self.is_used() {
             return Ok(());
         }
-        let field = "evolution.ladder.first_rise_m";
-        let strategy = self.evolution.strategy;
-        if !STRATEGIES.contains(&strategy) {
-            let allowed = format!(
+        let refused = |allowed: String| {
+            Err(Invalid::new("evolution.ladder.first_rise_m", self.first_rise_m, allowed))
+        };
+        if !can_climb {
+            return refused(format!(
                 "0 with evolution.strategy {strategy}, which compares snakes of different generations"
-            );
-            return Err(Invalid::new(field, ladder.first_rise_m, allowed));
+            ));
         }
-        match &self.trial.stairs.rise_m {
-            PerPart::All(rise_m)
-                if ladder.first_rise_m >= 0.01 && ladder.first_rise_m <= *rise_m =>
-            {
-                Ok(())
-            }
+        match rises_m {
+            PerPart::All(rise_m) if (0.01..=*rise_m).contains(&self.first_rise_m) => Ok(()),
             PerPart::All(rise_m) => {
-                let allowed = format!("0, or 0.01 m to {rise_m} m, the rise of the stairs");
-                Err(Invalid::new(field, ladder.first_rise_m, allowed))
+                refused(format!("0, or 0.01 m to {rise_m} m, the rise of the stairs"))
             }
-            PerPart::Each(_) => {
-                let allowed = "0 with steps of different heights";
-                Err(Invalid::new(field, ladder.first_rise_m, allowed))
-            }
+            PerPart::Each(_) => refused("0 with steps of different heights".to_owned()),
         }
     }
 }

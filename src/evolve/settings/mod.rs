@@ -237,7 +237,9 @@ impl SettingGroup for Settings {
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
         self.check_bodies()?;
-        self.check_ladder()?;
+        let rises_m = &self.trial.stairs.rise_m;
+        let strategy = self.evolution.strategy;
+        self.evolution.ladder.check_with(strategy.name(), strategy.climbs_ladders(), rises_m)?;
         let points = self.genome.points(self.trial.duration_s);
         let torque_points = 2 * self.trial.agent.joints() * points;
         if torque_points > LARGEST_GENOME_TORQUES {

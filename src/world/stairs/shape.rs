@@ -178,7 +178,7 @@ mod tests {
                 let along = of.pose.rotation * Vector::Y;
                 let top = of.pose * Vector::new(0.0, 0.0, of.half_m.z);
                 let into_m = (y_m - top.y) / along.y;
-                (into_m.abs() <= of.half_m.y).then(|| top.z + into_m * along.z)
+                (into_m.abs() <= of.half_m.y).then_some(top.z + into_m * along.z)
             });
             let top_m = tops_m.fold(0.0, f32::max);
             let surface_m = stairs.surface_z_m(0.0, y_m);

@@ -65,6 +65,7 @@ pub fn landed_run() -> CurrentRun {
     let mut report = run.reports.last().expect("two generations").clone();
     report.generation += 1;
     report.champion = Some(shipped_champion().expect("well formed").champion);
+    report.on_landing = 1;
     run.note_milestone(&report);
     run.reports.push(report);
     run
