@@ -38,7 +38,7 @@ pub struct BenchReport {
 /// Genomes evaluated per thread in a round: about a tenth of a second.
 const GENOMES: usize = 20;
 
-/// What a benchmark simulates: genomes in one trial.
+/// The work of a benchmark: genomes that are simulated in one trial.
 #[derive(Debug)]
 pub struct Workload {
     genomes: Vec<Genome>,
