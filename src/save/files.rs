@@ -244,6 +244,22 @@ pub fn check_format(path: &Path, found: u32, supported: u32) -> Result<(), SaveE
     if found == supported { Ok(()) } else { Err(SaveError::OtherFormat { path, found, supported }) }
 }
 
+/// The files of these names, without their extension, in a folder of the assets: each with its name and text.
+macro_rules! embedded {
+    ($folder:literal; $($name:literal),* $(,)?) => {
+        &[$((
+            concat!($name, ".ron"),
+            include_str!(concat!("../../assets/", $folder, "/", $name, ".ron")),
+        )),*]
+    };
+}
+pub(super) use embedded;
+
+/// The names of embedded files, without their extension.
+pub fn embedded_names(files: &[(&'static str, &str)]) -> Vec<&'static str> {
+    files.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
+}
+
 /// The numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
 pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     let unreadable = SaveError::unreadable(folder);

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-use super::files::{check_format, parse, pretty, read_text, store_ron};
+use super::files::{check_format, embedded, embedded_names, parse, pretty, read_text, store_ron};
 use super::whole_file::write_new;
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
@@ -36,17 +36,7 @@ const FORMAT: u32 = 3;
 /// The preset that is used when none is named.
 pub const DEFAULT_PRESET: &str = "climb";
 
-/// Lists the shipped presets by their file names.
-macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
-        &[$((
-            concat!($name, ".ron"),
-            include_str!(concat!("../../assets/presets/", $name, ".ron")),
-        )),*]
-    };
-}
-
-const SHIPPED: &[(&str, &str)] = shipped![
+const SHIPPED: &[(&str, &str)] = embedded!["presets";
     "climb",
     "report",
     "steady",
@@ -83,7 +73,7 @@ pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
 
 /// The names of the shipped presets, the default first.
 pub fn shipped_preset_names() -> Vec<&'static str> {
-    SHIPPED.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
+    embedded_names(SHIPPED)
 }
 
 /// Loads a preset by the name of a shipped one, or by the path of a file.

@@ -277,14 +277,12 @@ pub fn parse_evaluations(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evolve::Settings;
-
-    fn record() -> GenerationRecord {
-        GenerationRecord {
-            generation: 1,
-            evaluations: 5,
+impl GenerationRecord {
+    /// A generation of this number of healthy individuals, of which nothing else is known.
+    pub(crate) fn of_test(generation: u32, evaluations: u32) -> Self {
+        Self {
+            generation,
+            evaluations,
             disqualified: 0,
             crashed: 0,
             on_landing: 0,
@@ -296,6 +294,16 @@ mod tests {
             hash: "0123456789abcdef".to_owned(),
             elapsed_s: 1.0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+
+    fn record() -> GenerationRecord {
+        GenerationRecord::of_test(1, 5)
     }
 
     /// A log of this generation, read again.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::SaveError;
-use super::files::{Header, parse, read_text};
+use super::files::{Header, embedded, embedded_names, parse, read_text};
 use crate::check::{self, Invalid, quoted, within};
 use crate::schema;
 use crate::world::Stairs;
@@ -21,8 +21,7 @@ pub struct NamedStairs {
     pub stairs: Stairs,
 }
 
-/// The whole file. Once released, it never changes.
-/// The header has been checked before.
+/// The whole file, whose header is checked before. Once released, it never changes.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StairsFile {
@@ -40,17 +39,7 @@ const FORMAT: u32 = 1;
 /// Maximum length of a description, in bytes.
 const MAX_ABOUT_BYTES: usize = 2_000;
 
-/// Lists the built-in stairs by their file names.
-macro_rules! built_in {
-    ($($name:literal),* $(,)?) => {
-        &[$((
-            concat!($name, ".ron"),
-            include_str!(concat!("../../assets/stairs/", $name, ".ron")),
-        )),*]
-    };
-}
-
-const BUILT_IN: &[(&str, &str)] = built_in![
+const BUILT_IN: &[(&str, &str)] = embedded!["stairs";
     "house",
     "public",
     "garden",
@@ -72,7 +61,7 @@ pub fn built_in_stairs() -> Result<Vec<NamedStairs>, SaveError> {
 
 /// The names of the built-in stairs.
 pub fn built_in_stairs_names() -> Vec<&'static str> {
-    BUILT_IN.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
+    embedded_names(BUILT_IN)
 }
 
 /// Loads stairs by the name of built-in ones, or by the path of a file.

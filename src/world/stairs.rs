@@ -240,7 +240,7 @@ impl Stairs {
         let [x_m, y_m, z_m] = at_m;
         let climbed = self.steps_climbed(f64::from(y_m));
         // On a slope down the surface is below the last tread, and on one up the tread counts only from its end.
-        let least_z_m = self.surface_z_m(x_m, y_m).min(self.height_m(climbed));
+        let least_z_m = self.surface_after_m(climbed, y_m).min(self.height_m(climbed));
         let is_over = z_m >= least_z_m && x_m.abs() <= self.width_m / 2.0;
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
@@ -261,7 +261,11 @@ impl Stairs {
         if x_m.abs() > self.width_m / 2.0 || y_m > self.end_y_m() {
             return 0.0;
         }
-        let climbed = self.steps_climbed(f64::from(y_m));
+        self.surface_after_m(self.steps_climbed(f64::from(y_m)), y_m)
+    }
+
+    /// The same within the width, for a point with this number of steps behind it.
+    fn surface_after_m(&self, climbed: u32, y_m: f32) -> f32 {
         let below_m = self.height_m(climbed);
         if climbed == self.steps {
             return below_m;
@@ -315,6 +319,23 @@ impl Stairs {
 const REACH_TOLERANCE_M: f64 = 0.1;
 /// A mean this near the start is "starting position": Table 1's own -7.23 has no digits to spare.
 const START_TOLERANCE_M: f64 = 0.25;
+
+#[cfg(test)]
+impl Stairs {
+    /// Up by a slope, up by a riser with a nosing, down by a slope, down to the ground, up again.
+    pub(crate) fn uneven() -> Self {
+        let stairs = Self {
+            steps: 5,
+            rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
+            tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
+            slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
+            nosing_m: 0.2,
+            ..Self::default()
+        };
+        crate::schema::check(&stairs).expect("allowed");
+        stairs
+    }
+}
 
 #[cfg(test)]
 mod tests {

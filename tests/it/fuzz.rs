@@ -207,6 +207,10 @@ fn every_graph_of_nodes_gives_a_creature_or_one_line() {
 #[test]
 fn every_preset_file_gives_a_preset_or_one_line() {
     read_corpus("preset", parse_preset);
+}
+
+#[test]
+fn every_file_of_stairs_gives_stairs_that_can_be_built_or_one_line() {
     read_corpus("stairs", |path, text| {
         parse_stairs(path, text).map(|named| {
             for solid in named.stairs.solids() {

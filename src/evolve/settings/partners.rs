@@ -1,4 +1,4 @@
-//! Which strategies go with which controllers.
+//! Which strategies go with which controllers, and which with a ladder.
 //!
 //! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
 //! needs genomes that grow: each of these goes with certain kinds of controllers, and these kinds with nothing else.
@@ -18,6 +18,11 @@ impl StrategyKind {
         let is_partner = |kind: Self| kind.info().only_controllers.contains(&controller);
         is_partner(self)
             || self.info().only_controllers.is_empty() && !Self::ALL.into_iter().any(is_partner)
+    }
+
+    /// Whether it compares only snakes of one generation, which have the same stairs on a ladder.
+    pub fn climbs_ladders(self) -> bool {
+        matches!(self, Self::CmaEs | Self::Ga)
     }
 
     /// The kinds of controllers that the strategy can improve.

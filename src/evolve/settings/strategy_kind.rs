@@ -75,11 +75,6 @@ macro_rules! strategy_kinds {
         pub enum StrategyKind { $($(#[$meta])* $kind,)* }
 
         impl StrategyKind {
-    /// Whether it compares only snakes of one generation, which have the same stairs on a ladder.
-    pub fn climbs_ladders(self) -> bool {
-        matches!(self, Self::CmaEs | Self::Ga)
-    }
-
             /// All of them, the report's first.
             pub const ALL: [Self; [$(Self::$kind),*].len()] = [$(Self::$kind),*];
 

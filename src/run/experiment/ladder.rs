@@ -122,18 +122,8 @@ mod tests {
         let mut settings = Settings::default();
         settings.evolution.ladder = LadderSettings { first_rise_m: 0.4, ..Default::default() };
         let record = |generation, rise_m, successes| GenerationRecord {
-            generation,
-            evaluations: 10,
-            disqualified: 0,
-            crashed: 0,
-            on_landing: 0,
-            first_on_landing: None,
-            statistics: None,
-            chosen_by: None,
-            species: Vec::new(),
             rung: Some(Rung { rise_m, successes }),
-            hash: "0123456789abcdef".to_owned(),
-            elapsed_s: 1.0,
+            ..GenerationRecord::of_test(generation, 10)
         };
         let log = [record(1, 0.4, 9), record(2, 0.45, 0)];
         let after = Ladder::after(&settings, &log).expect("allowed").expect("a ladder");

@@ -176,18 +176,9 @@ fn strip(stairs: &Stairs, start_m: f32) -> MeshBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::PerPart;
 
     fn samples() -> [Stairs; 3] {
-        let uneven = Stairs {
-            steps: 5,
-            rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
-            tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
-            slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
-            nosing_m: 0.2,
-            ..Stairs::default()
-        };
-        [Stairs::default(), Stairs { nosing_m: 0.3, ..Stairs::default() }, uneven]
+        [Stairs::default(), Stairs { nosing_m: 0.3, ..Stairs::default() }, Stairs::uneven()]
     }
 
     #[test]

@@ -140,7 +140,6 @@ impl Stairs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::{PerPart, check};
 
     #[test]
     fn ten_boxes_rise_by_half_a_metre_every_two_metres() {
@@ -153,23 +152,9 @@ mod tests {
         assert_eq!(boxes[9].max_m[1], 37.0, "the landing belongs to the last step");
     }
 
-    /// Up by a slope, up by a riser with a nosing, down by a slope, down to the ground, up again.
-    fn varied() -> Stairs {
-        let stairs = Stairs {
-            steps: 5,
-            rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
-            tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
-            slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
-            nosing_m: 0.2,
-            ..Stairs::default()
-        };
-        check(&stairs).expect("allowed");
-        stairs
-    }
-
     #[test]
     fn the_surface_lies_on_the_solids() {
-        let stairs = varied();
+        let stairs = Stairs::uneven();
         let solids = stairs.solids();
         assert_eq!(solids.iter().filter(|of| of.pose.rotation != Rotation::IDENTITY).count(), 2);
         for number in 0..1600_i16 {
@@ -188,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_point_above_the_surface_is_over_the_stairs_and_beyond_a_first_ramp_over_steps() {
-        let stairs = varied();
+        let stairs = Stairs::uneven();
         for number in 0..1400_i16 {
             let y_m = 3.0 + f32::from(number) * 0.01 + 0.003;
             let at = [0.0, y_m, stairs.surface_z_m(0.0, y_m) + 0.3];
@@ -205,7 +190,7 @@ mod tests {
 
     #[test]
     fn boards_of_slopes_end_inside_the_boxes_around_them() {
-        let stairs = varied();
+        let stairs = Stairs::uneven();
         let boxes = stairs.boxes();
         for board in stairs.solids().into_iter().skip(boxes.len()) {
             for along in [1.0, -1.0] {
@@ -232,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_tread_at_the_level_of_the_ground_has_no_box() {
-        let stairs = varied();
+        let stairs = Stairs::uneven();
         assert_eq!(stairs.height_m(4), 0.0);
         assert!(stairs.boxes().iter().all(|of| of.step != 3));
     }
