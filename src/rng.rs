@@ -42,6 +42,10 @@ pub enum Purpose {
     StairNoise = 14,
     /// Drawing the held-out staircases of the exam, which no run may use.
     HeldOutStairs = 15,
+    /// Drawing mutants of stairs.
+    StairsMutation = 16,
+    /// Drawing the seed of a pair's search.
+    Pair = 17,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

@@ -23,7 +23,7 @@ use super::outcome::Outcome;
 use super::wire::{TaskKind, line_of, shared_hash};
 use crate::genome::Genome;
 use crate::run::headless::say;
-use crate::run::{Cancelled, EvaluationResult, Evaluator, RunControl, WorkersError};
+use crate::run::{Cancelled, EvaluationResult, Evaluator, Job, RunControl, WorkersError};
 use crate::score::{ExamCondition, ExamEnd, Trial};
 use actor::{CoordinatorCommand, run_actor};
 use ledger::CallId;
@@ -83,6 +83,8 @@ pub struct SharedTexts(Mutex<BTreeMap<u64, (u64, Arc<str>)>>);
 
 /// Maximum number of texts that are kept after the calls that used them.
 const MOST_SHARED: usize = 256;
+/// Maximum number of calls of one batch at the same time.
+const MOST_CALLS: usize = 32;
 /// Interval at which a waiting call looks at its control.
 const CONTROL_INTERVAL: Duration = Duration::from_millis(50);
 /// How long the end of a run waits for checks of its last results.
@@ -278,19 +280,39 @@ impl Drop for Inner {
 }
 
 impl Evaluator for Coordinator {
-    fn evaluate_batch(
+    /// Opens a call for each trial, several at the same time, so that workers need not wait for the last job of a trial.
+    fn evaluate_jobs(
         &self,
-        trial: &Trial,
-        genomes: &[&Genome],
+        trials: &[Trial],
+        jobs: &[Job<'_>],
         control: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
-        let tasks = genomes.iter().copied().map(line_of).collect();
-        self.call(TaskKind::Score, line_of(trial), tasks, control, &|index, outcome| {
-            if let Outcome::Scored(result) = outcome {
-                report(index, result);
+        let mut of_trial: Vec<Vec<usize>> = vec![Vec::new(); trials.len()];
+        for (index, job) in jobs.iter().enumerate() {
+            of_trial[job.trial].push(index);
+        }
+        let evaluate = |(trial, indices): (&Trial, &Vec<usize>)| {
+            let tasks = indices.iter().map(|&index| line_of(jobs[index].genome)).collect();
+            self.call(TaskKind::Score, line_of(trial), tasks, control, &|task, outcome| {
+                if let (Some(&index), Outcome::Scored(result)) = (indices.get(task), outcome) {
+                    report(index, result);
+                }
+            })
+        };
+        let calls: Vec<_> = trials.iter().zip(&of_trial).collect();
+        for calls in calls.chunks(MOST_CALLS) {
+            match calls {
+                &[call] => evaluate(call)?,
+                calls => thread::scope(|scope| {
+                    let running: Vec<_> =
+                        calls.iter().map(|&call| scope.spawn(move || evaluate(call))).collect();
+                    // A call that panicked has reported nothing, and its genomes are evaluated by the caller.
+                    running.into_iter().try_for_each(|call| call.join().unwrap_or(Ok(())))
+                })?,
             }
-        })
+        }
+        Ok(())
     }
 
     fn examine_batch(

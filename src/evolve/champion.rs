@@ -31,6 +31,13 @@ impl Champion {
         [self.trial.stairs.highest_m(), self.chosen_by.unwrap_or(self.evaluation.fitness)]
     }
 
+    /// The same in a run whose stairs evolve: higher stairs come first only once a snake covers this share of their way.
+    pub fn rank_of_climbed(&self, solved: f32) -> [f32; 2] {
+        let [highest_m, fitness] = self.rank();
+        let is_climbed = self.evaluation.disqualified.is_none() && fitness >= solved;
+        [if is_climbed { highest_m } else { 0.0 }, fitness]
+    }
+
     /// A short description of its result: fitness, and where it ended.
     pub fn reached(&self) -> String {
         let score = self.score();

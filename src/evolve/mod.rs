@@ -7,6 +7,7 @@ mod champion;
 mod parents;
 mod plan;
 mod settings;
+mod stairs_tree;
 mod strategies;
 mod strategy;
 
@@ -22,8 +23,10 @@ pub use plan::{
 pub use settings::{
     BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
     HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, Mutation, NeatSettings,
-    NoveltySettings, ParentSelection, QLearningSettings, RestartKind, Settings, StrategyInfo,
-    StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field, with_fields,
+    NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind, Settings,
+    StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field,
+    with_fields,
 };
+pub use stairs_tree::{StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};
-pub use strategy::{Strategy, StrategyState, ranking};
+pub use strategy::{OwnStairs, Strategy, StrategyState, ranking};

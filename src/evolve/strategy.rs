@@ -1,5 +1,7 @@
 //! The interface of all strategies, and how a generation is ranked.
 
+use std::sync::Arc;
+
 use ron::ser::{PrettyConfig, to_string_pretty};
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
@@ -8,10 +10,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::archives::Archive;
 use super::parents::{IndividualId, Parents};
 use super::plan::RunPlan;
+use super::stairs_tree::StairsTree;
 use crate::check::Invalid;
 use crate::genome::Genome;
 use crate::learn::Episode;
-use crate::score::Evaluation;
+use crate::score::{Evaluation, Trial};
+use crate::world::Stairs;
 
 /// A way to search, one generation at a time.
 ///
@@ -37,6 +41,12 @@ pub trait Strategy: Send {
 
     /// Number of individuals in the next generation.
     fn population(&self) -> usize;
+
+    /// The stairs of each genome that `ask` returns, in the same order, for a strategy whose stairs evolve; empty if all are
+    /// evaluated in the trial of the run.
+    fn stairs(&self) -> Vec<OwnStairs> {
+        Vec::new()
+    }
 
     /// Learns from the evaluations of the genomes that the last `ask` returned, in the same order.
     fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
@@ -89,6 +99,29 @@ pub trait Strategy: Send {
     /// A copy of the archive of elites, if it keeps one.
     fn archive(&self) -> Option<Archive> {
         None
+    }
+
+    /// A copy of the tree of stairs, if stairs evolve.
+    fn stairs_tree(&self) -> Option<StairsTree> {
+        None
+    }
+}
+
+/// The stairs on which an individual is evaluated, if they are not those of its run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnStairs {
+    /// The stairs.
+    pub stairs: Arc<Stairs>,
+    /// Number of perturbed trials beside those of the run.
+    pub perturbed: u32,
+}
+
+impl OwnStairs {
+    /// A trial on these stairs.
+    pub fn on(&self, trial: &Trial) -> Trial {
+        let mut trial = Trial { stairs: (*self.stairs).clone(), ..trial.clone() };
+        trial.repeats.trials += self.perturbed;
+        trial
     }
 }
 

@@ -33,7 +33,9 @@ pub use kind::ControllerKind;
 pub use limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
 pub use network_space::{MOST_LIBRARY_WAVES, NetworkSpace};
 pub use space::{GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE};
-pub use stairs::{HELD_OUT_PER_CLASS, LANDING_M, StairsClass, StairsGenome, held_out};
+pub use stairs::{
+    HELD_OUT_PER_CLASS, LANDING_M, StairsChange, StairsClass, StairsGenome, held_out,
+};
 pub use wave_space::{
     FREQUENCY_RANGE_HZ, MOST_HARMONICS, SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD, WaveSpace,
 };

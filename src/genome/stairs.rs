@@ -1,16 +1,22 @@
-//! Stairs as a genome: a few numbers from which a staircase is built, and the held-out stairs of the exam.
+//! Stairs as a genome: a few numbers from which a staircase is built.
+
+mod classes;
+mod mutation;
+
+pub use classes::{HELD_OUT_PER_CLASS, StairsClass, held_out};
+pub use mutation::StairsChange;
 
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 use crate::check::{Invalid, within};
 use crate::rng::{Purpose, stream};
-use crate::schema::{PerPart, choices, number, setting_group, whole};
+use crate::schema::{PerPart, number, setting_group, whole};
 use crate::world::Stairs;
 
 setting_group! {
     /// The numbers from which a staircase is built. All lengths are of the mean step; a staircase without irregularities
     /// and features has equal steps.
+    #[derive(Copy)]
     pub struct StairsGenome {
         /// Number of steps.
         steps: u32 = 10,
@@ -147,55 +153,10 @@ fn lowered_m(height_m: f32, rise_m: f32) -> f32 {
     if height_m - rise_m < LEAST_RISE_M { height_m } else { rise_m }
 }
 
-choices! {
-    /// A class of held-out stairs.
-    pub enum StairsClass {
-        Equal = "equal", "Equal steps", "All steps have the same rise and tread.";
-        Irregular = "irregular", "Irregular steps", "Rises and treads deviate from the mean by up to 20 to 40 %.";
-        House = "house", "House stairs", "The rise is half to four fifths of the tread, as in houses.";
-        Nosing = "nosing", "Steps with nosing", "Each tread overhangs its riser by 0.1 to 0.3 m.";
-    }
-}
-
-/// Number of held-out staircases of each class.
-pub const HELD_OUT_PER_CLASS: u32 = 15;
-/// Seed of the held-out stairs.
-const HELD_OUT_SEED: u64 = 60;
-
-/// Held-out staircase number `number` of a class, from 0 to [`HELD_OUT_PER_CLASS`] less one. No run may learn on it.
-pub fn held_out(class: StairsClass, number: u32) -> StairsGenome {
-    let mut rng = stream(HELD_OUT_SEED, class as u32, number, Purpose::HeldOutStairs);
-    let mut genome = StairsGenome {
-        steps: rng.random_range(6..=12),
-        rise_m: rng.random_range(0.2..=0.8),
-        tread_m: rng.random_range(1.0..=3.0),
-        noise_seed: rng.random_range(0..=0xff_ffff),
-        ..StairsGenome::default()
-    };
-    let mut draw = |from: f32, to: f32| drawn_between(&mut rng, from, to);
-    match class {
-        StairsClass::Equal => {}
-        StairsClass::Irregular => {
-            genome.rise_noise = draw(0.2, 0.4);
-            genome.tread_noise = draw(0.2, 0.4);
-        }
-        StairsClass::House => {
-            genome.tread_m = draw(0.6, 1.0);
-            genome.rise_m = genome.tread_m * draw(0.5, 0.8);
-        }
-        StairsClass::Nosing => genome.nosing_m = draw(0.1, 0.3),
-    }
-    genome
-}
-
-fn drawn_between(rng: &mut ChaCha8Rng, from: f32, to: f32) -> f32 {
-    rng.random_range(from..=to)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::{Choices, check};
+    use crate::schema::check;
 
     #[test]
     fn equal_steps_are_plain_stairs() {
@@ -208,7 +169,7 @@ mod tests {
         for number in 0..2000 {
             let steps = rng.random_range(3..=20);
             let down = rng.random_range(0..=steps / 2);
-            let mut draw = |from: f32, to: f32| drawn_between(&mut rng, from, to);
+            let mut draw = |from: f32, to: f32| rng.random_range(from..=to);
             let mut genome = StairsGenome {
                 steps,
                 down,
@@ -271,23 +232,5 @@ mod tests {
         let missing = refused(StairsGenome { missing: 10, ..plain() });
         assert_eq!(missing, "missing is 10; allowed: 0, or 2 to 9");
         assert!(refused(StairsGenome { rise_m: f32::NAN, ..plain() }).starts_with("rise_m is NaN"));
-    }
-
-    #[test]
-    fn the_sixty_held_out_staircases_are_allowed_and_differ() {
-        let mut seen: Vec<Stairs> = Vec::new();
-        for &class in StairsClass::OPTIONS {
-            for number in 0..HELD_OUT_PER_CLASS {
-                let genome = held_out(class, number);
-                check(&genome).expect("within the ranges");
-                let stairs = genome.stairs();
-                check(&stairs).expect("can be built");
-                let steepness = genome.rise_m / genome.tread_m;
-                assert!(class != StairsClass::House || (0.5..=0.8).contains(&steepness));
-                assert!(!seen.contains(&stairs));
-                seen.push(stairs);
-            }
-        }
-        assert_eq!(seen.len(), 60);
     }
 }

@@ -21,13 +21,34 @@ use crate::score::{ExamCondition, ExamEnd, Scored, Trial, score};
 /// The result of evaluating one genome; an error is the message of the panic in it.
 pub type EvaluationResult = Result<Scored, String>;
 
+/// A genome to evaluate, and its trial.
+#[derive(Debug, Clone, Copy)]
+pub struct Job<'a> {
+    /// The genome.
+    pub genome: &'a Genome,
+    /// Index of its trial in the list of the batch's trials.
+    pub trial: usize,
+}
+
 /// Evaluates batches of genomes, and examines champions.
 pub trait Evaluator: Debug + Send + Sync {
-    /// Evaluates each genome in `trial`, in any order, and calls `report` with its index and result as soon as that
-    /// is known. `report` may be called from several threads at once.
+    /// Evaluates each genome in its trial of `trials`, in any order, and calls `report` with its index and result as
+    /// soon as that is known. `report` may be called from several threads at once.
     ///
     /// Before each evaluation, an evaluator calls [`RunControl::wait_while_paused`]. A genome for which it reports
     /// nothing is evaluated by its caller: an evaluator that loses its workers may simply return.
+    ///
+    /// # Errors
+    /// [`Cancelled`], if `control` was.
+    fn evaluate_jobs(
+        &self,
+        trials: &[Trial],
+        jobs: &[Job<'_>],
+        control: &RunControl,
+        report: &(dyn Fn(usize, EvaluationResult) + Sync),
+    ) -> Result<(), Cancelled>;
+
+    /// As [`Self::evaluate_jobs`], with one trial for all genomes.
     ///
     /// # Errors
     /// [`Cancelled`], if `control` was.
@@ -37,7 +58,10 @@ pub trait Evaluator: Debug + Send + Sync {
         genomes: &[&Genome],
         control: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
-    ) -> Result<(), Cancelled>;
+    ) -> Result<(), Cancelled> {
+        let jobs: Vec<Job<'_>> = genomes.iter().map(|genome| Job { genome, trial: 0 }).collect();
+        self.evaluate_jobs(std::slice::from_ref(trial), &jobs, control, report)
+    }
 
     /// Simulates a genome in each condition of an exam, as [`Self::evaluate_batch`] does genomes in a trial. A
     /// simulation that panics counts as [`ExamEnd::CRASHED`].
@@ -136,17 +160,17 @@ impl LocalPool {
 }
 
 impl Evaluator for LocalPool {
-    fn evaluate_batch(
+    fn evaluate_jobs(
         &self,
-        trial: &Trial,
-        genomes: &[&Genome],
+        trials: &[Trial],
+        jobs: &[Job<'_>],
         control: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
         self.0.install(|| {
-            genomes.par_iter().enumerate().try_for_each(|(index, genome)| {
+            jobs.par_iter().enumerate().try_for_each(|(index, job)| {
                 control.wait_while_paused()?;
-                report(index, evaluate_caught(genome, trial));
+                report(index, evaluate_caught(job.genome, &trials[job.trial]));
                 Ok(())
             })
         })

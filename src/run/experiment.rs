@@ -3,6 +3,7 @@
 mod changes;
 mod choice;
 mod ladder;
+mod trials;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -11,14 +12,14 @@ use std::time::Instant;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::evaluator::{EvaluationResult, Evaluator, evaluate_caught};
+use super::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
 use super::lineage::{Ancestor, Ancestry, Generation, Lineage};
 use super::report::{EvaluatedGeneration, GenerationReport};
 use super::run_control::{Cancelled, RunControl};
 use crate::check::Invalid;
 use crate::evolve::{
-    Archive, Champion, Front, FrontMember, IndividualId, Origin, RunPlan, SettingChange, Strategy,
-    begin, ranking, resume,
+    Archive, Champion, Front, FrontMember, IndividualId, Origin, RunPlan, SettingChange,
+    StairsTree, Strategy, begin, ranking, resume,
 };
 use crate::genome::Genome;
 use crate::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
@@ -26,6 +27,7 @@ use crate::score::{Evaluation, Scored, Trial};
 use crate::world::Disqualification;
 use choice::choose_champion;
 use ladder::Ladder;
+pub use trials::GenerationTrials;
 
 /// A run, between two generations.
 pub struct Experiment {
@@ -151,6 +153,11 @@ impl Experiment {
         self.strategy.archive()
     }
 
+    /// A copy of the tree of stairs, if stairs evolve.
+    pub fn stairs_tree(&self) -> Option<StairsTree> {
+        self.strategy.stairs_tree()
+    }
+
     /// The best individuals of the last generation that this session has finished, the best first.
     pub fn leaders(&self) -> &[Champion] {
         &self.leaders
@@ -234,8 +241,9 @@ impl Experiment {
         let generation = self.finished + 1;
         let (genomes, parents) = (self.strategy.ask(), self.strategy.parents());
         let record = |individual, evaluation: &_| record(generation, individual, evaluation);
-        let trial = self.trial_in(generation);
-        let results = self.evaluate(&genomes, &trial, evaluator, control, &record)?;
+        let stairs = self.strategy.stairs();
+        let trials = GenerationTrials::new(self.trial_in(generation), &stairs);
+        let results = self.evaluate(&genomes, &trials, evaluator, control, &record)?;
         let (mut evaluations, mut episodes, mut messages) = (Vec::new(), Vec::new(), Vec::new());
         for result in results {
             let (scored, message) = match result {
@@ -255,22 +263,35 @@ impl Experiment {
         let evaluated = EvaluatedGeneration {
             plan: &self.plan,
             generation,
-            trial: &trial,
-            rung: self.ladder.as_ref().map(|ladder| ladder.rung_of(&evaluations, &trial)),
+            trials: &trials,
+            rung: self.ladder.as_ref().map(|ladder| ladder.rung_of(&evaluations, &trials.common)),
             genomes: &genomes,
             evaluations: &evaluations,
             species: &bands,
         };
-        let champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
-        let report = evaluated.report(champion, messages, started.elapsed());
+        if trials.are_own() {
+            // The best on stairs that they climb, the highest first.
+            let rank = |index: usize| self.rank(&evaluated.individual(index));
+            let ranks: Vec<[f32; 2]> = (0..genomes.len()).map(rank).collect();
+            ranking.sort_by(|&a, &b| {
+                ranks[b].partial_cmp(&ranks[a]).unwrap_or(std::cmp::Ordering::Equal)
+            });
+        }
+        let mut champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
+        if trials.are_own() {
+            // There are thousands of generations. Those that are better than all before are enough.
+            champion = champion.filter(|champion| self.is_better(champion));
+        }
+        let mut report = evaluated.report(champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();
 
         for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
-            if !self.strategy.may_be_champion(index) {
+            // Distances on different stairs cannot be compared.
+            if trials.are_own() || !self.strategy.may_be_champion(index) {
                 continue;
             }
-            let start_y_m = trial.middle_start_y_m(genome);
+            let start_y_m = trials.common.middle_start_y_m(genome);
             // Clone only the few genomes that enter the front.
             if self.front.accepts(genome, evaluation, start_y_m) {
                 let (genome, evaluation) = (genome.clone(), *evaluation);
@@ -281,6 +302,7 @@ impl Experiment {
         }
         self.strategy.learn(episodes);
         self.strategy.tell(&genomes, &evaluations);
+        report.set_stairs(self.strategy.stairs_tree().as_ref());
         self.finished = generation;
         if let Some((ladder, rung)) = self.ladder.as_mut().zip(report.rung) {
             self.strategy.forget_values();
@@ -296,7 +318,7 @@ impl Experiment {
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());
         let genomes = genomes.into_iter().map(Arc::new).collect();
-        self.remember(Generation { number: generation, genomes, evaluations, parents });
+        self.remember(Generation { number: generation, genomes, evaluations, parents, stairs });
         Ok(report)
     }
 
@@ -305,7 +327,7 @@ impl Experiment {
     fn evaluate(
         &self,
         genomes: &[Genome],
-        trial: &Trial,
+        trials: &GenerationTrials,
         evaluator: &dyn Evaluator,
         control: &RunControl,
         record: &(dyn Fn(u32, &Evaluation) + Sync),
@@ -333,8 +355,9 @@ impl Experiment {
             }
             control.count_one();
         };
-        let jobs: Vec<&Genome> = unknown.iter().map(|&index| &genomes[index]).collect();
-        evaluator.evaluate_batch(trial, &jobs, control, &|job, result| {
+        let job = |&index: &usize| Job { genome: &genomes[index], trial: trials.index_of(index) };
+        let jobs: Vec<Job<'_>> = unknown.iter().map(job).collect();
+        evaluator.evaluate_jobs(&trials.all, &jobs, control, &|job, result| {
             if let Some(&index) = unknown.get(job) {
                 store(index, result);
             }
@@ -342,7 +365,7 @@ impl Experiment {
         for &index in &unknown {
             if results[index].get().is_none() {
                 control.wait_while_paused()?;
-                store(index, evaluate_caught(&genomes[index], trial));
+                store(index, evaluate_caught(&genomes[index], trials.of(index)));
             }
         }
         Ok(results.into_iter().filter_map(OnceLock::into_inner).collect())
@@ -365,9 +388,24 @@ impl Experiment {
         self.generation = Some(Arc::new(generation));
     }
 
+    /// The numbers by which champions of this run are compared: the greater are the better one.
+    fn rank(&self, champion: &Champion) -> [f32; 2] {
+        let settings = &self.plan.settings.evolution;
+        if settings.strategy.info().evolves_stairs {
+            champion.rank_of_climbed(settings.poet.solved)
+        } else {
+            champion.rank()
+        }
+    }
+
+    /// Whether a champion is better than all before.
+    fn is_better(&self, candidate: &Champion) -> bool {
+        self.best.as_ref().is_none_or(|best| self.rank(candidate) > self.rank(best))
+    }
+
     fn keep_if_better(&mut self, candidate: Option<&Champion>) {
         if let Some(candidate) = candidate
-            && self.best.as_ref().is_none_or(|best| candidate.rank() > best.rank())
+            && self.is_better(candidate)
         {
             self.best = Some(candidate.clone());
         }

@@ -12,7 +12,7 @@ use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::{Champion, RunPlan, SettingChange};
-use crate::save::{Rung, SaveError, SpeciesCount};
+use crate::save::{Rung, SaveError, SpeciesCount, StairsCount};
 
 /// A headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -268,6 +268,11 @@ fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
     if let Some(Rung { rise_m, successes }) = report.rung {
         line["rung"] = json!({"rise_m": short(rise_m), "successes": successes});
     }
+    if let Some(StairsCount { rounds, all, active, solved, challenges }) = report.stairs {
+        line["stairs"] = json!({
+            "rounds": rounds, "all": all, "active": active, "solved": solved, "challenges": challenges,
+        });
+    }
     line
 }
 
@@ -306,6 +311,7 @@ mod tests {
             on_landing: 0,
             first_on_landing: None,
             rung: None,
+            stairs: None,
             statistics: Some(statistics),
             species: Vec::new(),
             meaning: "starting position".to_owned(),

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::evolve::{IndividualId, Parents, ranking};
+use crate::evolve::{IndividualId, OwnStairs, Parents, ranking};
 use crate::genome::Genome;
 use crate::save::{IndividualRecord, LineageRecord, MAX_SPREAD};
 use crate::score::Evaluation;
@@ -19,6 +19,8 @@ pub struct Generation {
     pub evaluations: Vec<Evaluation>,
     /// Their parents.
     pub parents: Vec<Parents>,
+    /// Their stairs; empty if all have those of their run.
+    pub stairs: Vec<OwnStairs>,
 }
 
 /// An individual that has, or may have, descendants.
@@ -191,7 +193,8 @@ mod tests {
                 .collect();
             strategy.tell(&genomes, &evaluations);
             let genomes = genomes.into_iter().map(Arc::new).collect();
-            let generation = Generation { number, genomes, evaluations, parents };
+            let generation =
+                Generation { number, genomes, evaluations, parents, stairs: Vec::new() };
             let champion = IndividualId { generation: number, individual: *best as u32 };
             let parent_pool = strategy.parent_pool();
             records.push(lineage.add(&generation, &parent_pool, Some(champion)));
@@ -233,8 +236,13 @@ mod tests {
     fn the_fitness_sample_includes_the_least_and_the_greatest() {
         let evaluations: Vec<Evaluation> =
             (0..100).map(|i| Evaluation::of_fitness(i as f32)).collect();
-        let generation =
-            Generation { number: 1, genomes: Vec::new(), evaluations, parents: Vec::new() };
+        let generation = Generation {
+            number: 1,
+            genomes: Vec::new(),
+            evaluations,
+            parents: Vec::new(),
+            stairs: Vec::new(),
+        };
         let spread = generation.spread();
         assert_eq!(spread.len(), MAX_SPREAD);
         assert_eq!((spread.first(), spread.last()), (Some(&0.0), Some(&99.0)));

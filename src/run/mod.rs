@@ -37,7 +37,7 @@ mod whole_runs;
 pub use background::{BackgroundRun, Exploration, OpenedRun, RunEvent};
 pub use background_task::{BackgroundTask, TaskProgress};
 pub use evaluator::{
-    EvaluationResult, Evaluator, LocalPool, THREADS_RANGE, WorkersError, available_cores,
+    EvaluationResult, Evaluator, Job, LocalPool, THREADS_RANGE, WorkersError, available_cores,
     evaluate_caught, examine_caught,
 };
 pub use experiment::Experiment;

@@ -6,9 +6,12 @@ use std::time::Duration;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use crate::evolve::{Champion, Origin, RunPlan};
+use super::experiment::GenerationTrials;
+use crate::evolve::{Champion, Origin, RunPlan, StairsTree};
 use crate::genome::Genome;
-use crate::save::{GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StatisticsRecord};
+use crate::save::{
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
+};
 use crate::score::{Evaluation, Trial};
 use crate::world::Disqualification;
 
@@ -27,12 +30,15 @@ pub struct GenerationReport {
     pub crashed: u32,
     /// The first few of these.
     pub crashes: Vec<Crash>,
-    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads.
+    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads, and where stairs
+    /// evolve, of their own.
     pub on_landing: u32,
     /// The index of the first of them.
     pub first_on_landing: Option<u32>,
     /// The rung of the ladder on which it was evaluated; none without a ladder.
     pub rung: Option<Rung>,
+    /// Numbers of the stairs after it; none unless stairs evolve.
+    pub stairs: Option<StairsCount>,
     /// Fitness statistics over the healthy ones; none if all were disqualified.
     pub statistics: Option<Statistics>,
     /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
@@ -65,8 +71,8 @@ pub(super) struct EvaluatedGeneration<'a> {
     pub plan: &'a RunPlan,
     /// Its number; the first is 1.
     pub generation: u32,
-    /// The trial of all its individuals.
-    pub trial: &'a Trial,
+    /// The trials of its individuals.
+    pub trials: &'a GenerationTrials,
     /// The rung of the ladder on which it was evaluated; none without a ladder.
     pub rung: Option<Rung>,
     /// In the order of the individuals, as the evaluations.
@@ -81,7 +87,7 @@ impl EvaluatedGeneration<'_> {
     pub fn individual(&self, index: usize) -> Champion {
         Champion {
             genome: self.genomes[index].clone(),
-            trial: self.trial.clone(),
+            trial: self.trials.of(index).clone(),
             evaluation: self.evaluations[index],
             chosen_by: None,
             origin: Origin {
@@ -100,18 +106,20 @@ impl EvaluatedGeneration<'_> {
         messages: Vec<Option<String>>,
         elapsed: Duration,
     ) -> GenerationReport {
-        let (evaluations, trial) = (self.evaluations, self.trial);
+        let (evaluations, trial) = (self.evaluations, &self.trials.common);
         let is_goal = trial.stairs == self.plan.settings.trial.stairs;
         let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
             Some(Crash { individual: self.individual(index), message: message? })
         });
         let reasons = reasons(evaluations);
         let statistics = Statistics::of(evaluations);
-        let landed = |evaluation: &&Evaluation| is_goal && evaluation.is_on_landing(&trial.stairs);
-        let first_on_landing = evaluations.iter().position(|e| landed(&e));
+        let landed = |index: &usize| {
+            is_goal && evaluations[*index].is_on_landing(&self.trials.of(*index).stairs)
+        };
+        let first_on_landing = (0..evaluations.len()).find(landed);
         GenerationReport {
             generation: self.generation,
-            on_landing: evaluations.iter().filter(landed).count() as u32,
+            on_landing: (0..evaluations.len()).filter(landed).count() as u32,
             first_on_landing: first_on_landing.map(|index| index as u32),
             evaluations: evaluations.len() as u32,
             disqualified: reasons.values().sum(),
@@ -119,6 +127,7 @@ impl EvaluatedGeneration<'_> {
             reasons,
             crashes: crashes.take(MAX_CRASHES).collect(),
             rung: self.rung,
+            stairs: None,
             statistics,
             species: species(self.species, evaluations),
             meaning: meaning(statistics.as_ref(), trial, self.rung),
@@ -130,6 +139,14 @@ impl EvaluatedGeneration<'_> {
 }
 
 impl GenerationReport {
+    /// Adds the numbers of the stairs that evolve, if they do.
+    pub fn set_stairs(&mut self, tree: Option<&StairsTree>) {
+        self.stairs = tree.map(StairsCount::of);
+        if let Some(count) = self.stairs {
+            self.meaning = count.words();
+        }
+    }
+
     /// This report as a line of the log.
     pub fn record(&self) -> GenerationRecord {
         GenerationRecord {
@@ -157,6 +174,7 @@ impl GenerationReport {
             chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
             species: self.species.clone(),
             rung: self.rung,
+            stairs: self.stairs,
             hash: format!("{:016x}", self.hash),
             elapsed_s: self.elapsed_s,
         }
@@ -180,9 +198,13 @@ impl GenerationReport {
             on_landing: record.on_landing,
             first_on_landing: record.first_on_landing,
             rung: record.rung,
+            stairs: record.stairs,
             statistics,
             species: record.species.clone(),
-            meaning: meaning(statistics.as_ref(), trial, record.rung),
+            meaning: match record.stairs {
+                Some(count) => count.words(),
+                None => meaning(statistics.as_ref(), trial, record.rung),
+            },
             // Reading the log has checked it.
             hash: record.generation_hash().unwrap_or(0),
             elapsed_s: record.elapsed_s,

@@ -116,8 +116,12 @@ pub fn has_generations_left(plan: &RunPlan, records: &[GenerationRecord]) -> boo
         let last = records.last().map_or(0, |last| u64::from(last.evaluations));
         // Those of islands shrink, to two islands in the end.
         let least = 2 * u64::from(evolution.islands.candidates);
-        let shrinks = evolution.strategy == StrategyKind::Islands;
-        let next = if shrinks { last.min(least) } else { last };
+        let next = match evolution.strategy {
+            StrategyKind::Islands => last.min(least),
+            // Theirs vary; only the state says what comes next.
+            kind if kind.info().evolves_stairs => 1,
+            _ => last,
+        };
         if spent + next > plan.budget() {
             return false;
         }

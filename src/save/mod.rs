@@ -74,7 +74,7 @@ pub use preset::{
 };
 pub use preset_list::PresetList;
 pub use record::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StatisticsRecord,
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
     generations_hash, load_log, parse_evaluations, parse_records,
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};

@@ -12,7 +12,7 @@ use super::log::{parse_log, read_log_bytes};
 use super::run_name::fingerprint;
 use super::v5::RecordedV5;
 use crate::check::{Invalid, within};
-use crate::evolve::RunPlan;
+use crate::evolve::{RunPlan, StairsTree};
 use crate::score::{Evaluation, FITNESS_RANGE, Trial};
 use crate::world::Disqualification;
 
@@ -47,6 +47,9 @@ pub struct GenerationRecord {
     /// The rung of the ladder on which it was evaluated; none without a ladder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rung: Option<Rung>,
+    /// Numbers of the stairs after it; none unless stairs evolve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stairs: Option<StairsCount>,
     /// Hash over the bits of every evaluation, in 16 hexadecimal digits.
     pub hash: String,
     /// Wall-clock time since the generation began or the program was started, in seconds.
@@ -87,6 +90,50 @@ impl Rung {
     pub fn on(&self, mut trial: Trial) -> Trial {
         trial.stairs.rise_m = self.rise_m.into();
         trial
+    }
+}
+
+/// Numbers of the stairs of a run whose stairs evolve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StairsCount {
+    /// Finished rounds.
+    pub rounds: u32,
+    /// All stairs so far.
+    pub all: u32,
+    /// Stairs whose snakes still learn.
+    pub active: u32,
+    /// Stairs that were solved.
+    pub solved: u32,
+    /// Solved stairs that were neither too easy nor too hard for any snake when they came (ANNECS).
+    pub challenges: u32,
+}
+
+impl StairsCount {
+    /// The numbers of a tree.
+    pub fn of(tree: &StairsTree) -> Self {
+        Self {
+            rounds: tree.rounds,
+            all: tree.nodes.len() as u32,
+            active: tree.active() as u32,
+            solved: tree.nodes.iter().filter(|node| node.solved.is_some()).count() as u32,
+            challenges: tree.solved_challenges() as u32,
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> String {
+        let Self { rounds, all, active, solved, challenges } = self;
+        format!(
+            "round {}, {all} stairs, {active} active, {solved} solved, {challenges} new challenges",
+            rounds + 1
+        )
+    }
+
+    fn check(self) -> Result<(), Invalid> {
+        within("stairs.active", self.active, 0..=self.all)?;
+        within("stairs.solved", self.solved, 0..=self.all)?;
+        within("stairs.challenges", self.challenges, 0..=self.solved)
     }
 }
 
@@ -212,6 +259,7 @@ pub fn parse_records(
             within("rung.rise_m", rise_m, 0.0..=5.0)?;
             within("rung.successes", successes, 0..=record.evaluations)?;
         }
+        record.stairs.map_or(Ok(()), StairsCount::check)?;
         hash_of("hash", &record.hash).map(drop)
     };
     let checked = records.iter().zip(1..).try_for_each(check);
@@ -291,6 +339,7 @@ impl GenerationRecord {
             chosen_by: None,
             species: Vec::new(),
             rung: None,
+            stairs: None,
             hash: "0123456789abcdef".to_owned(),
             elapsed_s: 1.0,
         }

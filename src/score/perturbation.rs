@@ -5,8 +5,9 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
-use crate::schema::{is_default, number, setting_group};
-use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Vector, WorldPlan};
+use crate::genome::StairsGenome;
+use crate::schema::{check, choice, choices, is_default, number, setting_group};
+use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Stairs, Vector, WorldPlan};
 
 setting_group! {
     /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
@@ -72,6 +73,24 @@ setting_group! {
                      trial, backwards, to either side or upwards",
                 )
                 .slider(0.0, 5.0);
+
+        /// The stairs of the other trials.
+        #[serde(default, skip_serializing_if = "is_default")]
+        stairs: StairsVariation = StairsVariation::Own,
+            choice("Stairs of the variations").advanced()
+                .hint("Whether the varied trials stand on the stairs of the trial or on any others");
+    }
+}
+
+choices! {
+    /// The stairs of perturbed trials.
+    #[derive(Default)]
+    pub enum StairsVariation {
+        #[default]
+        Own = "own", "Those of the trial", "The varied trials have the stairs of the trial, higher or deeper at most.";
+        /// See [`StairsGenome::random`].
+        Drawn = "drawn", "Any others",
+            "Each varied trial has stairs of its own: equal, irregular, steep as in a house, or with nosing.";
     }
 }
 
@@ -93,6 +112,7 @@ impl PerturbationRange {
                 let moment_s = [0.2, 0.6].map(|share| share * duration_s);
                 draw_shove(change_m_s, moment_s, limbs, rng)
             }),
+            stairs: (self.stairs == StairsVariation::Drawn).then(|| StairsGenome::random(rng)),
         }
     }
 }
@@ -133,6 +153,9 @@ pub struct Perturbation {
     pub step_rate: f32,
     /// A shove on the way.
     pub shove: Option<Shove>,
+    /// Other stairs than those of the trial; the factors apply to them as well.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stairs: Option<StairsGenome>,
 }
 
 /// No deviation.
@@ -148,6 +171,7 @@ impl Default for Perturbation {
             tread: 1.0,
             step_rate: 1.0,
             shove: None,
+            stairs: None,
         }
     }
 }
@@ -170,6 +194,7 @@ impl Perturbation {
         within("ahead_m", self.ahead_m, -10.0..=10.0)?;
         within("aside_m", self.aside_m, -10.0..=10.0)?;
         within("turn_rad", self.turn_rad, -4.0..=4.0)?;
+        self.stairs.map_or(Ok(()), |stairs| check(&stairs).map_err(|e| e.inside("stairs")))?;
         self.shove.map_or(Ok(()), |shove| shove.check().map_err(|error| error.inside("shove")))
     }
 
@@ -177,6 +202,10 @@ impl Perturbation {
     pub fn apply(&self, plan: &mut WorldPlan) {
         plan.surface.friction *= self.friction;
         plan.ground.friction *= self.friction;
+        if let Some(stairs) = &self.stairs {
+            let Stairs { first_riser_y_m, landing_m, .. } = plan.stairs;
+            plan.stairs = Stairs { first_riser_y_m, landing_m, ..stairs.stairs() };
+        }
         plan.stairs.rise_m = plan.stairs.rise_m.map(|rise_m| rise_m * self.rise);
         for limb in &mut plan.body.parts {
             limb.density_kg_m3 *= self.density;
@@ -232,6 +261,33 @@ mod tests {
         let limbs: BTreeSet<usize> = drawn.iter().map(|p| shove(p).limb).collect();
         assert_eq!(limbs, BTreeSet::from([0, 1, 2, 3, 4]));
         assert!(drawn.iter().all(|p| shove(p).change_m_s.y <= 0.0 && shove(p).change_m_s.z >= 0.0));
+    }
+
+    #[test]
+    fn a_perturbed_world_may_have_any_stairs() {
+        let range = PerturbationRange {
+            stairs: StairsVariation::Drawn,
+            rise: 0.0,
+            ..PerturbationRange::default()
+        };
+        let trial = Trial::default();
+        let genome = GenomeSpace::default()
+            .random_genome(trial.genome_shape(), &mut stream(1, 1, 0, Purpose::Birth));
+        let mut steps = BTreeSet::new();
+        for number in 0..50 {
+            let drawn = range.draw(10.0, 5, &mut stream(number, 0, 0, Purpose::Stairs));
+            drawn.check().expect("allowed");
+            let mut plan = trial.world_plan(&genome);
+            drawn.apply(&mut plan);
+            check(&plan.stairs).expect("can be built");
+            assert_eq!(plan.stairs.first_riser_y_m, trial.stairs.first_riser_y_m);
+            let expected = drawn.stairs.expect("drawn").stairs();
+            assert_eq!(plan.stairs.rise_m, expected.rise_m);
+            steps.insert(plan.stairs.steps);
+        }
+        assert!(steps.len() > 4);
+        let own = PerturbationRange::default().draw(10.0, 5, &mut stream(1, 0, 0, Purpose::Stairs));
+        assert_eq!(own.stairs, None);
     }
 
     #[test]

@@ -77,13 +77,18 @@ impl Settings {
 impl Settings {
     /// Makes a strategy that varies bodies small enough for a test, and lets bodies evolve.
     #[cfg(test)]
-    pub(crate) fn let_bodies_vary_as_the_strategy_does(&mut self) {
+    pub(crate) fn suit_to_strategy(&mut self) {
         self.genome.bodies.vary = self.evolution.strategy.info().varies_bodies;
         self.genome.bodies.limbs_max = 3;
         self.evolution.islands.candidates = 4;
         if !self.genome.bodies.vary {
             self.genome.bodies = Default::default();
             self.evolution.islands = Default::default();
+        }
+        if self.evolution.strategy.info().evolves_stairs {
+            self.trial.fitness = crate::score::Fitness::Share;
+            let poet = &mut self.evolution.poet;
+            (poet.candidates, poet.iterations, poet.transfers) = (4, 1, 1);
         }
     }
 }

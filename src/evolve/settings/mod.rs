@@ -13,6 +13,7 @@ mod map_elites;
 mod neat;
 mod novelty;
 mod partners;
+mod poet;
 mod size;
 mod strategy_kind;
 
@@ -27,6 +28,7 @@ pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRu
 pub use map_elites::MapElitesSettings;
 pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
+pub use poet::PoetSettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::{StrategyInfo, StrategyKind};
 
@@ -96,6 +98,9 @@ setting_group! {
         /// The genetic algorithm over creatures.
         #[serde(default, skip_serializing_if = "is_default")]
         creature_ga: CreatureGaSettings = CreatureGaSettings::default();
+        /// POET.
+        #[serde(default, skip_serializing_if = "is_default")]
+        poet: PoetSettings = PoetSettings::default();
         /// The ladder of stairs.
         #[serde(default, skip_serializing_if = "is_default")]
         ladder: LadderSettings = LadderSettings::default();
@@ -124,6 +129,7 @@ impl SettingGroup for EvolutionSettings {
             body_map_elites,
             islands,
             creature_ga,
+            poet,
             ladder,
             exploration,
         } = self;
@@ -143,7 +149,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 14] = [
+        let groups: [(&str, &mut dyn SettingGroup); 15] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -157,6 +163,7 @@ impl SettingGroup for EvolutionSettings {
             ("body_map_elites", body_map_elites),
             ("islands", islands),
             ("creature_ga", creature_ga),
+            ("poet", poet),
             ("exploration", exploration),
         ];
         for (name, group) in groups {
@@ -211,6 +218,10 @@ impl SettingGroup for Settings {
                 "evolution.ladder.patience",
             ]);
         }
+        let evolves_stairs = evolution.strategy.info().evolves_stairs;
+        if evolution.strategy == StrategyKind::BodyPoet {
+            unused.push("evolution.poet.first_step");
+        }
         walk.without_effect(unused);
         walk.group("evolution", evolution);
         walk.fixed(
@@ -225,6 +236,10 @@ impl SettingGroup for Settings {
                 "trial.agent.senses.balance",
             ]);
         }
+        if evolves_stairs {
+            // It begins on stairs of its own with the same steps and treads.
+            unused.extend(["trial.stairs.rise_m", "trial.stairs.nosing_m", "trial.stairs.slope_m"]);
+        }
         unused.extend(bodies::unused_of_body(&genome.bodies, &trial.agent));
         walk.without_effect(unused);
         walk.fixed(
@@ -237,6 +252,7 @@ impl SettingGroup for Settings {
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
         self.check_bodies()?;
+        self.check_fitness()?;
         let rises_m = &self.trial.stairs.rise_m;
         let strategy = self.evolution.strategy;
         self.evolution.ladder.check_with(strategy.name(), strategy.climbs_ladders(), rises_m)?;

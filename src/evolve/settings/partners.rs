@@ -7,6 +7,7 @@ use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
 use crate::schema::Choices;
+use crate::score::Fitness;
 
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
@@ -54,6 +55,9 @@ impl Settings {
         let partner = changes.iter().find(|(field, _)| *field == "evolution.strategy");
         let strategy = if field == "evolution.strategy" { named(text) } else { None };
         if let Some(strategy) = strategy.or_else(|| partner.and_then(|(_, text)| named(text))) {
+            if strategy.info().evolves_stairs && self.trial.fitness != Fitness::Share {
+                changes.push(("trial.fitness", Fitness::Share.name()));
+            }
             let varies = strategy.info().varies_bodies;
             if varies != self.genome.bodies.vary {
                 changes.push(("genome.bodies.vary", if varies { "true" } else { "false" }));
@@ -95,6 +99,18 @@ impl Settings {
             }
             _ => None,
         }
+    }
+
+    /// Checks that the fitness can be compared between stairs, if they evolve.
+    pub(super) fn check_fitness(&self) -> Result<(), Invalid> {
+        let (strategy, fitness) = (self.evolution.strategy, self.trial.fitness);
+        if !strategy.info().evolves_stairs || fitness == Fitness::Share {
+            return Ok(());
+        }
+        let allowed = format!(
+            "share with evolution.strategy {strategy}, whose stairs have different lengths"
+        );
+        Err(Invalid::new("trial.fitness", fitness, allowed))
     }
 
     /// Checks that the strategy can improve the controller.

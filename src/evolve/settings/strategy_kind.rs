@@ -39,6 +39,8 @@ pub struct StrategyInfo {
     pub varies_bodies: bool,
     /// Whether its individuals belong to species.
     pub has_species: bool,
+    /// Whether its individuals have stairs of their own, which evolve.
+    pub evolves_stairs: bool,
     /// Number of generations in a comparison, where more would not continue the search; none for any number.
     pub compared_generations: Option<u32>,
     /// Checks that its generations and its state fit into memory.
@@ -59,6 +61,7 @@ impl StrategyInfo {
         has_archive: false,
         varies_bodies: false,
         has_species: false,
+        evolves_stairs: false,
         compared_generations: None,
         check_size: |evolution, size| {
             size.check_population(evolution.population, LARGEST_GENERATION_GENES)
@@ -248,6 +251,31 @@ strategy_kinds! {
             let EvolutionSettings { population, generations, .. } = *evolution;
             evolution.islands.check_size([population, generations], size)
         },
+        ..StrategyInfo::PLAIN
+    };
+    /// Pairs of stairs and snakes.
+    Poet = StrategyInfo {
+        name: "poet",
+        title: "POET",
+        words: "The stairs evolve, too: each has a snake that learns to climb it, and snakes move to stairs that they climb better.",
+        color: [0x9a, 0x00, 0x50],
+        settings: &["poet"],
+        is_budget_driven: true,
+        evolves_stairs: true,
+        check_size: |evolution, size| evolution.poet.check_size(size),
+        ..StrategyInfo::PLAIN
+    };
+    /// Pairs of stairs and snakes whose bodies evolve.
+    BodyPoet = StrategyInfo {
+        name: "body_poet",
+        title: "POET with bodies",
+        words: "POET whose snakes also change their bodies; the genetic algorithm over bodies makes their children.",
+        color: [0xb0, 0xb0, 0x00],
+        settings: &["poet", "body_ga"],
+        is_budget_driven: true,
+        evolves_stairs: true,
+        varies_bodies: true,
+        check_size: |evolution, size| evolution.poet.check_size(size),
         ..StrategyInfo::PLAIN
     };
     /// A genetic algorithm over graphs that grow into creatures.

@@ -18,6 +18,7 @@ mod learning;
 mod map_elites;
 mod neat;
 mod novelty;
+mod poet;
 mod random;
 mod search;
 mod wave_takeover;
@@ -33,6 +34,7 @@ use ga::Ga;
 use learned::JointSystems;
 use learning::Learning;
 use novelty::Novelty;
+use poet::Poet;
 
 /// The constructors of the strategy of these settings.
 fn constructors(settings: &Settings) -> Constructors {
@@ -53,6 +55,8 @@ fn constructors(settings: &Settings) -> Constructors {
         StrategyKind::BodyNovelty => Constructors::of::<Novelty<BodyGa>>(),
         StrategyKind::BodyMapElites => Constructors::of::<body_map_elites::BodyMapElites>(),
         StrategyKind::Islands => Constructors::of::<islands::Islands>(),
+        StrategyKind::Poet => Constructors::of::<Poet<cma_es::CmaEs>>(),
+        StrategyKind::BodyPoet => Constructors::of::<Poet<BodyGa>>(),
         StrategyKind::CreatureGa => Constructors::of::<creature_ga::CreatureGa>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }

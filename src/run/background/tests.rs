@@ -116,17 +116,17 @@ struct Faulty {
 }
 
 impl Evaluator for Faulty {
-    fn evaluate_batch(
+    fn evaluate_jobs(
         &self,
-        trial: &crate::score::Trial,
-        genomes: &[&crate::genome::Genome],
+        trials: &[crate::score::Trial],
+        jobs: &[crate::run::Job<'_>],
         control: &RunControl,
         report: &(dyn Fn(usize, crate::run::EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
         if self.cancels {
             Err(Cancelled)
         } else {
-            self.pool.evaluate_batch(trial, genomes, control, report)
+            self.pool.evaluate_jobs(trials, jobs, control, report)
         }
     }
 

@@ -3,9 +3,10 @@
 use std::sync::OnceLock;
 
 use crate::evolve::Champion;
-use crate::run::evaluator::{EvaluationResult, Evaluator, evaluate_caught};
+use crate::run::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
 use crate::run::report::EvaluatedGeneration;
 use crate::run::run_control::{Cancelled, RunControl};
+use crate::score::Trial;
 
 /// Number of candidates in each generation: the best ones in their own trial.
 pub const CANDIDATES: usize = 2;
@@ -22,21 +23,26 @@ pub(super) fn choose_champion(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Option<Champion>, Cancelled> {
-    let Some(trial) = evaluated.trial.that_chooses_champions() else {
+    let candidates = &ranking[..ranking.len().min(CANDIDATES)];
+    let of = |&index: &usize| evaluated.trials.of(index).that_chooses_champions();
+    let Some(trials) = candidates.iter().map(of).collect::<Option<Vec<Trial>>>() else {
         return Ok(ranking.first().map(|&index| evaluated.individual(index)));
     };
-    let candidates = &ranking[..ranking.len().min(CANDIDATES)];
     let genomes: Vec<_> = candidates.iter().map(|&index| &evaluated.genomes[index]).collect();
     let results: Vec<OnceLock<EvaluationResult>> =
         genomes.iter().map(|_| OnceLock::new()).collect();
-    evaluator.evaluate_batch(&trial, &genomes, control, &|index, result| {
+    let jobs: Vec<Job<'_>> =
+        genomes.iter().enumerate().map(|(trial, genome)| Job { genome, trial }).collect();
+    evaluator.evaluate_jobs(&trials, &jobs, control, &|index, result| {
         // Only the first result counts.
         let _ = results[index].set(result);
     })?;
     let mut best: Option<Champion> = None;
-    for ((&index, genome), result) in candidates.iter().zip(genomes).zip(results) {
+    for (((&index, genome), trial), result) in
+        candidates.iter().zip(genomes).zip(&trials).zip(results)
+    {
         control.wait_while_paused()?;
-        let result = result.into_inner().unwrap_or_else(|| evaluate_caught(genome, &trial));
+        let result = result.into_inner().unwrap_or_else(|| evaluate_caught(genome, trial));
         // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
         let Ok(on_list) = result else { continue };
         let chosen_by = Some(on_list.evaluation.fitness);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::evolve::Settings;
-use crate::run::{LocalPool, WorkersError};
+use crate::run::{Job, LocalPool, WorkersError};
 use crate::score::{ExamCondition, ExamEnd, PerturbationList, Trial, evaluate};
 
 fn small(seed: u64) -> Experiment {
@@ -52,18 +52,18 @@ struct TestEvaluator {
 }
 
 impl Evaluator for TestEvaluator {
-    fn evaluate_batch(
+    fn evaluate_jobs(
         &self,
-        trial: &Trial,
-        genomes: &[&Genome],
+        trials: &[Trial],
+        jobs: &[Job<'_>],
         _: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
-        for (index, genome) in genomes.iter().enumerate().rev() {
-            if **genome == self.fails_on {
+        for (index, &Job { genome, trial }) in jobs.iter().enumerate().rev() {
+            if *genome == self.fails_on {
                 report(index, Err("index out of bounds".to_owned()));
             } else if index != self.leaves_out {
-                report(index, evaluate_caught(genome, trial));
+                report(index, evaluate_caught(genome, &trials[trial]));
             }
         }
         Ok(())

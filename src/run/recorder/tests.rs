@@ -61,7 +61,7 @@ fn a_run_stopped_after_any_generation_continues_bit_for_bit() {
             let mut plan = plan();
             plan.settings.evolution.strategy = strategy;
             plan.settings.genome.controller = controller;
-            plan.settings.let_bodies_vary_as_the_strategy_does();
+            plan.settings.suit_to_strategy();
             assert_continues_after_any_stop(&plan);
         }
     }
@@ -461,7 +461,7 @@ fn a_run_with_a_founder_continues_bit_for_bit_and_differs_from_one_without() {
             plan.settings.evolution.strategy = strategy;
             plan.settings.evolution.generations = 3;
             plan.settings.genome.controller = controller;
-            plan.settings.let_bodies_vary_as_the_strategy_does();
+            plan.settings.suit_to_strategy();
             let without = uninterrupted(&plan).run_hash();
             let shape = plan.settings.trial.genome_shape();
             let genome = plan.settings.genome.random_genome(shape, &mut rng);

@@ -12,7 +12,7 @@ fn plan(strategy: StrategyKind) -> RunPlan {
     settings.evolution.population = 24;
     settings.genome.controller = ControllerKind::Gait;
     settings.trial.duration_s = 1.0;
-    settings.let_bodies_vary_as_the_strategy_does();
+    settings.suit_to_strategy();
     RunPlan::new("test", 1, settings)
 }
 
@@ -50,7 +50,7 @@ fn advance(strategy: &mut dyn Strategy, generation: u32) {
 }
 
 /// Allowed changes of each strategy.
-const ALLOWED: [(StrategyKind, &[(&str, &str)]); 10] = [
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 12] = [
     (
         StrategyKind::BodyMapElites,
         &[
@@ -82,6 +82,8 @@ const ALLOWED: [(StrategyKind, &[(&str, &str)]); 10] = [
         ],
     ),
     (StrategyKind::Islands, &[("generations", "40")]),
+    (StrategyKind::Poet, &[("poet.children", "3")]),
+    (StrategyKind::BodyPoet, &[("body_ga.tournament_size", "7")]),
     (
         StrategyKind::Halving,
         &[

@@ -1,0 +1,66 @@
+//! Stairs that evolved in a run, each with the snake that climbs it best: a tree by descent.
+
+use serde::{Deserialize, Serialize};
+
+use crate::genome::{Genome, StairsGenome};
+
+/// The stairs of a run, in the order in which they came; the first is the root.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StairsTree {
+    /// Number of finished rounds.
+    pub rounds: u32,
+    /// All stairs so far.
+    pub nodes: Vec<StairsNode>,
+    /// The latest transfers of snakes between stairs, the earliest first.
+    pub transfers: Vec<Transfer>,
+}
+
+/// A staircase and its agent: the snake that climbs it best.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StairsNode {
+    /// The staircase.
+    pub stairs: StairsGenome,
+    /// Index of the staircase of which it is a mutant; none for the root.
+    pub parent: Option<u32>,
+    /// The round at whose end it came; 0 for the root.
+    pub born: u32,
+    /// The round at whose end it was archived, after which its agent no longer learns; none while it is active.
+    pub archived: Option<u32>,
+    /// The round in which its agent first solved it.
+    pub solved: Option<u32>,
+    /// Whether it was neither too easy nor too hard for the best of all agents of the run when it came.
+    pub is_new_challenge: bool,
+    /// Its agent; none before the root's first measurement.
+    pub agent: Option<Genome>,
+    /// The agent's mean share of the way over the nominal and the perturbed trials, when it was last measured; a mutant
+    /// begins with the share of the nominal trial. 0 without an agent.
+    pub score: f32,
+    /// Trials simulated on it.
+    pub trials: u64,
+}
+
+/// The transfer of an agent to other stairs, whose agent it replaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Transfer {
+    /// The round.
+    pub round: u32,
+    /// Index of the stairs from which the agent came.
+    pub from: u32,
+    /// Index of the stairs to which it went.
+    pub to: u32,
+}
+
+impl StairsTree {
+    /// Number of accumulated novel environments created and solved (ANNECS, Wang et al., "Enhanced POET", 2020): stairs that
+    /// were neither too easy nor too hard for any agent of the run so far and that were solved later.
+    pub fn solved_challenges(&self) -> usize {
+        self.nodes.iter().filter(|node| node.is_new_challenge && node.solved.is_some()).count()
+    }
+
+    /// Number of stairs whose agents still learn.
+    pub fn active(&self) -> usize {
+        self.nodes.iter().filter(|node| node.archived.is_none()).count()
+    }
+}

@@ -1,0 +1,542 @@
+//! POET, the paired open-ended trailblazer: stairs that evolve, each with a search of its own for the snake that climbs
+//! it (Wang, Lehman, Clune and Stanley, "Paired Open-Ended Trailblazer", 2019, and "Enhanced POET", 2020).
+//!
+//! A round has several blocks of learning, each followed by transfers of agents between stairs; at its end mutants of
+//! stairs are tried, and the newest of those that are neither too easy nor too hard become pairs. Each [`Phase`] is a
+//! generation of the run, so a run can stop and go on between any two. Where the authors' code differs from their text, this
+//! follows the text: novelty compares ranks that are clipped to the minimal criterion, and a challenge counts once it is
+//! solved.
+
+mod batch;
+mod novelty;
+mod state;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use rand::Rng;
+
+use crate::check::Invalid;
+use crate::evolve::parents::Parents;
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::{PoetSettings, RestartKind, StrategyKind};
+use crate::evolve::stairs_tree::{StairsNode, StairsTree, Transfer};
+use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
+use crate::genome::{Genome, StairsChange, StairsGenome};
+use crate::rng::{Purpose, drawn, stream};
+use crate::score::Evaluation;
+use crate::world::Stairs;
+use batch::Candidate;
+use state::{Child, Pair, Phase, Progress, Proposal, Tuned};
+
+/// Random genomes with which the search of the first pair begins.
+const NEWBORNS: u32 = 100;
+/// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
+const RECENT: usize = 5;
+/// Number of measurements in turn without a better agent after which a pair's search begins again around its agent.
+const STALE: u32 = 8;
+/// Strengths of the mutation of stairs, equally likely. With the least alone, an agent that climbs low stairs well would find
+/// all mutants too easy, and no more would come.
+const STRENGTHS: [u32; 4] = [1, 2, 4, 8];
+/// Maximum number of transfers that are remembered.
+const MOST_TRANSFERS: usize = 2000;
+
+/// POET, whose pairs search with `S`.
+pub struct Poet<S> {
+    settings: PoetSettings,
+    /// The plan of the run.
+    plan: RunPlan,
+    progress: Progress<S>,
+}
+
+impl<S: Strategy> Poet<S> {
+    fn with(plan: &RunPlan, progress: Progress<S>) -> Self {
+        let settings = plan.settings.evolution.poet.clone();
+        Self { settings, plan: plan.clone(), progress }
+    }
+
+    /// The stairs on which a run begins: those of the trial with the first rise.
+    fn root(plan: &RunPlan) -> StairsGenome {
+        let stairs = &plan.settings.trial.stairs;
+        StairsGenome {
+            steps: stairs.steps.clamp(3, 20),
+            rise_m: plan.settings.evolution.poet.first_rise_m,
+            tread_m: stairs.mean_tread_m().clamp(0.6, 3.0),
+            width_m: stairs.width_m.clamp(2.5, 6.0),
+            ..StairsGenome::default()
+        }
+    }
+
+    /// Length of the longest stairs, in m: a trial has time for those that its settings have.
+    fn longest_m(&self) -> f32 {
+        let stairs = &self.plan.settings.trial.stairs;
+        let length_m: f32 = (0..stairs.steps).map(|step| stairs.step_tread_m(step)).sum();
+        length_m.max(Self::root(&self.plan).length_m())
+    }
+
+    /// A staircase as it stands in the trial of the run.
+    fn built(&self, stairs: &StairsGenome) -> Stairs {
+        let Stairs { first_riser_y_m, landing_m, .. } = self.plan.settings.trial.stairs;
+        Stairs { first_riser_y_m, landing_m, ..stairs.stairs() }
+    }
+
+    /// A search for the agent of a staircase, around a genome or from random ones.
+    fn search(&self, node: u32, restarts: u32, around: Option<&Genome>) -> S {
+        S::begin(&search_plan(&self.plan, node, restarts, around))
+    }
+
+    /// The score of an evaluation whose fitness is the share of the way: 0 after a disqualification.
+    fn score(evaluation: &Evaluation) -> f32 {
+        if evaluation.disqualified.is_some() { 0.0 } else { evaluation.fitness.max(0.0) }
+    }
+
+    /// Takes the scores of a generation in the present phase, in the order of its candidates, and goes on to the next phase.
+    fn take(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
+        for candidate in candidates {
+            if let Some(node) = candidate.node.and_then(|node| self.progress.node_mut(node)) {
+                node.trials += u64::from(candidate.perturbed) + 1;
+            }
+        }
+        let phase = std::mem::replace(&mut self.progress.phase, Phase::Measure);
+        self.progress.phase = match phase {
+            Phase::Learn { left } => self.after_learning(left, candidates, evaluations),
+            Phase::Measure => self.after_measurement(candidates, &scores),
+            Phase::Tune { proposals } => self.after_tuning(proposals, candidates, &scores),
+            Phase::Confirm { tuned } => self.after_confirmation(tuned, &scores),
+            Phase::Breed { children } => self.after_breeding(children, &scores),
+            Phase::Compare { children } => self.after_comparison(&children, &scores),
+            Phase::Place { first } => self.after_placing(first, &scores),
+        };
+    }
+
+    fn after_learning(
+        &mut self,
+        left: u32,
+        candidates: &[Candidate],
+        evaluations: &[Evaluation],
+    ) -> Phase {
+        let mut first = 0;
+        for pair in &mut self.progress.pairs {
+            let count = pair.search.population();
+            let own = first..first + count;
+            first += count;
+            let (Some(candidates), Some(evaluations)) =
+                (candidates.get(own.clone()), evaluations.get(own))
+            else {
+                continue;
+            };
+            for (candidate, evaluation) in candidates.iter().zip(evaluations) {
+                let score = Self::score(evaluation);
+                if pair.challenger.as_ref().is_none_or(|(_, best)| score > *best) {
+                    pair.challenger = Some((candidate.genome.clone(), score));
+                }
+            }
+            let genomes: Vec<Genome> =
+                candidates.iter().map(|candidate| candidate.genome.clone()).collect();
+            pair.search.tell(&genomes, evaluations);
+            pair.finished += 1;
+        }
+        match left.saturating_sub(1) {
+            0 => Phase::Measure,
+            left => Phase::Learn { left },
+        }
+    }
+
+    /// Keeps the better of each pair's agent and challenger, and proposes transfers.
+    fn after_measurement(&mut self, candidates: &[Candidate], scores: &[f32]) -> Phase {
+        let round = self.progress.rounds + 1;
+        let mut own =
+            candidates.iter().zip(scores).filter(|(candidate, _)| candidate.from.is_none());
+        let Progress { pairs, nodes, .. } = &mut self.progress;
+        for pair in pairs.iter_mut() {
+            let Some(node) = nodes.get_mut(pair.node as usize) else { continue };
+            let measured =
+                usize::from(node.agent.is_some()) + usize::from(pair.challenger.is_some());
+            let incumbent = node.agent.take();
+            let mut best: Option<(&Genome, f32)> = None;
+            for (candidate, &score) in own.by_ref().take(measured) {
+                // Of equals the agent stays, which comes first.
+                if best.is_none_or(|(_, most)| score > most) {
+                    best = Some((&candidate.genome, score));
+                }
+            }
+            let Some((genome, score)) = best else { continue };
+            let is_new = incumbent.as_ref() != Some(genome);
+            pair.stale = if is_new { 0 } else { pair.stale + 1 };
+            node.agent = Some(genome.clone());
+            pair.challenger = None;
+            Self::note_score(node, pair, score, round, self.settings.solved);
+        }
+        self.renew_stale_searches();
+        let proposals = self.proposals(candidates, scores);
+        if proposals.is_empty() { self.after_transfers() } else { Phase::Tune { proposals } }
+    }
+
+    fn note_score(node: &mut StairsNode, pair: &mut Pair<S>, score: f32, round: u32, solved: f32) {
+        node.score = score;
+        if score >= solved {
+            node.solved = node.solved.or(Some(round));
+        }
+        if pair.recent.len() >= RECENT {
+            pair.recent.remove(0);
+        }
+        pair.recent.push(score);
+    }
+
+    fn renew_stale_searches(&mut self) {
+        for index in 0..self.progress.pairs.len() {
+            let pair = &self.progress.pairs[index];
+            if pair.stale >= STALE {
+                let (node, restarts) = (pair.node, pair.restarts + 1);
+                self.begin_again(node, restarts);
+            }
+        }
+    }
+
+    /// Begins the search of a pair again, around the agent of its staircase.
+    fn begin_again(&mut self, node: u32, restarts: u32) {
+        let agent = self.progress.node(node).and_then(|node| node.agent.as_ref());
+        let search = self.search(node, restarts, agent);
+        if let Some(pair) = self.progress.pair_mut(node) {
+            *pair = Pair {
+                restarts,
+                recent: std::mem::take(&mut pair.recent),
+                ..Pair::new(node, search)
+            };
+        }
+    }
+
+    /// For each staircase the agent of another one that covers the greatest share of its way in the nominal trial, if that is
+    /// more than its own agent did lately.
+    fn proposals(&self, candidates: &[Candidate], scores: &[f32]) -> Vec<Proposal> {
+        let mut proposals = Vec::new();
+        for pair in &self.progress.pairs {
+            let to_beat = pair.recent.iter().copied().fold(0.0, f32::max);
+            let mut best: Option<(&Candidate, f32)> = None;
+            for (candidate, &score) in candidates.iter().zip(scores) {
+                if candidate.from.is_some()
+                    && candidate.node == Some(pair.node)
+                    && score > best.map_or(to_beat, |(_, most)| most)
+                {
+                    best = Some((candidate, score));
+                }
+            }
+            if let Some((candidate, _)) = best
+                && let Some(from) = candidate.from
+            {
+                proposals.push(Proposal { from, to: pair.node, genome: candidate.genome.clone() });
+            }
+        }
+        proposals
+    }
+
+    /// Keeps the proposals that beat the recent scores of their target over all trials, each with its best fine-tuned
+    /// candidate.
+    fn after_tuning(
+        &mut self,
+        proposals: Vec<Proposal>,
+        candidates: &[Candidate],
+        scores: &[f32],
+    ) -> Phase {
+        let mut tuned = Vec::new();
+        let mut rest = candidates.iter().zip(scores).peekable();
+        for proposal in proposals {
+            let Some((_, &direct)) = rest.next() else { break };
+            let mut best: Option<(&Genome, f32)> = None;
+            while let Some((candidate, score)) = rest.next_if(|(candidate, _)| candidate.is_sample)
+            {
+                if best.is_none_or(|(_, most)| *score > most) {
+                    best = Some((&candidate.genome, *score));
+                }
+            }
+            if direct > self.to_beat(proposal.to)
+                && let Some((genome, _)) = best
+            {
+                let Proposal { from, to, .. } = proposal;
+                tuned.push(Tuned { from, to, genome: genome.clone() });
+            }
+        }
+        if tuned.is_empty() { self.after_transfers() } else { Phase::Confirm { tuned } }
+    }
+
+    /// The greatest of a pair's recent scores.
+    fn to_beat(&self, node: u32) -> f32 {
+        let pair = self.progress.pairs.iter().find(|pair| pair.node == node);
+        pair.map_or(0.0, |pair| pair.recent.iter().copied().fold(0.0, f32::max))
+    }
+
+    /// Replaces the agents of stairs by those fine-tuned ones that beat them, too.
+    fn after_confirmation(&mut self, tuned: Vec<Tuned>, scores: &[f32]) -> Phase {
+        let round = self.progress.rounds + 1;
+        for (Tuned { from, to, genome }, &score) in tuned.into_iter().zip(scores) {
+            if score <= self.to_beat(to) {
+                continue;
+            }
+            if let Some(node) = self.progress.node_mut(to) {
+                node.agent = Some(genome);
+            }
+            let restarts = self.progress.pair_mut(to).map_or(0, |pair| pair.restarts + 1);
+            self.begin_again(to, restarts);
+            let solved = self.settings.solved;
+            let Progress { pairs, nodes, transfers, .. } = &mut self.progress;
+            let pair = pairs.iter_mut().find(|pair| pair.node == to);
+            if let Some((node, pair)) = nodes.get_mut(to as usize).zip(pair) {
+                Self::note_score(node, pair, score, round, solved);
+            }
+            if transfers.len() >= MOST_TRANSFERS {
+                transfers.remove(0);
+            }
+            transfers.push(Transfer { round, from, to });
+        }
+        self.after_transfers()
+    }
+
+    fn after_transfers(&mut self) -> Phase {
+        self.progress.transfers_done += 1;
+        if self.progress.transfers_done < self.settings.transfers {
+            return Phase::Learn { left: self.settings.iterations };
+        }
+        let children = self.children();
+        if children.is_empty() { self.end_round() } else { Phase::Breed { children } }
+    }
+
+    fn end_round(&mut self) -> Phase {
+        self.progress.rounds += 1;
+        self.progress.transfers_done = 0;
+        Phase::Learn { left: self.settings.iterations }
+    }
+
+    /// Mutants of the stairs whose agents are good enough.
+    fn children(&self) -> Vec<Child> {
+        let node = |pair: &Pair<S>| self.progress.node(pair.node).map(|node| (pair.node, node));
+        let parents: Vec<u32> = self
+            .progress
+            .pairs
+            .iter()
+            .filter_map(node)
+            .filter(|(_, node)| node.score >= self.settings.reproduces)
+            .map(|(index, _)| index)
+            .collect();
+        let room = PoetSettings::MOST_STAIRS.saturating_sub(self.progress.nodes.len());
+        if parents.is_empty() || room < self.settings.admitted as usize {
+            return Vec::new();
+        }
+        let longest_m = self.longest_m();
+        let child = |number| {
+            let round = self.progress.rounds + 1;
+            let mut rng = stream(self.plan.seed, round, number, Purpose::StairsMutation);
+            let parent = drawn(&parents, &mut rng);
+            let change = StairsChange {
+                strength: drawn(&STRENGTHS, &mut rng),
+                longest_m,
+                features: self.settings.features,
+            };
+            let stairs = self.progress.node(parent)?.stairs.mutant(&change, &mut rng);
+            let is_known = self.progress.nodes.iter().any(|node| node.stairs == stairs);
+            (!is_known).then_some(Child { parent, stairs })
+        };
+        (0..self.settings.children).filter_map(child).collect()
+    }
+
+    /// Keeps the mutants on which the agents of their parents are neither too good nor too bad.
+    fn after_breeding(&mut self, children: Vec<Child>, scores: &[f32]) -> Phase {
+        let fits = |score: f32| (self.settings.least..=self.settings.most).contains(&score);
+        let children: Vec<Child> = children
+            .into_iter()
+            .zip(scores)
+            .filter(|(_, score)| fits(**score))
+            .map(|(child, _)| child)
+            .collect();
+        if self.progress.panel.is_empty()
+            && let Some(root) = self.progress.nodes.first_mut()
+            && let Some(agent) = &root.agent
+        {
+            self.progress.panel.push(agent.clone());
+            self.progress.rows.iter_mut().for_each(|row| row.push(root.score));
+        }
+        if children.is_empty() { self.end_round() } else { Phase::Compare { children } }
+    }
+
+    /// Admits the newest of the mutants on which the best agent of the run is neither too good nor too bad.
+    fn after_comparison(&mut self, children: &[Child], scores: &[f32]) -> Phase {
+        let (least, most) = (self.settings.least, self.settings.most);
+        let agents = self.progress.pairs.len();
+        let mut rows: Vec<(&Child, &[f32], &[f32])> = Vec::new();
+        let width = agents + self.progress.panel.len();
+        for (child, scores) in children.iter().zip(scores.chunks(width.max(1))) {
+            let (active, panel) = scores.split_at(agents.min(scores.len()));
+            rows.push((child, active, panel));
+        }
+        let known: Vec<Vec<f32>> =
+            self.progress.rows.iter().map(|row| novelty::ranks(row, least, most)).collect();
+        let novelty =
+            |panel: &[f32]| novelty::distance(&novelty::ranks(panel, least, most), &known);
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        let values: Vec<f32> = rows.iter().map(|(_, _, panel)| novelty(panel)).collect();
+        order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+        let first = self.progress.nodes.len() as u32;
+        for index in order {
+            let (child, active, panel) = rows[index];
+            if self.progress.nodes.len() as u32 - first >= self.settings.admitted {
+                break;
+            }
+            let best = (0..active.len()).reduce(|a, b| if active[b] > active[a] { b } else { a });
+            let Some(best) = best else { continue };
+            let score = active[best];
+            if !(least..=most).contains(&score) {
+                continue;
+            }
+            let agent = self.progress.node(self.progress.pairs[best].node);
+            let Some(agent) = agent.and_then(|node| node.agent.clone()) else { continue };
+            let most_of_all = panel.iter().copied().fold(score, f32::max);
+            self.admit(child, agent, score, panel.to_vec(), (least..=most).contains(&most_of_all));
+        }
+        if self.progress.nodes.len() as u32 == first {
+            self.end_round()
+        } else {
+            Phase::Place { first }
+        }
+    }
+
+    fn admit(
+        &mut self,
+        child: &Child,
+        agent: Genome,
+        score: f32,
+        row: Vec<f32>,
+        is_new_challenge: bool,
+    ) {
+        let number = self.progress.nodes.len() as u32;
+        let round = self.progress.rounds + 1;
+        let search = self.search(number, 0, Some(&agent));
+        self.progress.nodes.push(StairsNode {
+            stairs: child.stairs,
+            parent: Some(child.parent),
+            born: round,
+            archived: None,
+            solved: None,
+            is_new_challenge,
+            agent: Some(agent),
+            score,
+            trials: 0,
+        });
+        self.progress.rows.push(row);
+        self.progress.pairs.push(Pair { recent: vec![score], ..Pair::new(number, search) });
+    }
+
+    /// Adds the agents of the new stairs to the panel, and archives the oldest pairs.
+    fn after_placing(&mut self, first: u32, scores: &[f32]) -> Phase {
+        let round = self.progress.rounds + 1;
+        let Progress { nodes, rows, panel, pairs, .. } = &mut self.progress;
+        let count = nodes.len();
+        for (node, column) in nodes.iter().skip(first as usize).zip(scores.chunks(count.max(1))) {
+            panel.extend(node.agent.clone());
+            rows.iter_mut().zip(column).for_each(|(row, score)| row.push(*score));
+        }
+        while pairs.len() > self.settings.pairs as usize {
+            let oldest = pairs.remove(0);
+            if let Some(node) = nodes.get_mut(oldest.node as usize) {
+                node.archived = Some(round);
+            }
+        }
+        self.end_round()
+    }
+}
+
+/// The plan of a search for the agent of a staircase, around a genome or from random ones.
+fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>) -> RunPlan {
+    let mut settings = plan.settings.clone();
+    let poet = &plan.settings.evolution.poet;
+    let evolution = &mut settings.evolution;
+    evolution.strategy =
+        if settings.genome.bodies.vary { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
+    evolution.population = poet.candidates;
+    // It is never over.
+    evolution.generations = 10_000;
+    evolution.cma_es.step = poet.first_step;
+    evolution.cma_es.newborns = NEWBORNS;
+    evolution.cma_es.restarts = RestartKind::None;
+    let seed = stream(plan.seed, node, restarts, Purpose::Pair).next_u64();
+    let founder = around.map(|genome| Arc::new(Founder::new("agent", genome.clone())));
+    RunPlan { founder, ..RunPlan::new(&plan.preset, seed, settings) }
+}
+
+impl<S: Strategy> Strategy for Poet<S> {
+    fn begin(plan: &RunPlan) -> Self {
+        let founder = plan.founder.as_ref().map(|founder| founder.genome());
+        let root = StairsNode {
+            stairs: Self::root(plan),
+            parent: None,
+            born: 0,
+            archived: None,
+            solved: None,
+            is_new_challenge: false,
+            agent: founder.cloned(),
+            score: 0.0,
+            trials: 0,
+        };
+        let search = S::begin(&search_plan(plan, 0, 0, founder));
+        let left = plan.settings.evolution.poet.iterations;
+        Self::with(plan, Progress::begin(root, Pair::new(0, search), left))
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let progress = Progress::read(state, plan, finished)?;
+        Ok(Self::with(plan, progress))
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        self.batch().into_iter().map(|candidate| candidate.genome).collect()
+    }
+
+    fn population(&self) -> usize {
+        self.batch().len()
+    }
+
+    fn stairs(&self) -> Vec<OwnStairs> {
+        let candidates = self.batch();
+        let mut all: Vec<OwnStairs> = Vec::with_capacity(candidates.len());
+        let mut last: Option<(StairsGenome, Arc<Stairs>)> = None;
+        for candidate in &candidates {
+            let stairs = match &last {
+                Some((genome, stairs)) if *genome == candidate.stairs => Arc::clone(stairs),
+                _ => Arc::new(self.built(&candidate.stairs)),
+            };
+            last = Some((candidate.stairs, Arc::clone(&stairs)));
+            all.push(OwnStairs { stairs, perturbed: candidate.perturbed });
+        }
+        all
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        let candidates = self.batch();
+        self.take(&candidates, evaluations);
+    }
+
+    fn state(&self) -> StrategyState {
+        self.progress.state()
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        self.settings = plan.settings.evolution.poet.clone();
+        self.plan = plan.clone();
+        for pair in &mut self.progress.pairs {
+            pair.search.apply_settings(&search_plan(plan, pair.node, pair.restarts, None));
+        }
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |candidate: &Candidate| match candidate.is_sample {
+            true => Parents::Distribution,
+            false => Parents::Unknown,
+        };
+        self.batch().iter().map(of).collect()
+    }
+
+    fn stairs_tree(&self) -> Option<StairsTree> {
+        let Progress { rounds, nodes, transfers, .. } = &self.progress;
+        Some(StairsTree { rounds: *rounds, nodes: nodes.clone(), transfers: transfers.clone() })
+    }
+}

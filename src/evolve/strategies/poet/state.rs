@@ -1,0 +1,344 @@
+//! What POET has learned: stairs, pairs, and the phase of the round.
+
+use serde::{Deserialize, Serialize};
+
+use super::{MOST_TRANSFERS, RECENT, search_plan};
+use crate::check::{Invalid, within};
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::PoetSettings;
+use crate::evolve::stairs_tree::{StairsNode, Transfer};
+use crate::evolve::strategy::{Strategy, StrategyState};
+use crate::genome::{Genome, StairsGenome};
+use crate::schema::check;
+
+/// The next generation of a round.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Each pair learns, in this many generations.
+    Learn { left: u32 },
+    /// Agents and challengers are measured on their own stairs, and agents tried on those of others.
+    Measure,
+    /// Agents that may move are measured, and fine-tuned for a generation.
+    Tune { proposals: Vec<Proposal> },
+    /// The fine-tuned ones are measured.
+    Confirm { tuned: Vec<Tuned> },
+    /// Mutants of stairs are tried with the agents of their parents.
+    Breed { children: Vec<Child> },
+    /// The mutants that are neither too easy nor too hard are tried with all agents.
+    Compare { children: Vec<Child> },
+    /// The agents of the new stairs, of which the first has this index, are tried on all stairs.
+    Place { first: u32 },
+}
+
+/// An agent that may move.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Proposal {
+    pub from: u32,
+    pub to: u32,
+    pub genome: Genome,
+}
+
+/// The best fine-tuned candidate of a proposal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tuned {
+    pub from: u32,
+    pub to: u32,
+    pub genome: Genome,
+}
+
+/// A mutant of stairs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Child {
+    pub parent: u32,
+    pub stairs: StairsGenome,
+}
+
+/// Active stairs and the search for their agent.
+pub struct Pair<S> {
+    /// Index of the stairs.
+    pub node: u32,
+    pub search: S,
+    /// Generations that the search has finished.
+    pub finished: u32,
+    /// How often it has begun again.
+    pub restarts: u32,
+    /// The latest scores of the agent, at most [`RECENT`].
+    pub recent: Vec<f32>,
+    /// Measurements in turn without a better agent.
+    pub stale: u32,
+    /// The best candidate since the last measurement, and its score in the nominal trial.
+    pub challenger: Option<(Genome, f32)>,
+}
+
+impl<S> Pair<S> {
+    /// A pair whose search has not begun.
+    pub fn new(node: u32, search: S) -> Self {
+        Self {
+            node,
+            search,
+            finished: 0,
+            restarts: 0,
+            recent: Vec::new(),
+            stale: 0,
+            challenger: None,
+        }
+    }
+}
+
+/// Everything that POET has learned.
+pub struct Progress<S> {
+    pub phase: Phase,
+    /// Finished rounds.
+    pub rounds: u32,
+    /// Transfers of this round that are done.
+    pub transfers_done: u32,
+    pub nodes: Vec<StairsNode>,
+    /// Active pairs, the oldest first.
+    pub pairs: Vec<Pair<S>>,
+    /// For the novelty of stairs: a copy of each agent as it was when its stairs came.
+    pub panel: Vec<Genome>,
+    /// For each staircase, the scores of the panel on it.
+    pub rows: Vec<Vec<f32>>,
+    pub transfers: Vec<Transfer>,
+}
+
+/// [`Progress`] in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedProgress {
+    phase: Phase,
+    rounds: u32,
+    transfers_done: u32,
+    nodes: Vec<StairsNode>,
+    pairs: Vec<SavedPair>,
+    panel: Vec<Genome>,
+    rows: Vec<Vec<f32>>,
+    transfers: Vec<Transfer>,
+}
+
+/// [`Pair`] in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedPair {
+    node: u32,
+    search: StrategyState,
+    finished: u32,
+    restarts: u32,
+    recent: Vec<f32>,
+    stale: u32,
+    challenger: Option<(Genome, f32)>,
+}
+
+impl<S: Strategy> Progress<S> {
+    /// The beginning of a run, with one pair.
+    pub fn begin(root: StairsNode, pair: Pair<S>, iterations: u32) -> Self {
+        Self {
+            phase: Phase::Learn { left: iterations },
+            rounds: 0,
+            transfers_done: 0,
+            nodes: vec![root],
+            pairs: vec![pair],
+            panel: Vec::new(),
+            rows: vec![Vec::new()],
+            transfers: Vec::new(),
+        }
+    }
+
+    pub fn node(&self, index: u32) -> Option<&StairsNode> {
+        self.nodes.get(index as usize)
+    }
+
+    pub fn node_mut(&mut self, index: u32) -> Option<&mut StairsNode> {
+        self.nodes.get_mut(index as usize)
+    }
+
+    pub fn pair_mut(&mut self, node: u32) -> Option<&mut Pair<S>> {
+        self.pairs.iter_mut().find(|pair| pair.node == node)
+    }
+
+    pub fn state(&self) -> StrategyState {
+        let pair = |pair: &Pair<S>| SavedPair {
+            node: pair.node,
+            search: pair.search.state(),
+            finished: pair.finished,
+            restarts: pair.restarts,
+            recent: pair.recent.clone(),
+            stale: pair.stale,
+            challenger: pair.challenger.clone(),
+        };
+        StrategyState::of(&SavedProgress {
+            phase: self.phase.clone(),
+            rounds: self.rounds,
+            transfers_done: self.transfers_done,
+            nodes: self.nodes.clone(),
+            pairs: self.pairs.iter().map(pair).collect(),
+            panel: self.panel.clone(),
+            rows: self.rows.clone(),
+            transfers: self.transfers.clone(),
+        })
+    }
+
+    /// Reads what a run had learned after its first `finished` generations.
+    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid> {
+        let saved: SavedProgress = state.read()?;
+        saved.check(plan, finished)?;
+        let mut pairs = Vec::new();
+        for (index, pair) in saved.pairs.into_iter().enumerate() {
+            // Around its agent, which decides nothing once the search has begun.
+            let around = saved.nodes.get(pair.node as usize).and_then(|node| node.agent.as_ref());
+            let plan = search_plan(plan, pair.node, pair.restarts, around);
+            let search = match pair.finished {
+                0 => S::begin(&plan),
+                finished => S::resume(&plan, finished, &pair.search)
+                    .map_err(|error| error.inside(&format!("pairs[{index}].search")))?,
+            };
+            pairs.push(Pair {
+                node: pair.node,
+                search,
+                finished: pair.finished,
+                restarts: pair.restarts,
+                recent: pair.recent,
+                stale: pair.stale,
+                challenger: pair.challenger,
+            });
+        }
+        Ok(Self {
+            phase: saved.phase,
+            rounds: saved.rounds,
+            transfers_done: saved.transfers_done,
+            nodes: saved.nodes,
+            pairs,
+            panel: saved.panel,
+            rows: saved.rows,
+            transfers: saved.transfers,
+        })
+    }
+}
+
+impl SavedProgress {
+    fn check(&self, plan: &RunPlan, finished: u32) -> Result<(), Invalid> {
+        let settings = &plan.settings.evolution.poet;
+        within("rounds", self.rounds, 0..=finished)?;
+        within("transfers_done", self.transfers_done, 0..=100)?;
+        within("nodes", self.nodes.len(), 1..=PoetSettings::MOST_STAIRS + 10)?;
+        within("pairs", self.pairs.len(), 1..=101 + 10)?;
+        within("transfers", self.transfers.len(), 0..=MOST_TRANSFERS)?;
+        within("panel", self.panel.len(), 0..=self.nodes.len())?;
+        within("rows", self.rows.len(), self.nodes.len()..=self.nodes.len())?;
+        for node in &self.nodes {
+            self.check_node(node, plan).map_err(|error| error.inside("nodes"))?;
+        }
+        for row in &self.rows {
+            // A staircase that has just come lacks the columns of those that came with it.
+            within("row", row.len(), self.panel.len()..=self.panel.len())?;
+            row.iter().try_for_each(|score| check_score("row", *score))?;
+        }
+        self.panel.iter().try_for_each(|genome| check_genome(genome, plan))?;
+        for (index, pair) in self.pairs.iter().enumerate() {
+            self.check_pair(pair, index, plan).map_err(|error| error.inside("pairs"))?;
+        }
+        for transfer in &self.transfers {
+            self.check_place(transfer.from)?;
+            self.check_place(transfer.to)?;
+        }
+        let most = settings.pairs.max(settings.children) as usize + 100;
+        match &self.phase {
+            Phase::Learn { left } => within("left", *left, 1..=1000),
+            Phase::Measure => Ok(()),
+            Phase::Tune { proposals } => {
+                within("proposals", proposals.len(), 1..=most)?;
+                let moves =
+                    proposals.iter().map(|Proposal { from, to, genome }| (*from, *to, genome));
+                self.check_moves(moves, plan)
+            }
+            Phase::Confirm { tuned } => {
+                within("tuned", tuned.len(), 1..=most)?;
+                let moves = tuned.iter().map(|Tuned { from, to, genome }| (*from, *to, genome));
+                self.check_moves(moves, plan)
+            }
+            Phase::Breed { children } | Phase::Compare { children } => {
+                within("children", children.len(), 1..=most)?;
+                children.iter().try_for_each(|child| {
+                    self.check_agent(child.parent)?;
+                    check(&child.stairs)
+                })
+            }
+            Phase::Place { first } => {
+                let least = self.nodes.len().saturating_sub(10).max(1) as u32;
+                within("first", *first, least..=self.nodes.len() as u32 - 1)?;
+                (*first..self.nodes.len() as u32).try_for_each(|node| self.check_agent(node))
+            }
+        }
+    }
+
+    fn check_node(&self, node: &StairsNode, plan: &RunPlan) -> Result<(), Invalid> {
+        check(&node.stairs)?;
+        check_score("score", node.score)?;
+        node.parent.map_or(Ok(()), |parent| self.check_place(parent))?;
+        within("born", node.born, 0..=self.rounds + 1)?;
+        node.agent.as_ref().map_or(Ok(()), |agent| check_genome(agent, plan))
+    }
+
+    fn check_pair(&self, pair: &SavedPair, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
+        self.check_place(pair.node)?;
+        let is_twice = self.pairs.iter().take(index).any(|other| other.node == pair.node);
+        if is_twice {
+            return Err(Invalid::new(
+                "node",
+                pair.node,
+                "another one than that of the pairs before",
+            ));
+        }
+        within("recent", pair.recent.len(), 0..=RECENT)?;
+        pair.recent.iter().try_for_each(|score| check_score("recent", *score))?;
+        within("finished", pair.finished, 0..=10_000)?;
+        match &pair.challenger {
+            Some((genome, score)) => {
+                check_score("challenger", *score)?;
+                check_genome(genome, plan)
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn check_moves<'a>(
+        &self,
+        mut moves: impl Iterator<Item = (u32, u32, &'a Genome)>,
+        plan: &RunPlan,
+    ) -> Result<(), Invalid> {
+        moves.try_for_each(|(from, to, genome)| {
+            self.check_place(from)?;
+            self.check_place(to)?;
+            check_genome(genome, plan)
+        })
+    }
+
+    fn check_place(&self, index: u32) -> Result<(), Invalid> {
+        within("stairs", index, 0..=self.nodes.len() as u32 - 1)
+    }
+
+    /// Checks that there are such stairs, with an agent.
+    fn check_agent(&self, index: u32) -> Result<(), Invalid> {
+        self.check_place(index)?;
+        match self.nodes.get(index as usize).and_then(|node| node.agent.as_ref()) {
+            Some(_) => Ok(()),
+            None => Err(Invalid::new("stairs", index, "stairs that have an agent")),
+        }
+    }
+}
+
+/// Greatest score in a file. A share is at most 1.1.
+const MOST_SCORE: f32 = 10.0;
+
+fn check_score(field: &str, score: f32) -> Result<(), Invalid> {
+    within(field, score, 0.0..=MOST_SCORE)
+}
+
+fn check_genome(genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
+    let trial = &plan.settings.trial;
+    plan.settings.genome.check_genome(genome, trial.genome_shape())?;
+    trial.check_genome(genome)
+}

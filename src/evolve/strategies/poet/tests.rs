@@ -1,0 +1,165 @@
+//! Tests of POET with made-up evaluations.
+
+use super::*;
+use crate::evolve::settings::Settings;
+use crate::evolve::strategies::cma_es::CmaEs;
+use crate::genome::ControllerKind;
+use crate::score::Fitness;
+use crate::world::Disqualification;
+
+fn plan() -> RunPlan {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = StrategyKind::Poet;
+    settings.trial.fitness = Fitness::Share;
+    settings.genome.controller = ControllerKind::Gait;
+    settings.evolution.poet.pairs = 4;
+    settings.evolution.poet.iterations = 6;
+    settings.evolution.poet.transfers = 2;
+    settings.check().expect("they go together");
+    RunPlan::new("test", 1, settings)
+}
+
+/// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
+fn evaluate(poet: &Poet<CmaEs>, candidate: &Candidate) -> Evaluation {
+    let point = poet.plan.settings.genome.point_of(&candidate.genome);
+    let target = f64::from(candidate.stairs.rise_m) / 1.2;
+    let [first, second] = [point[point.len() - 1], point[point.len() - 2]];
+    let off: f64 = 3.0 * (first - target).abs() + (second - 0.5).abs() / 4.0;
+    Evaluation::of_fitness((1.05 - off).clamp(0.0, 1.05) as f32)
+}
+
+fn advance(poet: &mut Poet<CmaEs>) {
+    let candidates = poet.batch();
+    assert!(!candidates.is_empty());
+    assert_eq!(poet.population(), candidates.len());
+    assert_eq!(poet.stairs().len(), candidates.len());
+    let evaluations: Vec<Evaluation> =
+        candidates.iter().map(|candidate| evaluate(poet, candidate)).collect();
+    let genomes = poet.ask();
+    poet.tell(&genomes, &evaluations);
+}
+
+/// A run of this many rounds, and its number of generations.
+fn run(rounds: u32) -> (Poet<CmaEs>, u32) {
+    let mut poet = Poet::<CmaEs>::begin(&plan());
+    let mut generations = 0;
+    while poet.progress.rounds < rounds {
+        advance(&mut poet);
+        generations += 1;
+    }
+    (poet, generations)
+}
+
+#[test]
+fn stairs_come_are_solved_and_the_oldest_are_archived() {
+    let (poet, _) = run(12);
+    let tree = poet.stairs_tree().expect("it has one");
+    assert!(tree.nodes.len() > 6, "{} stairs", tree.nodes.len());
+    assert!(tree.active() <= 4);
+    assert_eq!(tree.active() + archived(&tree), tree.nodes.len());
+    assert!(tree.solved_challenges() >= 2);
+    for (index, node) in tree.nodes.iter().enumerate() {
+        assert_eq!(node.parent.is_none(), index == 0);
+        assert!(node.parent.is_none_or(|parent| (parent as usize) < index));
+        assert!(node.agent.is_some());
+        assert!(node.trials > 0 || node.born == tree.rounds);
+    }
+    let born: Vec<u32> = tree.nodes.iter().map(|node| node.born).collect();
+    assert!(born.is_sorted());
+    // Each staircase has been compared with each agent of the panel.
+    assert_eq!(poet.progress.panel.len(), tree.nodes.len());
+    assert!(poet.progress.rows.iter().all(|row| row.len() == tree.nodes.len()));
+}
+
+fn archived(tree: &StairsTree) -> usize {
+    tree.nodes.iter().filter(|node| node.archived.is_some()).count()
+}
+
+/// Gives the last pair, whose search has begun, an agent that hardly moves, before a measurement. Returns its stairs.
+fn forget_an_agent(poet: &mut Poet<CmaEs>) -> u32 {
+    advance(poet);
+    let target = poet.progress.pairs[3].node;
+    let shape = poet.plan.settings.trial.genome_shape();
+    let space = &poet.plan.settings.genome;
+    let idle = space.genome_at(&vec![0.99; space.dimension(shape)], shape);
+    let node = poet.progress.node_mut(target).expect("it is there");
+    (node.agent, node.score) = (Some(idle), 0.0);
+    let pair = poet.progress.pair_mut(target).expect("it is active");
+    (pair.recent, pair.challenger) = (vec![0.0], None);
+    poet.progress.phase = Phase::Measure;
+    target
+}
+
+#[test]
+fn an_agent_that_climbs_other_stairs_better_moves_there() {
+    let (mut poet, _) = run(4);
+    let target = forget_an_agent(&mut poet);
+    advance(&mut poet);
+    assert!(matches!(poet.progress.phase, Phase::Tune { .. }));
+    advance(&mut poet);
+    assert!(matches!(poet.progress.phase, Phase::Confirm { .. }));
+    advance(&mut poet);
+    let moved = poet.progress.transfers.last().expect("a transfer");
+    assert_eq!((moved.round, moved.to), (5, target));
+    assert_ne!(moved.from, target);
+    let pair = poet.progress.pair_mut(target).expect("it is active");
+    assert_eq!((pair.restarts, pair.finished), (1, 0), "its search begins again around the agent");
+    let beaten = pair.recent.clone();
+    let node = poet.progress.node(target).expect("it is there");
+    assert_eq!(beaten[0], 0.0);
+    assert!(beaten[1] < beaten[2] && beaten[2] == node.score, "{beaten:?}");
+}
+
+#[test]
+fn a_resumed_run_goes_on_with_the_same_bits_from_any_phase() {
+    let (mut expected, mut finished) = run(4);
+    forget_an_agent(&mut expected);
+    finished += 1;
+    let mut resumed: Option<Poet<CmaEs>> = None;
+    let mut phases = std::collections::BTreeSet::new();
+    for _ in 0..60 {
+        let state = expected.state();
+        let text = ron::to_string(&state).expect("written");
+        let state: StrategyState = ron::from_str(&text).expect("read");
+        let poet = Poet::<CmaEs>::resume(&plan(), finished, &state).expect("its own state");
+        phases.insert(format!("{:?}", poet.progress.phase)[..5].to_owned());
+        assert!(poet.state() == expected.state());
+        if let Some(resumed) = &mut resumed {
+            advance(resumed);
+        }
+        assert!(resumed.as_ref().is_none_or(|before| before.state() == expected.state()));
+        resumed = Some(poet);
+        advance(&mut expected);
+        finished += 1;
+    }
+    assert_eq!(phases.len(), 7, "{phases:?}");
+}
+
+#[test]
+fn a_disqualified_snake_scores_nothing() {
+    let evaluation = Evaluation::of_fitness(0.9);
+    assert_eq!(Poet::<CmaEs>::score(&evaluation), 0.9);
+    let disqualified = Some(Disqualification::TooFast);
+    assert_eq!(Poet::<CmaEs>::score(&Evaluation { disqualified, ..evaluation }), 0.0);
+}
+
+#[test]
+fn a_state_that_no_run_can_have_is_refused() {
+    let (poet, finished) = run(6);
+    let text = ron::to_string(&poet.state()).expect("written");
+    let refused = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let state: StrategyState = ron::from_str(&text.replacen(from, to, 1)).expect("RON");
+        let error = Poet::<CmaEs>::resume(&plan(), finished, &state).err().expect("refused");
+        error.to_string()
+    };
+    let error = refused("rounds: 6", "rounds: 4000000");
+    assert!(error.starts_with("rounds is 4000000; allowed: 0 to "), "{error}");
+    let error = refused("steps: 10", "steps: 4000000");
+    assert!(error.contains("steps is 4000000; allowed: 3 to 20"), "{error}");
+    let node = format!("node: {}", poet.progress.pairs[0].node);
+    let error = refused(&node, "node: 70");
+    assert!(error.contains("stairs is 70"), "{error}");
+    assert!(!refused("rows: [", "rows: [], old: [").is_empty());
+    assert!(!refused("Learn", "Rest").is_empty());
+}
