@@ -21,11 +21,14 @@ mod film;
 mod lists;
 mod manual;
 mod output;
+mod poet_study;
 #[cfg(feature = "studio")]
 mod render;
 mod replay;
 mod resume;
 mod robust;
+mod stairs_study;
+mod study;
 mod table1;
 mod verify;
 
@@ -81,6 +84,8 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Body { file }) => body::body(file, args.json),
         Some(Subcommand::Bench { file }) => bench::print_bench(args, file.as_deref()),
         Some(Subcommand::BodyStudy(wanted)) => body_study::body_study(args, wanted),
+        Some(Subcommand::PoetStudy(wanted)) => poet_study::poet_study(args, wanted),
+        Some(Subcommand::StairsStudy(wanted)) => stairs_study::stairs_study(args, wanted),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {
             robust::robust(args, file, *trials, &range.into())

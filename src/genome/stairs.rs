@@ -6,6 +6,8 @@ mod mutation;
 pub use classes::{HELD_OUT_PER_CLASS, StairsClass, held_out};
 pub use mutation::StairsChange;
 
+use std::fmt;
+
 use rand::RngExt;
 
 use crate::check::{Invalid, within};
@@ -147,6 +149,36 @@ impl StairsGenome {
     }
 }
 
+/// The shape in a line: number, rise and tread, then what makes them uneven.
+impl fmt::Display for StairsGenome {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { steps, rise_m, tread_m, rise_noise, tread_noise, nosing_m, .. } = self;
+        write!(formatter, "{steps} steps of {rise_m:.2} × {tread_m:.2} m")?;
+        if *rise_noise > 0.0 {
+            write!(formatter, ", rises ±{:.0} %", rise_noise * 100.0)?;
+        }
+        if *tread_noise > 0.0 {
+            write!(formatter, ", treads ±{:.0} %", tread_noise * 100.0)?;
+        }
+        if *nosing_m > 0.0 {
+            write!(formatter, ", nosing {nosing_m:.2} m")?;
+        }
+        if self.ramp > 0.0 {
+            write!(formatter, ", ramps {:.0} %", self.ramp * 100.0)?;
+        }
+        if self.landing > 0 {
+            write!(formatter, ", landing at step {}", self.landing)?;
+        }
+        if self.missing > 0 {
+            write!(formatter, ", step {} missing", self.missing)?;
+        }
+        if self.down > 0 {
+            write!(formatter, ", {} down", self.down)?;
+        }
+        Ok(())
+    }
+}
+
 /// How far a step leads down from a height that should lead down by `rise_m`: to the ground, if it would come near it. In
 /// metres.
 fn lowered_m(height_m: f32, rise_m: f32) -> f32 {
@@ -206,6 +238,14 @@ mod tests {
             let stairs = genome.stairs();
             check(&stairs).unwrap_or_else(|error| panic!("{error}: {stairs:?}"));
         }
+    }
+
+    #[test]
+    fn the_shape_in_words_names_what_is_uneven() {
+        assert_eq!(StairsGenome::default().to_string(), "10 steps of 0.50 × 2.00 m");
+        let genome = StairsGenome { rise_noise: 0.2, down: 2, ramp: 0.5, ..Default::default() };
+        let expected = "10 steps of 0.50 × 2.00 m, rises ±20 %, ramps 50 %, 2 down";
+        assert_eq!(genome.to_string(), expected);
     }
 
     #[test]

@@ -389,7 +389,7 @@ impl Experiment {
     }
 
     /// The numbers by which champions of this run are compared: the greater are the better one.
-    fn rank(&self, champion: &Champion) -> [f32; 2] {
+    pub fn rank(&self, champion: &Champion) -> [f32; 2] {
         let settings = &self.plan.settings.evolution;
         if settings.strategy.info().evolves_stairs {
             champion.rank_of_climbed(settings.poet.solved)

@@ -94,9 +94,9 @@ impl RunSource {
             .collect();
         let mut recorder = RunRecorder { folder, best: None };
         for report in &reports {
-            if report.champion.is_some() {
+            if let Some(champion) = &report.champion {
                 let path = recorder.folder.champion_path(report.generation);
-                recorder.keep_if_best(report, path);
+                recorder.keep_if_best(experiment.rank(champion), path);
             }
         }
         Ok(RecordedRun { plan_at_start: self.plan, experiment, recorder, reports })
@@ -165,8 +165,8 @@ impl RunRecorder {
             &experiment.knowledge(),
             experiment.run_hash(),
         )?;
-        if let Some(path) = path {
-            self.keep_if_best(report, path);
+        if let Some((path, champion)) = path.zip(champion) {
+            self.keep_if_best(experiment.rank(champion), path);
         }
         Ok(crashes)
     }
@@ -191,9 +191,7 @@ impl RunRecorder {
         }
     }
 
-    fn keep_if_best(&mut self, report: &GenerationReport, path: PathBuf) {
-        let Some(champion) = &report.champion else { return };
-        let rank = champion.rank();
+    fn keep_if_best(&mut self, rank: [f32; 2], path: PathBuf) {
         if self.best.as_ref().is_none_or(|(_, best)| rank > *best) {
             self.best = Some((path, rank));
         }

@@ -147,6 +147,16 @@ impl GenerationReport {
         }
     }
 
+    /// The numbers by which the champions of a run are compared: the greater are the better one. None without a champion.
+    pub fn champion_rank(&self) -> Option<[f32; 2]> {
+        let champion = self.champion.as_ref()?;
+        match self.stairs {
+            // Such a run keeps only the champions that are better than all before.
+            Some(_) => Some([self.generation as f32, 0.0]),
+            None => Some(champion.rank()),
+        }
+    }
+
     /// This report as a line of the log.
     pub fn record(&self) -> GenerationRecord {
         GenerationRecord {

@@ -26,6 +26,7 @@ mod notes;
 mod own_preset;
 mod picture;
 mod plan;
+mod poet_study;
 mod poses;
 mod preferences;
 mod preset;
@@ -34,6 +35,7 @@ mod record;
 mod run;
 mod run_name;
 mod stairs_file;
+mod stairs_study;
 mod study;
 mod v5;
 mod whole_file;
@@ -65,6 +67,7 @@ pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_preset::{OwnPreset, check_own_name};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
+pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
 pub use preferences::{
     LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,
 };
@@ -82,6 +85,7 @@ pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
     NamedStairs, built_in_stairs, built_in_stairs_names, load_stairs, parse_stairs,
 };
+pub use stairs_study::StairsStudyRun;
 pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};
 pub use v5::RecordedV5;
 pub use whole_file::UnfinishedFile;

@@ -61,6 +61,8 @@ const SHIPPED: &[(&str, &str)] = embedded!["presets";
     "creatures",
     "house",
     "ladder",
+    "poet",
+    "generalist",
 ];
 
 /// The shipped presets, the default first.

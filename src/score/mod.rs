@@ -28,7 +28,7 @@ pub use exam::{
 pub use fitness::{FITNESS_RANGE, Fitness, arrived_y_m};
 pub use history::KeyframeHistory;
 pub use mirrored::MirroredRollout;
-pub use perturbation::{Perturbation, PerturbationRange};
+pub use perturbation::{Perturbation, PerturbationRange, StairsVariation};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::{Evaluation, Rollout};

@@ -22,7 +22,7 @@ fn an_unknown_preset_is_refused_with_the_list_of_presets() {
     let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
     assert_eq!(
         message,
-        "error: --preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, ladder, or a file"
+        "error: --preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, ladder, poet, generalist, or a file"
     );
 }
 

@@ -18,6 +18,8 @@ enum Task {
     BenchChampion,
     Body,
     BodyStudy,
+    PoetStudy,
+    StairsStudy,
     Verify,
     Exam,
     Export,
@@ -38,15 +40,27 @@ enum Task {
 
 use Task::{
     Bench, BenchChampion, Body, BodyStudy, CheckReplay, Compare, Completions, Exam, Export,
-    Families, Figures, Machines, Manual, Presets, Render, ReplayInWindow, Robust, Run, Settings,
-    SettingsAsMarkdown, Table1, Verify, Window, Worker,
+    Families, Figures, Machines, Manual, PoetStudy, Presets, Render, ReplayInWindow, Robust, Run,
+    Settings, SettingsAsMarkdown, StairsStudy, Table1, Verify, Window, Worker,
 };
 
 /// The tasks that compute on other machines.
-const SPREAD: &[Task] = &[Run, Exam, Robust, BodyStudy, Compare, Families, Table1];
+const SPREAD: &[Task] =
+    &[Run, Exam, Robust, BodyStudy, PoetStudy, StairsStudy, Compare, Families, Table1];
 /// These, and the tasks that need a server.
-const WITH_SERVER: &[Task] =
-    &[Run, Exam, Robust, BodyStudy, Compare, Families, Table1, Worker, Machines];
+const WITH_SERVER: &[Task] = &[
+    Run,
+    Exam,
+    Robust,
+    BodyStudy,
+    PoetStudy,
+    StairsStudy,
+    Compare,
+    Families,
+    Table1,
+    Worker,
+    Machines,
+];
 
 /// The flags that have no effect without `--nats`.
 const OF_SERVER: [&str; 4] = ["creds", "tls_ca", "expect_workers", "local_threads"];
@@ -85,6 +99,8 @@ const FLAGS: [(&str, &[Task]); 30] = [
             Export,
             Robust,
             BodyStudy,
+            PoetStudy,
+            StairsStudy,
             Compare,
             Families,
             Table1,
@@ -97,7 +113,20 @@ const FLAGS: [(&str, &[Task]); 30] = [
         "preset",
         &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown],
     ),
-    ("seed", &[Window, Run, ReplayInWindow, Robust, BodyStudy, Compare, Families]),
+    (
+        "seed",
+        &[
+            Window,
+            Run,
+            ReplayInWindow,
+            Robust,
+            BodyStudy,
+            PoetStudy,
+            StairsStudy,
+            Compare,
+            Families,
+        ],
+    ),
     ("population", &[Window, Run, ReplayInWindow, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("generations", &[Window, Run, ReplayInWindow, Table1, Settings, SettingsAsMarkdown]),
     (
@@ -108,6 +137,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             ReplayInWindow,
             Bench,
             BodyStudy,
+            StairsStudy,
             Compare,
             Families,
             Table1,
@@ -123,7 +153,10 @@ const FLAGS: [(&str, &[Task]); 30] = [
     ("set", &[Window, Run, ReplayInWindow, Bench, Compare, Table1, Settings, SettingsAsMarkdown]),
     ("resume", &[Window, Run, ReplayInWindow]),
     ("from", &[Window, Run]),
-    ("restart", &[Window, Run, ReplayInWindow, BodyStudy, Compare, Families]),
+    (
+        "restart",
+        &[Window, Run, ReplayInWindow, BodyStudy, PoetStudy, StairsStudy, Compare, Families],
+    ),
     (
         "threads",
         &[
@@ -136,6 +169,8 @@ const FLAGS: [(&str, &[Task]); 30] = [
             Exam,
             Robust,
             BodyStudy,
+            PoetStudy,
+            StairsStudy,
             Compare,
             Families,
             Table1,
@@ -148,7 +183,22 @@ const FLAGS: [(&str, &[Task]); 30] = [
     ("expect_workers", SPREAD),
     ("local_threads", SPREAD),
     ("evaluator", &[Window, Run, ReplayInWindow, Verify, Compare, Table1]),
-    ("out", &[Window, Run, ReplayInWindow, BodyStudy, Compare, Families, Table1, Figures, Manual]),
+    (
+        "out",
+        &[
+            Window,
+            Run,
+            ReplayInWindow,
+            BodyStudy,
+            PoetStudy,
+            StairsStudy,
+            Compare,
+            Families,
+            Table1,
+            Figures,
+            Manual,
+        ],
+    ),
     ("saves", &[Window, Run, ReplayInWindow]),
     ("comparison", &[Window, ReplayInWindow]),
     ("window_size", &[Window, ReplayInWindow]),
@@ -171,6 +221,8 @@ impl Task {
             Some(Subcommand::Bench { file: Some(_) }) => BenchChampion,
             Some(Subcommand::Body { .. }) => Body,
             Some(Subcommand::BodyStudy(_)) => BodyStudy,
+            Some(Subcommand::PoetStudy(_)) => PoetStudy,
+            Some(Subcommand::StairsStudy(_)) => StairsStudy,
             Some(Subcommand::Verify) => Verify,
             Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Export(_)) => Export,
@@ -201,6 +253,8 @@ impl Task {
             BenchChampion => "snakes bench FILE",
             Body => "snakes body",
             BodyStudy => "snakes body-study",
+            PoetStudy => "snakes poet-study",
+            StairsStudy => "snakes stairs-study",
             Verify => "snakes verify",
             Exam => "snakes exam",
             Export => "snakes export",

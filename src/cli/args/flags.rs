@@ -9,8 +9,10 @@ use super::body_study::BodyStudyArgs;
 use super::compare::CompareArgs;
 use super::export::ExportArgs;
 use super::families::FamiliesArgs;
+use super::poet_study::PoetStudyArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
+use super::stairs_study::StairsStudyArgs;
 use crate::run::evaluators::EVALUATORS;
 use crate::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 use crate::save::built_in_stairs_names;
@@ -32,7 +34,7 @@ pub struct Args {
     /// Name of a preset (see `snakes presets`), or path of your own preset file
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
     pub(super) preset: Option<String>,
-    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201, of body-study 101; in the window, the first seed without a run]
+    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201, of body-study and stairs-study 101, of poet-study 401; in the window, the first seed without a run]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
     /// Snakes per generation
@@ -185,6 +187,10 @@ pub enum Subcommand {
     },
     /// Measure, over several seeds, whether protecting new bodies and an archive of bodies pay while bodies evolve
     BodyStudy(BodyStudyArgs),
+    /// Run POET, and measure whether it solves stairs that a direct search does not
+    PoetStudy(PoetStudyArgs),
+    /// Measure, over several seeds, how many of the held-out stairs snakes climb that learned on many stairs, or on one
+    StairsStudy(StairsStudyArgs),
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),
     /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands

@@ -10,9 +10,11 @@ mod film;
 mod flags;
 mod manual;
 mod parse;
+mod poet_study;
 mod render;
 mod robust;
 mod run;
+mod stairs_study;
 mod values;
 
 pub use body_study::BodyStudyArgs;
@@ -25,7 +27,9 @@ pub use film::FilmArgs;
 pub use flags::{Args, Subcommand};
 pub use manual::manual;
 pub use parse::{Parsed, parse};
+pub use poet_study::PoetStudyArgs;
 #[cfg(feature = "studio")]
 pub use render::RenderArgs;
+pub use stairs_study::StairsStudyArgs;
 #[cfg(feature = "studio")]
 pub use values::size;

@@ -228,7 +228,7 @@ mod tests {
             ),
             (
                 "--preset nosuch",
-                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, ladder, or a file",
+                "--preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, ladder, poet, generalist, or a file",
             ),
             ("--threads 0", "--threads is 0; allowed: 1 to 1024"),
             (

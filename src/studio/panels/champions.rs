@@ -44,15 +44,17 @@ struct ReportSummary {
 
 impl ReportSummary {
     fn of(reports: &[GenerationReport]) -> Self {
-        let champions = reports.iter().filter_map(|report| report.champion.as_ref());
+        let champions = reports
+            .iter()
+            .filter_map(|report| Some((report.champion.as_ref()?, report.champion_rank()?)));
         // The earliest of equally good champions wins.
-        let best = champions.clone().rev().max_by(|a, b| {
-            let pairs = a.rank().into_iter().zip(b.rank());
-            pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(&b)))
+        let best = champions.clone().rev().max_by(|(_, a), (_, b)| {
+            let pairs = a.iter().zip(b);
+            pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(b)))
         });
         let mut most = [f32::MIN; 2];
         let is_better = |report: &GenerationReport| {
-            let rank = report.champion.as_ref().map(Champion::rank).filter(|rank| *rank > most);
+            let rank = report.champion_rank().filter(|rank| *rank > most);
             most = rank.unwrap_or(most);
             rank.is_some()
         };
@@ -60,7 +62,7 @@ impl ReportSummary {
         let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();
         Self {
             champions: champions.count(),
-            best: best.map(|champion| champion.origin.generation),
+            best: best.map(|(champion, _)| champion.origin.generation),
             better,
         }
     }

@@ -6,7 +6,7 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 24] = [
+const TASKS: [(Task, &str); 26] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
@@ -15,6 +15,8 @@ const TASKS: [(Task, &str); 24] = [
     (BenchChampion, "bench a.ron"),
     (Body, "body a.ron"),
     (BodyStudy, "body-study"),
+    (PoetStudy, "poet-study"),
+    (StairsStudy, "stairs-study"),
     (Verify, "verify"),
     (Exam, "exam a.ron"),
     (Export, "export a.ron -o a.csv"),
@@ -124,6 +126,8 @@ fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
     for (subcommand, tasks) in [
         ("compare", &[Compare][..]),
         ("body-study", &[BodyStudy]),
+        ("poet-study", &[PoetStudy]),
+        ("stairs-study", &[StairsStudy]),
         ("families", &[Families]),
         ("robust", &[Robust]),
         ("bench", &[Bench]),

@@ -1,0 +1,142 @@
+//! `snakes poet-study`: whether POET solves stairs that a direct search does not.
+
+use std::path::Path;
+
+use super::args::{Args, PoetStudyArgs};
+use super::error::CliError;
+use super::evaluators::{evaluator, trusted};
+use super::output::{cancel_on_interrupt, print};
+use crate::check::Invalid;
+use crate::evolve::RunPlan;
+use crate::run::headless::{HeadlessError, say};
+use crate::run::poet_study::{
+    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
+};
+use crate::run::progress_bar::bar_of;
+use crate::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
+use crate::save::{
+    ExistingRun, PoetStudy, SaveError, load_poet_study, load_preset, settings_fingerprint,
+    store_csv, store_poet_study,
+};
+
+/// Seed of the run unless one is given: no setting was chosen by it or by those of the direct searches after it.
+const FIRST_SEED: u64 = 401;
+
+/// Makes what the study's file does not have yet, and prints the results.
+pub fn poet_study(args: &Args, wanted: &PoetStudyArgs) -> Result<(), CliError> {
+    let settings = load_preset("poet")?.settings;
+    let plan = RunPlan::new("poet", args.seed_or(FIRST_SEED)?, settings);
+    let folder = args.results_folder();
+    folder.prepare()?;
+    let [ron, csv] = ["ron", "csv"].map(|kind| folder.path().join(format!("poet-study.{kind}")));
+    let fingerprint = settings_fingerprint(&plan);
+    let mut study = PoetStudy::new(fingerprint, plan.seed);
+    if ron.exists() && !args.restart {
+        let earlier = load_poet_study(&ron)?;
+        if (&earlier.plan, earlier.seed) != (&study.plan, study.seed) {
+            let allowed = format!(
+                "{} with seed {}; --restart begins again, and --out names another folder",
+                study.plan, study.seed
+            );
+            let found = format!("{} with seed {}", earlier.plan, earlier.seed);
+            let source = Invalid::new("plan", found, allowed);
+            return Err(SaveError::Invalid { path: ron.clone(), source }.into());
+        }
+        study = earlier;
+    }
+    let control = cancel_on_interrupt();
+    let evaluator = evaluator(args, "poet-study", &ron)?;
+    if study.rounds < wanted.rounds {
+        let earlier = if args.restart { ExistingRun::Discard } else { ExistingRun::Keep };
+        let source = RunSource::in_saves(&folder, plan.clone(), earlier);
+        let measured = measure_poet(source, study, wanted.rounds, &*evaluator, &control);
+        study = trusted(&*evaluator, measured.map_err(|error| error.keeping(&ron)))?;
+        store_poet_study(&ron, &study)?;
+    }
+    let left = planned_controls(&study, &plan);
+    say(&format!("{} direct searches left", left.len()));
+    let bar = bar_of(left.iter().map(|of| of.plan.budget()).sum(), "evaluations");
+    let result = run_controls(
+        &left,
+        &*evaluator,
+        &control,
+        |spent| bar.inc(spent),
+        |run| {
+            let share = run.share.map_or("–".to_owned(), |share| format!("{share:.3}"));
+            let (node, seed, evaluations) = (run.node + 1, run.seed, run.evaluations);
+            bar.suspend(|| {
+                say(&format!(
+                    "stairs {node:<3} seed {seed}: share {share} in {evaluations} evaluations"
+                ));
+            });
+            study.controls.push(run);
+            // After each run, so that a kill loses none that is finished.
+            Ok(store_poet_study(&ron, &study)?)
+        },
+    );
+    bar.finish_and_clear();
+    trusted(&*evaluator, result.map_err(|error| error.keeping(&ron)))?;
+    report(args, &study, &ron, &csv)
+}
+
+/// Writes the table of the direct searches, and prints what they say.
+fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), CliError> {
+    store_csv(csv, &poet_records(study))?;
+    if args.json {
+        let line = serde_json::json!({
+            "done": true, "rounds": study.rounds, "run_hash": study.run_hash, "stairs": study.stairs, "solved": study.solved,
+            "challenges": study.challenges.last(), "searches": study.controls.len(), "files": [ron, csv],
+        });
+        return print(&format!("{line}\n"));
+    }
+    let [ron, csv] = [ron, csv].map(|file| file.display().to_string());
+    print(&format!("{}\nsaved to  {ron}\n          {csv}\n", poet_claims(study)))
+}
+
+/// Continues a run of POET up to its last round, and measures it.
+fn measure_poet(
+    source: RunSource,
+    mut study: PoetStudy,
+    rounds: u32,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<PoetStudy, HeadlessError> {
+    let plan = source.plan.clone();
+    let RecordedRun { mut experiment, mut recorder, mut reports, .. } =
+        source.open("snakes poet-study")?;
+    let cancelled = |Cancelled| HeadlessError::Cancelled { kept: None };
+    let bar = bar_of(rounds.into(), "rounds");
+    while !experiment.is_over() && experiment.stairs_tree().is_some_and(|tree| tree.rounds < rounds)
+    {
+        let report = experiment
+            .run_generation_recording(evaluator, control, |generation, individual, evaluation| {
+                recorder.record_evaluation(generation, individual, evaluation);
+            })
+            .map_err(cancelled)?;
+        for crash in recorder.record_generation(&experiment, &report)? {
+            bar.suspend(|| say(&crash));
+        }
+        bar.set_position(report.stairs.map_or(0, |of| of.rounds).into());
+        reports.push(report);
+    }
+    bar.finish_and_clear();
+    let Some(tree) = experiment.stairs_tree() else { return Ok(study) };
+    let mut challenges = Vec::new();
+    for report in &reports {
+        if let Some(count) = report.stairs
+            && count.rounds as usize > challenges.len()
+        {
+            challenges.push(count.challenges);
+        }
+    }
+    study.rounds = tree.rounds;
+    study.evaluations = experiment.evaluated();
+    study.elapsed_s = reports.iter().map(|report| report.elapsed_s).sum();
+    study.stairs = tree.nodes.len() as u32;
+    study.solved = tree.nodes.iter().filter(|node| node.solved.is_some()).count() as u32;
+    study.challenges = challenges;
+    study.run_hash = format!("{:016x}", experiment.run_hash());
+    study.hardest = hardest_stairs(&plan, &tree, evaluator, control).map_err(cancelled)?;
+    study.controls = Vec::new();
+    Ok(study)
+}
