@@ -27,6 +27,6 @@ pub use settings::{
     StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field,
     with_fields,
 };
-pub use stairs_tree::{StairsNode, StairsTree, Transfer};
+pub use stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};
 pub use strategy::{OwnStairs, Strategy, StrategyState, ranking};

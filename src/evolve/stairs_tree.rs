@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::genome::{Genome, StairsGenome};
+use crate::score::Trial;
 
 /// The stairs of a run, in the order in which they came; the first is the root.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,12 +33,24 @@ pub struct StairsNode {
     /// Whether it was neither too easy nor too hard for the best of all agents of the run when it came.
     pub is_new_challenge: bool,
     /// Its agent; none before the root's first measurement.
-    pub agent: Option<Genome>,
+    pub agent: Option<Agent>,
     /// The agent's mean share of the way over the nominal and the perturbed trials, when it was last measured; a mutant
     /// begins with the share of the nominal trial. 0 without an agent.
     pub score: f32,
     /// Trials simulated on it.
     pub trials: u64,
+}
+
+/// A snake that was found in a run, and the place where it was first evaluated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Agent {
+    /// Its genes.
+    pub genome: Genome,
+    /// The generation; 0 for the founder of the run.
+    pub generation: u32,
+    /// The index within the generation.
+    pub individual: u32,
 }
 
 /// The transfer of an agent to other stairs, whose agent it replaced.
@@ -50,6 +63,13 @@ pub struct Transfer {
     pub from: u32,
     /// Index of the stairs to which it went.
     pub to: u32,
+}
+
+impl StairsNode {
+    /// A trial of the run on these stairs.
+    pub fn trial(&self, trial: &Trial) -> Trial {
+        trial.on_stairs(self.stairs.stairs())
+    }
 }
 
 impl StairsTree {

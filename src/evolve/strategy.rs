@@ -119,7 +119,7 @@ pub struct OwnStairs {
 impl OwnStairs {
     /// A trial on these stairs.
     pub fn on(&self, trial: &Trial) -> Trial {
-        let mut trial = Trial { stairs: (*self.stairs).clone(), ..trial.clone() };
+        let mut trial = trial.on_stairs((*self.stairs).clone());
         trial.repeats.trials += self.perturbed;
         trial
     }

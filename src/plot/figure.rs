@@ -90,6 +90,8 @@ pub enum Shape {
         /// Centre and height of each bar.
         bars: Vec<[f64; 2]>,
     },
+    /// Arrows: from, to.
+    Arrows(Vec<[[f64; 2]; 2]>),
     /// Rectangles in the colour of the series: `[left, right, bottom, top]`.
     Boxes(Vec<[f64; 4]>),
     /// Rectangles: `[left, right, bottom, top]`, the share of the value between the least and the greatest of all
@@ -174,6 +176,7 @@ impl Shape {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
             Self::Band(_) | Self::Layer(_) => &[", lower end", ", upper end"],
+            Self::Arrows(_) => &[", y from", ", x to", ", y to"],
             Self::Boxes(_) => &[", x to", ", y from", ", y to"],
             Self::Cells(_) => &[", x to", ", y from", ", y to", ""],
         }
@@ -185,6 +188,7 @@ impl Shape {
             Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points.is_empty(),
             Self::Band(ends) | Self::Layer(ends) => ends.is_empty(),
             Self::Bars { bars, .. } => bars.is_empty(),
+            Self::Arrows(arrows) => arrows.is_empty(),
             Self::Boxes(boxes) => boxes.is_empty(),
             Self::Cells(cells) => cells.is_empty(),
         }
@@ -199,6 +203,9 @@ impl Shape {
             Self::Bars { bars, .. } => bars.iter().map(|&[x, y]| (x, vec![y])).collect(),
             Self::Band(ends) | Self::Layer(ends) => {
                 ends.iter().map(|&[x, low, high]| (x, vec![low, high])).collect()
+            }
+            Self::Arrows(arrows) => {
+                arrows.iter().map(|&[[x, y], [to_x, to_y]]| (x, vec![y, to_x, to_y])).collect()
             }
             Self::Boxes(boxes) => {
                 let row = |&[left, right, bottom, top]: &[f64; 4]| (left, vec![right, bottom, top]);

@@ -90,6 +90,11 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
             let style = color.stroke_width(2);
             area.draw(&DashedPathElement::new(ends, on, off, style))?;
         }
+        Shape::Arrows(_) => {
+            area.draw(&PathElement::new(ends, color.stroke_width(2)))?;
+            let head = [(x + SAMPLE - 7, y - 5), (x + SAMPLE, y), (x + SAMPLE - 7, y + 5)];
+            area.draw(&PathElement::new(head, color.stroke_width(2)))?;
+        }
         Shape::Points(_) => area.draw(&Circle::new((x + SAMPLE / 2, y), 5, color.filled()))?,
         Shape::Band(_) => {
             area.draw(&Rectangle::new(block, color.mix(BAND_OPACITY.into()).filled()))?
@@ -243,6 +248,7 @@ mod tests {
             (Role::Second, Shape::Dashed(points.clone()), 500),
             (Role::Third, Shape::Points(points.clone()), 100),
             (Role::First, Shape::Bars { width: 0.5, bars: points }, 20_000),
+            (Role::Second, Shape::Arrows(vec![[[1.0, 1.0], [9.0, 9.0]]]), 500),
             (Role::Share(1.0), Shape::Cells(vec![([1.0, 2.0, 1.0, 2.0], 1.0, 9.0)]), 20_000),
         ] {
             let name = format!("{shape:?}");

@@ -59,6 +59,16 @@ pub(super) fn paint_series(
             };
             axes.draw_series(bars.iter().map(rectangle))?;
         }
+        Shape::Arrows(arrows) => {
+            for &[from, to] in arrows {
+                let ends = [from, to].map(|[x, y]| (x, y));
+                let style = color.stroke_width(2);
+                axes.draw_series([PathElement::new(ends, style)])?;
+                let [from, to] = ends.map(|end| axes.plotting_area().map_coordinate(&end));
+                let head = arrow_head(from, to);
+                axes.draw_series([EmptyElement::at(ends[1]) + PathElement::new(head, style)])?;
+            }
+        }
         Shape::Boxes(boxes) => {
             for &[left, right, bottom, top] in boxes {
                 let ends = [(left, bottom), (right, top)];
@@ -76,4 +86,14 @@ pub(super) fn paint_series(
         }
     }
     Ok(())
+}
+
+/// The head of an arrow between two pixels, relative to its tip.
+fn arrow_head(from: (i32, i32), to: (i32, i32)) -> [(i32, i32); 3] {
+    const LENGTH: f64 = 12.0;
+    let (x, y) = (f64::from(from.0 - to.0), f64::from(from.1 - to.1));
+    let length = x.hypot(y).max(1.0);
+    let (x, y) = (x / length * LENGTH, y / length * LENGTH);
+    let side = |sign: f64| ((x - sign * y * 0.5) as i32, (y + sign * x * 0.5) as i32);
+    [side(1.0), (0, 0), side(-1.0)]
 }

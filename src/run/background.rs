@@ -14,7 +14,7 @@ use super::lineage::{Ancestor, Ancestry, Generation};
 use super::recorder::{RecordedRun, RunRecorder, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
-use crate::evolve::{Archive, Champion, Front, RunPlan, SettingChange};
+use crate::evolve::{Archive, Champion, Front, RunPlan, SettingChange, StairsTree};
 
 /// News about a run in the background.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +75,8 @@ pub struct Exploration {
     pub front: Front,
     /// The strategy's archive of elites, if it has one.
     pub archive: Option<Archive>,
+    /// The tree of stairs, if stairs evolve.
+    pub stairs: Option<Arc<StairsTree>>,
     /// The best of the latest generation, the best first; empty if an earlier session finished it.
     pub leaders: Vec<Champion>,
     /// The latest generation; none if an earlier session finished it.
@@ -91,6 +93,7 @@ impl Exploration {
         Self {
             front: experiment.front().clone(),
             archive: experiment.archive(),
+            stairs: experiment.stairs_tree().map(Arc::new),
             leaders: experiment.leaders().to_vec(),
             generation: experiment.generation().cloned(),
             parents: experiment.parents(),

@@ -392,7 +392,7 @@ impl Experiment {
     pub fn rank(&self, champion: &Champion) -> [f32; 2] {
         let settings = &self.plan.settings.evolution;
         if settings.strategy.info().evolves_stairs {
-            champion.rank_of_climbed(settings.poet.solved)
+            champion.rank_of_climbed(settings.poet.solved_from)
         } else {
             champion.rank()
         }

@@ -124,6 +124,13 @@ impl Trial {
         schema::check(self)
     }
 
+    /// This trial on other stairs, whose first riser and landing are those of its own.
+    #[must_use]
+    pub fn on_stairs(&self, stairs: Stairs) -> Self {
+        let Stairs { first_riser_y_m, landing_m, .. } = self.stairs;
+        Self { stairs: Stairs { first_riser_y_m, landing_m, ..stairs }, ..self.clone() }
+    }
+
     /// Number of physics steps of the trial: its duration, rounded to the nearest step.
     pub fn steps(&self) -> u32 {
         steps_in(self.duration_s, &self.physics)

@@ -88,7 +88,7 @@ impl Settings {
         if self.evolution.strategy.info().evolves_stairs {
             self.trial.fitness = crate::score::Fitness::Share;
             let poet = &mut self.evolution.poet;
-            (poet.candidates, poet.iterations, poet.transfers) = (4, 1, 1);
+            (poet.pair_candidates, poet.learn_generations, poet.transfers) = (4, 1, 1);
         }
     }
 }

@@ -220,7 +220,7 @@ impl SettingGroup for Settings {
         }
         let evolves_stairs = evolution.strategy.info().evolves_stairs;
         if evolution.strategy == StrategyKind::BodyPoet {
-            unused.push("evolution.poet.first_step");
+            unused.push("evolution.poet.pair_step");
         }
         walk.without_effect(unused);
         walk.group("evolution", evolution);

@@ -16,14 +16,14 @@ setting_group! {
                 .slider(1.0, 40.0);
 
         /// Candidates of each pair's search in a generation.
-        candidates: u32 = 12,
+        pair_candidates: u32 = 12,
             whole("Candidates of a pair", 4..=1000)
                 .hint("Number of snakes that each pair tries in a generation")
                 .slider(4.0, 60.0)
                 .fixed(super::cma_es::LEARNED);
 
         /// First standard deviation of each gene, as a share of its range.
-        first_step: f32 = 0.15,
+        pair_step: f32 = 0.15,
             number("First step of a pair", 0.001..=1.0)
                 .hint("Spread of a pair's first candidates around its snake, as a share of each gene's range")
                 .slider(0.01, 0.5)
@@ -31,7 +31,7 @@ setting_group! {
                 .fixed(super::cma_es::LEARNED);
 
         /// Generations of learning before snakes try other stairs.
-        iterations: u32 = 5,
+        learn_generations: u32 = 5,
             whole("Generations between transfers", 1..=1000)
                 .hint("How many generations each pair learns before snakes may move to other stairs")
                 .slider(1.0, 50.0);
@@ -55,25 +55,25 @@ setting_group! {
                 .slider(1.0, 10.0);
 
         /// The score of a pair from which on its stairs may have mutants.
-        reproduces: f32 = 0.55,
+        reproduces_from: f32 = 0.55,
             number("Share to reproduce", 0.0..=1.1).advanced()
                 .hint("Stairs have mutants once their snake covers this share of the way")
                 .slider(0.0, 1.0);
 
         /// The least score of the best snake on stairs that are not too hard.
-        least: f32 = 0.15,
+        too_hard_below: f32 = 0.15,
             number("Too hard below", 0.0..=1.1).advanced()
                 .hint("Mutants on which the best snake covers a smaller share of the way are refused")
                 .slider(0.0, 1.0);
 
         /// The greatest score of the best snake on stairs that are not too easy.
-        most: f32 = 0.85,
+        too_easy_above: f32 = 0.85,
             number("Too easy above", 0.0..=1.1).advanced()
                 .hint("Mutants on which a snake covers a greater share of the way are refused")
                 .slider(0.0, 1.0);
 
         /// The score from which on stairs are solved.
-        solved: f32 = 0.85,
+        solved_from: f32 = 0.85,
             number("Solved from", 0.0..=1.1).advanced()
                 .hint("Share of the way that the snake of a pair has to cover to solve its stairs")
                 .slider(0.0, 1.0);
@@ -85,7 +85,7 @@ setting_group! {
                 .slider(0.0, 10.0);
 
         /// Rise of the first stairs, in m.
-        first_rise_m: f32 = 0.1,
+        root_rise_m: f32 = 0.1,
             number("First rise", 0.1..=1.2)
                 .unit("m")
                 .hint("Rise of the first stairs; their steps and treads are those of the trial")
@@ -99,10 +99,10 @@ setting_group! {
     }
 
     fn check_together(&self) -> Result<(), Invalid> {
-        if self.least < self.most {
+        if self.too_hard_below < self.too_easy_above {
             return Ok(());
         }
-        Err(Invalid::new("least", self.least, format!("less than {}, above which stairs are too easy", self.most)))
+        Err(Invalid::new("too_hard_below", self.too_hard_below, format!("less than {}, above which stairs are too easy", self.too_easy_above)))
     }
 }
 
@@ -112,11 +112,11 @@ impl PoetSettings {
 
     /// Checks that a generation, and the agents of all stairs, fit into memory.
     pub(super) fn check_size(&self, size: &GenomeSize<'_>) -> Result<(), Invalid> {
-        let at_once = self.pairs * self.candidates.max(self.pairs);
+        let at_once = self.pairs * self.pair_candidates.max(self.pairs);
         let field = "evolution.poet.pairs";
         size.check_count(field, at_once, size.genes(), LARGEST_SAMPLE)?;
         // Each staircase has an agent and a copy of its first one.
-        let kept = 2 * Self::MOST_STAIRS as u32 + self.pairs * self.candidates;
+        let kept = 2 * Self::MOST_STAIRS as u32 + self.pairs * self.pair_candidates;
         size.check_count(field, kept, size.genes(), LARGEST_STATE_GENES)
     }
 }

@@ -21,7 +21,7 @@ use crate::check::Invalid;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::{Founder, RunPlan};
 use crate::evolve::settings::{PoetSettings, RestartKind, StrategyKind};
-use crate::evolve::stairs_tree::{StairsNode, StairsTree, Transfer};
+use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
 use crate::genome::{Genome, StairsChange, StairsGenome};
 use crate::rng::{Purpose, drawn, stream};
@@ -30,7 +30,7 @@ use crate::world::Stairs;
 use batch::Candidate;
 use state::{Child, Pair, Phase, Progress, Proposal, Tuned};
 
-/// Random genomes with which the search of the first pair begins.
+/// Random genomes with which the search of the first pair begins; in a short run a quarter of its evaluations.
 const NEWBORNS: u32 = 100;
 /// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
 const RECENT: usize = 5;
@@ -47,13 +47,15 @@ pub struct Poet<S> {
     settings: PoetSettings,
     /// The plan of the run.
     plan: RunPlan,
+    /// The next generation; the first is 1.
+    generation: u32,
     progress: Progress<S>,
 }
 
 impl<S: Strategy> Poet<S> {
-    fn with(plan: &RunPlan, progress: Progress<S>) -> Self {
+    fn with(plan: &RunPlan, finished: u32, progress: Progress<S>) -> Self {
         let settings = plan.settings.evolution.poet.clone();
-        Self { settings, plan: plan.clone(), progress }
+        Self { settings, plan: plan.clone(), generation: finished + 1, progress }
     }
 
     /// The stairs on which a run begins: those of the trial with the first rise.
@@ -61,7 +63,7 @@ impl<S: Strategy> Poet<S> {
         let stairs = &plan.settings.trial.stairs;
         StairsGenome {
             steps: stairs.steps.clamp(3, 20),
-            rise_m: plan.settings.evolution.poet.first_rise_m,
+            rise_m: plan.settings.evolution.poet.root_rise_m,
             tread_m: stairs.mean_tread_m().clamp(0.6, 3.0),
             width_m: stairs.width_m.clamp(2.5, 6.0),
             ..StairsGenome::default()
@@ -73,12 +75,6 @@ impl<S: Strategy> Poet<S> {
         let stairs = &self.plan.settings.trial.stairs;
         let length_m: f32 = (0..stairs.steps).map(|step| stairs.step_tread_m(step)).sum();
         length_m.max(Self::root(&self.plan).length_m())
-    }
-
-    /// A staircase as it stands in the trial of the run.
-    fn built(&self, stairs: &StairsGenome) -> Stairs {
-        let Stairs { first_riser_y_m, landing_m, .. } = self.plan.settings.trial.stairs;
-        Stairs { first_riser_y_m, landing_m, ..stairs.stairs() }
     }
 
     /// A search for the agent of a staircase, around a genome or from random ones.
@@ -123,14 +119,17 @@ impl<S: Strategy> Poet<S> {
             let own = first..first + count;
             first += count;
             let (Some(candidates), Some(evaluations)) =
-                (candidates.get(own.clone()), evaluations.get(own))
+                (candidates.get(own.clone()), evaluations.get(own.clone()))
             else {
                 continue;
             };
-            for (candidate, evaluation) in candidates.iter().zip(evaluations) {
+            for (index, evaluation) in evaluations.iter().enumerate() {
                 let score = Self::score(evaluation);
                 if pair.challenger.as_ref().is_none_or(|(_, best)| score > *best) {
-                    pair.challenger = Some((candidate.genome.clone(), score));
+                    let genome = candidates[index].genome.clone();
+                    let individual = (own.start + index) as u32;
+                    let agent = Agent { genome, generation: self.generation, individual };
+                    pair.challenger = Some((agent, score));
                 }
             }
             let genomes: Vec<Genome> =
@@ -152,22 +151,21 @@ impl<S: Strategy> Poet<S> {
         let Progress { pairs, nodes, .. } = &mut self.progress;
         for pair in pairs.iter_mut() {
             let Some(node) = nodes.get_mut(pair.node as usize) else { continue };
-            let measured =
-                usize::from(node.agent.is_some()) + usize::from(pair.challenger.is_some());
             let incumbent = node.agent.take();
-            let mut best: Option<(&Genome, f32)> = None;
-            for (candidate, &score) in own.by_ref().take(measured) {
-                // Of equals the agent stays, which comes first.
-                if best.is_none_or(|(_, most)| score > most) {
-                    best = Some((&candidate.genome, score));
+            let challenger = pair.challenger.take().map(|(agent, _)| agent);
+            let had_agent = incumbent.is_some();
+            // Of equals the agent stays, which comes first.
+            let mut best: Option<(Agent, f32, bool)> = None;
+            for (number, agent) in incumbent.into_iter().chain(challenger).enumerate() {
+                let Some((_, &score)) = own.next() else { break };
+                if best.as_ref().is_none_or(|(_, most, _)| score > *most) {
+                    best = Some((agent, score, number > 0 || !had_agent));
                 }
             }
-            let Some((genome, score)) = best else { continue };
-            let is_new = incumbent.as_ref() != Some(genome);
+            let Some((agent, score, is_new)) = best else { continue };
             pair.stale = if is_new { 0 } else { pair.stale + 1 };
-            node.agent = Some(genome.clone());
-            pair.challenger = None;
-            Self::note_score(node, pair, score, round, self.settings.solved);
+            node.agent = Some(agent);
+            Self::note_score(node, pair, score, round, self.settings.solved_from);
         }
         self.renew_stale_searches();
         let proposals = self.proposals(candidates, scores);
@@ -198,7 +196,7 @@ impl<S: Strategy> Poet<S> {
     /// Begins the search of a pair again, around the agent of its staircase.
     fn begin_again(&mut self, node: u32, restarts: u32) {
         let agent = self.progress.node(node).and_then(|node| node.agent.as_ref());
-        let search = self.search(node, restarts, agent);
+        let search = self.search(node, restarts, agent.map(|agent| &agent.genome));
         if let Some(pair) = self.progress.pair_mut(node) {
             *pair = Pair {
                 restarts,
@@ -241,21 +239,23 @@ impl<S: Strategy> Poet<S> {
         scores: &[f32],
     ) -> Phase {
         let mut tuned = Vec::new();
-        let mut rest = candidates.iter().zip(scores).peekable();
+        let mut rest = (0..).zip(candidates.iter().zip(scores)).peekable();
         for proposal in proposals {
-            let Some((_, &direct)) = rest.next() else { break };
-            let mut best: Option<(&Genome, f32)> = None;
-            while let Some((candidate, score)) = rest.next_if(|(candidate, _)| candidate.is_sample)
+            let Some((_, (_, &direct))) = rest.next() else { break };
+            let mut best: Option<(u32, &Genome, f32)> = None;
+            while let Some((individual, (candidate, score))) =
+                rest.next_if(|(_, (candidate, _))| candidate.is_sample)
             {
-                if best.is_none_or(|(_, most)| *score > most) {
-                    best = Some((&candidate.genome, *score));
+                if best.is_none_or(|(.., most)| *score > most) {
+                    best = Some((individual, &candidate.genome, *score));
                 }
             }
             if direct > self.to_beat(proposal.to)
-                && let Some((genome, _)) = best
+                && let Some((individual, genome, _)) = best
             {
                 let Proposal { from, to, .. } = proposal;
-                tuned.push(Tuned { from, to, genome: genome.clone() });
+                let (genome, generation) = (genome.clone(), self.generation);
+                tuned.push(Tuned { from, to, agent: Agent { genome, generation, individual } });
             }
         }
         if tuned.is_empty() { self.after_transfers() } else { Phase::Confirm { tuned } }
@@ -270,16 +270,16 @@ impl<S: Strategy> Poet<S> {
     /// Replaces the agents of stairs by those fine-tuned ones that beat them, too.
     fn after_confirmation(&mut self, tuned: Vec<Tuned>, scores: &[f32]) -> Phase {
         let round = self.progress.rounds + 1;
-        for (Tuned { from, to, genome }, &score) in tuned.into_iter().zip(scores) {
+        for (Tuned { from, to, agent }, &score) in tuned.into_iter().zip(scores) {
             if score <= self.to_beat(to) {
                 continue;
             }
             if let Some(node) = self.progress.node_mut(to) {
-                node.agent = Some(genome);
+                node.agent = Some(agent);
             }
             let restarts = self.progress.pair_mut(to).map_or(0, |pair| pair.restarts + 1);
             self.begin_again(to, restarts);
-            let solved = self.settings.solved;
+            let solved = self.settings.solved_from;
             let Progress { pairs, nodes, transfers, .. } = &mut self.progress;
             let pair = pairs.iter_mut().find(|pair| pair.node == to);
             if let Some((node, pair)) = nodes.get_mut(to as usize).zip(pair) {
@@ -296,7 +296,7 @@ impl<S: Strategy> Poet<S> {
     fn after_transfers(&mut self) -> Phase {
         self.progress.transfers_done += 1;
         if self.progress.transfers_done < self.settings.transfers {
-            return Phase::Learn { left: self.settings.iterations };
+            return Phase::Learn { left: self.settings.learn_generations };
         }
         let children = self.children();
         if children.is_empty() { self.end_round() } else { Phase::Breed { children } }
@@ -305,7 +305,7 @@ impl<S: Strategy> Poet<S> {
     fn end_round(&mut self) -> Phase {
         self.progress.rounds += 1;
         self.progress.transfers_done = 0;
-        Phase::Learn { left: self.settings.iterations }
+        Phase::Learn { left: self.settings.learn_generations }
     }
 
     /// Mutants of the stairs whose agents are good enough.
@@ -316,7 +316,7 @@ impl<S: Strategy> Poet<S> {
             .pairs
             .iter()
             .filter_map(node)
-            .filter(|(_, node)| node.score >= self.settings.reproduces)
+            .filter(|(_, node)| node.score >= self.settings.reproduces_from)
             .map(|(index, _)| index)
             .collect();
         let room = PoetSettings::MOST_STAIRS.saturating_sub(self.progress.nodes.len());
@@ -342,7 +342,9 @@ impl<S: Strategy> Poet<S> {
 
     /// Keeps the mutants on which the agents of their parents are neither too good nor too bad.
     fn after_breeding(&mut self, children: Vec<Child>, scores: &[f32]) -> Phase {
-        let fits = |score: f32| (self.settings.least..=self.settings.most).contains(&score);
+        let fits = |score: f32| {
+            (self.settings.too_hard_below..=self.settings.too_easy_above).contains(&score)
+        };
         let children: Vec<Child> = children
             .into_iter()
             .zip(scores)
@@ -353,7 +355,7 @@ impl<S: Strategy> Poet<S> {
             && let Some(root) = self.progress.nodes.first_mut()
             && let Some(agent) = &root.agent
         {
-            self.progress.panel.push(agent.clone());
+            self.progress.panel.push(agent.genome.clone());
             self.progress.rows.iter_mut().for_each(|row| row.push(root.score));
         }
         if children.is_empty() { self.end_round() } else { Phase::Compare { children } }
@@ -361,7 +363,7 @@ impl<S: Strategy> Poet<S> {
 
     /// Admits the newest of the mutants on which the best agent of the run is neither too good nor too bad.
     fn after_comparison(&mut self, children: &[Child], scores: &[f32]) -> Phase {
-        let (least, most) = (self.settings.least, self.settings.most);
+        let (least, most) = (self.settings.too_hard_below, self.settings.too_easy_above);
         let agents = self.progress.pairs.len();
         let mut rows: Vec<(&Child, &[f32], &[f32])> = Vec::new();
         let width = agents + self.progress.panel.len();
@@ -403,14 +405,14 @@ impl<S: Strategy> Poet<S> {
     fn admit(
         &mut self,
         child: &Child,
-        agent: Genome,
+        agent: Agent,
         score: f32,
         row: Vec<f32>,
         is_new_challenge: bool,
     ) {
         let number = self.progress.nodes.len() as u32;
         let round = self.progress.rounds + 1;
-        let search = self.search(number, 0, Some(&agent));
+        let search = self.search(number, 0, Some(&agent.genome));
         self.progress.nodes.push(StairsNode {
             stairs: child.stairs,
             parent: Some(child.parent),
@@ -432,7 +434,7 @@ impl<S: Strategy> Poet<S> {
         let Progress { nodes, rows, panel, pairs, .. } = &mut self.progress;
         let count = nodes.len();
         for (node, column) in nodes.iter().skip(first as usize).zip(scores.chunks(count.max(1))) {
-            panel.extend(node.agent.clone());
+            panel.extend(node.agent.as_ref().map(|agent| agent.genome.clone()));
             rows.iter_mut().zip(column).for_each(|(row, score)| row.push(*score));
         }
         while pairs.len() > self.settings.pairs as usize {
@@ -452,11 +454,12 @@ fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>
     let evolution = &mut settings.evolution;
     evolution.strategy =
         if settings.genome.bodies.vary { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
-    evolution.population = poet.candidates;
+    evolution.population = poet.pair_candidates;
     // It is never over.
     evolution.generations = 10_000;
-    evolution.cma_es.step = poet.first_step;
-    evolution.cma_es.newborns = NEWBORNS;
+    evolution.cma_es.step = poet.pair_step;
+    let most = u32::try_from(plan.settings.evolution.budget() / 4).unwrap_or(u32::MAX);
+    evolution.cma_es.newborns = NEWBORNS.min(most);
     evolution.cma_es.restarts = RestartKind::None;
     let seed = stream(plan.seed, node, restarts, Purpose::Pair).next_u64();
     let founder = around.map(|genome| Arc::new(Founder::new("agent", genome.clone())));
@@ -473,18 +476,22 @@ impl<S: Strategy> Strategy for Poet<S> {
             archived: None,
             solved: None,
             is_new_challenge: false,
-            agent: founder.cloned(),
+            agent: founder.map(|genome| Agent {
+                genome: genome.clone(),
+                generation: 0,
+                individual: 0,
+            }),
             score: 0.0,
             trials: 0,
         };
         let search = S::begin(&search_plan(plan, 0, 0, founder));
-        let left = plan.settings.evolution.poet.iterations;
-        Self::with(plan, Progress::begin(root, Pair::new(0, search), left))
+        let left = plan.settings.evolution.poet.learn_generations;
+        Self::with(plan, 0, Progress::begin(root, Pair::new(0, search), left))
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
         let progress = Progress::read(state, plan, finished)?;
-        Ok(Self::with(plan, progress))
+        Ok(Self::with(plan, finished, progress))
     }
 
     fn ask(&self) -> Vec<Genome> {
@@ -502,7 +509,7 @@ impl<S: Strategy> Strategy for Poet<S> {
         for candidate in &candidates {
             let stairs = match &last {
                 Some((genome, stairs)) if *genome == candidate.stairs => Arc::clone(stairs),
-                _ => Arc::new(self.built(&candidate.stairs)),
+                _ => Arc::new(candidate.stairs.stairs()),
             };
             last = Some((candidate.stairs, Arc::clone(&stairs)));
             all.push(OwnStairs { stairs, perturbed: candidate.perturbed });
@@ -513,6 +520,7 @@ impl<S: Strategy> Strategy for Poet<S> {
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
         let candidates = self.batch();
         self.take(&candidates, evaluations);
+        self.generation += 1;
     }
 
     fn state(&self) -> StrategyState {

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use super::hardest::trial_on;
 use super::{DIRECT, SEEDS};
 use crate::evolve::{RestartKind, RunPlan, StrategyKind};
 use crate::run::evaluator::Evaluator;
@@ -37,7 +36,7 @@ pub fn planned_controls(study: &PoetStudy, poet: &RunPlan) -> Vec<PlannedControl
                 continue;
             }
             let mut settings = poet.settings.clone();
-            settings.trial = trial_on(poet, &hard.stairs);
+            settings.trial = poet.settings.trial.on_stairs(hard.stairs.stairs());
             let evolution = &mut settings.evolution;
             evolution.strategy = StrategyKind::CmaEs;
             evolution.population = POPULATION;

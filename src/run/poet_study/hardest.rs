@@ -3,14 +3,13 @@
 use std::sync::OnceLock;
 
 use super::{HARDEST, MUST_SUCCEED, SUCCESS, TRIALS};
-use crate::evolve::{Champion, Origin, OwnStairs, RunPlan, StairsNode, StairsTree};
-use crate::genome::{Genome, StairsGenome};
+use crate::evolve::{Champion, Origin, RunPlan, StairsNode, StairsTree};
+use crate::genome::Genome;
 use crate::run::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
 use crate::run::exam::exam_ends;
 use crate::run::run_control::{Cancelled, RunControl};
 use crate::save::HardStairs;
 use crate::score::{Evaluation, PerturbationRange, Trial, varied};
-use crate::world::Stairs;
 
 /// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
 ///
@@ -22,10 +21,12 @@ pub fn hardest_stairs(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<HardStairs>, Cancelled> {
-    let agents: Vec<&Genome> = tree.nodes.iter().filter_map(|node| node.agent.as_ref()).collect();
+    let agents: Vec<&Genome> =
+        tree.nodes.iter().filter_map(|node| Some(&node.agent.as_ref()?.genome)).collect();
     let solved: Vec<(usize, &StairsNode)> =
         tree.nodes.iter().enumerate().filter(|(_, node)| node.solved.is_some()).collect();
-    let trials: Vec<Trial> = solved.iter().map(|(_, node)| trial_on(plan, &node.stairs)).collect();
+    let trials: Vec<Trial> =
+        solved.iter().map(|(_, node)| node.trial(&plan.settings.trial)).collect();
     let jobs: Vec<Job<'_>> = (0..trials.len())
         .flat_map(|trial| agents.iter().map(move |genome| Job { genome, trial }))
         .collect();
@@ -43,7 +44,7 @@ pub fn hardest_stairs(
         }
         let (node, of) = solved[index];
         let Some(agent) = &of.agent else { continue };
-        let champion = agent_on(plan, agent, trials[index].clone());
+        let champion = agent_on(plan, &agent.genome, trials[index].clone());
         let conditions = varied(&champion.trial, &PerturbationRange::default(), TRIALS, plan.seed);
         let ends = exam_ends(&champion, &conditions, evaluator, control)?;
         let successes = ends.iter().filter(|end| end.way >= SUCCESS).count() as u32;
@@ -54,13 +55,6 @@ pub fn hardest_stairs(
         }
     }
     Ok(found)
-}
-
-/// The trial of a run on stairs.
-pub fn trial_on(plan: &RunPlan, stairs: &StairsGenome) -> Trial {
-    let Stairs { first_riser_y_m, landing_m, .. } = plan.settings.trial.stairs;
-    let stairs = Stairs { first_riser_y_m, landing_m, ..stairs.stairs() };
-    OwnStairs { stairs: stairs.into(), perturbed: 0 }.on(&plan.settings.trial)
 }
 
 fn agent_on(plan: &RunPlan, agent: &Genome, trial: Trial) -> Champion {

@@ -280,6 +280,26 @@ const CASES: &[Case] = &[
         "controller=gait; strategy=body_ga; bodies.vary=true; limbs_max=4; bodies.soft=true; modulus_min_pa=500; \
          modulus_max_pa=30000; substeps=4; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
+    (
+        "gaits on any other stairs in each generation",
+        [3, 8, 3],
+        "controller=gait; strategy=cma_es; repeats.trials=4; repeats.list=generation; off.stairs=drawn; trial.fitness=share; \
+         start_y_m=-3; trial.duration_s=3",
+    ),
+    (
+        "POET",
+        [3, 40, 40],
+        "controller=gait; strategy=poet; pairs=3; pair_candidates=4; pair_step=0.2; learn_generations=1; transfers=2; \
+         children=4; admitted=2; reproduces_from=0; too_hard_below=0.01; too_easy_above=0.9; solved_from=0.3; perturbed=1; \
+         root_rise_m=0.2; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
+    (
+        "POET with bodies, stairs without features",
+        [3, 30, 20],
+        "controller=gait; strategy=body_poet; bodies.vary=true; limbs_max=4; pairs=2; pair_candidates=6; learn_generations=2; \
+         transfers=1; features=false; reproduces_from=0; too_hard_below=0; too_easy_above=1.1; trial.fitness=share; \
+         start_y_m=-3; trial.duration_s=3",
+    ),
     // Many of their joints have asymmetric limits.
     (
         "creatures",

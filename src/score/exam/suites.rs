@@ -132,9 +132,7 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
 /// The held-out stairs, class by class; the first riser is where the champion's own trial has it.
 fn held_out_stairs(trial: &Trial) -> Vec<ExamCondition> {
     let on = |class: StairsClass, number: u32| {
-        let mut other = long(trial);
-        let Stairs { first_riser_y_m, landing_m, .. } = other.stairs;
-        other.stairs = Stairs { first_riser_y_m, landing_m, ..held_out(class, number).stairs() };
+        let other = long(trial).on_stairs(held_out(class, number).stairs());
         condition(&format!("{} {}", class.choice().name, number + 1), other)
     };
     let classes = StairsClass::OPTIONS.iter();

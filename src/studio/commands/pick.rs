@@ -18,6 +18,8 @@ pub(crate) enum Pick {
     },
     /// The elite of this cell of the archive.
     Elite(u32),
+    /// The agent of these stairs, where stairs evolve; the first are 0.
+    Stairs(u32),
     /// An individual of the latest generation, a champion, or an ancestor of either.
     Individual(IndividualId),
 }

@@ -25,6 +25,7 @@ pub(crate) fn champion_of(
             run.front_member(generation, individual).as_ref().map(found)
         }
         Pick::Elite(cell) => run.elite(cell).as_ref().map(found),
+        Pick::Stairs(node) => run.stairs_agent(node).as_ref().map(found),
         Pick::Individual(place) => run.individual(place).as_ref().map(found),
     }
 }

@@ -30,15 +30,16 @@ impl<S: Strategy> Poet<S> {
                 proposals.iter().flat_map(|proposal| self.fine_tuned(proposal)).collect()
             }
             Phase::Confirm { tuned } => {
-                let confirmed = |Tuned { from, to, genome }: &Tuned| {
+                let confirmed = |Tuned { from, to, agent }: &Tuned| {
                     let perturbed = self.settings.perturbed;
-                    Some(Candidate { perturbed, ..self.on_node(genome, *to, Some(*from))? })
+                    let tuned = self.on_node(&agent.genome, *to, Some(*from))?;
+                    Some(Candidate { perturbed, ..tuned })
                 };
                 tuned.iter().filter_map(confirmed).collect()
             }
             Phase::Breed { children } => {
                 let bred = |child: &Child| {
-                    let agent = self.progress.node(child.parent)?.agent.as_ref()?;
+                    let agent = self.progress.agent(child.parent)?;
                     let perturbed = self.settings.perturbed;
                     Some(Candidate { perturbed, ..of_stairs(agent, child.stairs) })
                 };
@@ -49,7 +50,7 @@ impl<S: Strategy> Poet<S> {
             }
             Phase::Place { first } => {
                 let new = self.progress.nodes.iter().skip(*first as usize);
-                let agents = new.filter_map(|node| node.agent.as_ref());
+                let agents = new.filter_map(|node| Some(&node.agent.as_ref()?.genome));
                 let stairs = self.progress.nodes.iter().map(|node| node.stairs);
                 agents
                     .flat_map(|agent| stairs.clone().map(move |stairs| of_stairs(agent, stairs)))
@@ -77,8 +78,8 @@ impl<S: Strategy> Poet<S> {
         let mut all = Vec::new();
         let mut sent = Vec::new();
         for pair in &self.progress.pairs {
-            let agent = self.progress.node(pair.node).and_then(|node| node.agent.as_ref());
-            let challenger = pair.challenger.as_ref().map(|(genome, _)| genome);
+            let agent = self.progress.agent(pair.node);
+            let challenger = pair.challenger.as_ref().map(|(agent, _)| &agent.genome);
             for genome in agent.into_iter().chain(challenger) {
                 let perturbed = self.settings.perturbed;
                 let own = self.on_node(genome, pair.node, None);
@@ -112,8 +113,7 @@ impl<S: Strategy> Poet<S> {
 
     /// All active agents, and the panel, on a mutant.
     fn compared(&self, stairs: &StairsGenome) -> Vec<Candidate> {
-        let agent = |node: u32| self.progress.node(node).and_then(|node| node.agent.as_ref());
-        let active = self.progress.pairs.iter().filter_map(|pair| agent(pair.node));
+        let active = self.progress.pairs.iter().filter_map(|pair| self.progress.agent(pair.node));
         active.chain(&self.progress.panel).map(|genome| of_stairs(genome, *stairs)).collect()
     }
 

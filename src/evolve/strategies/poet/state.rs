@@ -6,7 +6,7 @@ use super::{MOST_TRANSFERS, RECENT, search_plan};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
-use crate::evolve::stairs_tree::{StairsNode, Transfer};
+use crate::evolve::stairs_tree::{Agent, StairsNode, Transfer};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::{Genome, StairsGenome};
 use crate::schema::check;
@@ -45,7 +45,7 @@ pub struct Proposal {
 pub struct Tuned {
     pub from: u32,
     pub to: u32,
-    pub genome: Genome,
+    pub agent: Agent,
 }
 
 /// A mutant of stairs.
@@ -70,7 +70,7 @@ pub struct Pair<S> {
     /// Measurements in turn without a better agent.
     pub stale: u32,
     /// The best candidate since the last measurement, and its score in the nominal trial.
-    pub challenger: Option<(Genome, f32)>,
+    pub challenger: Option<(Agent, f32)>,
 }
 
 impl<S> Pair<S> {
@@ -129,7 +129,7 @@ struct SavedPair {
     restarts: u32,
     recent: Vec<f32>,
     stale: u32,
-    challenger: Option<(Genome, f32)>,
+    challenger: Option<(Agent, f32)>,
 }
 
 impl<S: Strategy> Progress<S> {
@@ -149,6 +149,11 @@ impl<S: Strategy> Progress<S> {
 
     pub fn node(&self, index: u32) -> Option<&StairsNode> {
         self.nodes.get(index as usize)
+    }
+
+    /// The genes of the agent of a staircase.
+    pub fn agent(&self, index: u32) -> Option<&Genome> {
+        Some(&self.node(index)?.agent.as_ref()?.genome)
     }
 
     pub fn node_mut(&mut self, index: u32) -> Option<&mut StairsNode> {
@@ -189,6 +194,7 @@ impl<S: Strategy> Progress<S> {
         for (index, pair) in saved.pairs.into_iter().enumerate() {
             // Around its agent, which decides nothing once the search has begun.
             let around = saved.nodes.get(pair.node as usize).and_then(|node| node.agent.as_ref());
+            let around = around.map(|agent| &agent.genome);
             let plan = search_plan(plan, pair.node, pair.restarts, around);
             let search = match pair.finished {
                 0 => S::begin(&plan),
@@ -256,7 +262,8 @@ impl SavedProgress {
             }
             Phase::Confirm { tuned } => {
                 within("tuned", tuned.len(), 1..=most)?;
-                let moves = tuned.iter().map(|Tuned { from, to, genome }| (*from, *to, genome));
+                let moves =
+                    tuned.iter().map(|Tuned { from, to, agent }| (*from, *to, &agent.genome));
                 self.check_moves(moves, plan)
             }
             Phase::Breed { children } | Phase::Compare { children } => {
@@ -279,7 +286,7 @@ impl SavedProgress {
         check_score("score", node.score)?;
         node.parent.map_or(Ok(()), |parent| self.check_place(parent))?;
         within("born", node.born, 0..=self.rounds + 1)?;
-        node.agent.as_ref().map_or(Ok(()), |agent| check_genome(agent, plan))
+        node.agent.as_ref().map_or(Ok(()), |agent| check_genome(&agent.genome, plan))
     }
 
     fn check_pair(&self, pair: &SavedPair, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
@@ -296,9 +303,9 @@ impl SavedProgress {
         pair.recent.iter().try_for_each(|score| check_score("recent", *score))?;
         within("finished", pair.finished, 0..=10_000)?;
         match &pair.challenger {
-            Some((genome, score)) => {
+            Some((agent, score)) => {
                 check_score("challenger", *score)?;
-                check_genome(genome, plan)
+                check_genome(&agent.genome, plan)
             }
             None => Ok(()),
         }

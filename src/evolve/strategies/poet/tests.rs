@@ -13,7 +13,7 @@ fn plan() -> RunPlan {
     settings.trial.fitness = Fitness::Share;
     settings.genome.controller = ControllerKind::Gait;
     settings.evolution.poet.pairs = 4;
-    settings.evolution.poet.iterations = 6;
+    settings.evolution.poet.learn_generations = 6;
     settings.evolution.poet.transfers = 2;
     settings.check().expect("they go together");
     RunPlan::new("test", 1, settings)
@@ -83,7 +83,8 @@ fn forget_an_agent(poet: &mut Poet<CmaEs>) -> u32 {
     let space = &poet.plan.settings.genome;
     let idle = space.genome_at(&vec![0.99; space.dimension(shape)], shape);
     let node = poet.progress.node_mut(target).expect("it is there");
-    (node.agent, node.score) = (Some(idle), 0.0);
+    let agent = Agent { genome: idle, generation: 1, individual: 0 };
+    (node.agent, node.score) = (Some(agent), 0.0);
     let pair = poet.progress.pair_mut(target).expect("it is active");
     (pair.recent, pair.challenger) = (vec![0.0], None);
     poet.progress.phase = Phase::Measure;

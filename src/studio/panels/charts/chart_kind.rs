@@ -11,6 +11,7 @@ pub(super) enum ChartKind {
     Species,
     Blocks,
     Bodies,
+    Stairs,
     Ancestors,
     Torques,
     Parents,
@@ -22,12 +23,13 @@ pub(super) enum ChartKind {
 
 impl ChartKind {
     /// In the order of their buttons.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Fitness,
         Self::Spread,
         Self::Species,
         Self::Blocks,
         Self::Bodies,
+        Self::Stairs,
         Self::Ancestors,
         Self::Torques,
         Self::Parents,
@@ -42,6 +44,9 @@ impl ChartKind {
         match self {
             Self::Species => strategy.info().has_species,
             Self::Blocks | Self::Bodies => strategy.info().varies_bodies,
+            Self::Stairs => strategy.info().evolves_stairs,
+            // Distances on different stairs cannot be compared, and no snake has recorded parents.
+            Self::Front | Self::Ancestors | Self::Parents => !strategy.info().evolves_stairs,
             _ => true,
         }
     }
@@ -56,6 +61,10 @@ impl ChartKind {
             Self::Bodies => {
                 ("Bodies", "Ancestry of the best body, a picture at every change of its structure")
             }
+            Self::Stairs => (
+                "Stairs",
+                "Tree of the stairs that evolve, and transfers of snakes between them (POET)",
+            ),
             Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
             Self::Torques => (
                 "Torques",
@@ -77,6 +86,7 @@ impl ChartKind {
             Self::Species => "species",
             Self::Blocks => "blocks",
             Self::Bodies => "bodies",
+            Self::Stairs => "stairs",
             Self::Ancestors => "ancestors",
             Self::Torques => "torques",
             Self::Parents => "parents",
@@ -106,6 +116,7 @@ impl ChartKind {
             Self::Bodies => {
                 "The ancestry of the best body will appear here after the first generation."
             }
+            Self::Stairs => "The stairs that evolve will appear here after the first generation.",
             Self::Ancestors => {
                 "The ancestors of the best snake will appear here after the first generation."
             }

@@ -32,7 +32,9 @@ pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
             let upper = ends.iter().map(|&[x, _, high]| [x, high].into());
             DrawnSeries::Layer([0, 1, 2].map(of), upper.collect())
         }
-        Shape::Bars { .. } | Shape::Boxes(_) | Shape::Cells(_) => DrawnSeries::AsItIs,
+        Shape::Bars { .. } | Shape::Arrows(_) | Shape::Boxes(_) | Shape::Cells(_) => {
+            DrawnSeries::AsItIs
+        }
     };
     chart.series.iter().map(|series| of_shape(&series.shape)).collect()
 }

@@ -3,8 +3,8 @@
 use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Stroke};
 use egui_plot::{
-    Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints, PlotTransform,
-    PlotUi, Points, Polygon,
+    Arrows, Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints,
+    PlotTransform, PlotUi, Points, Polygon,
 };
 
 use super::downsample::DrawnSeries;
@@ -22,6 +22,8 @@ use crate::studio::ui::theme::Palette;
 const CLICK_DISTANCE: f32 = 16.0;
 /// Space around the name of a mark on its plate, in points.
 const MARK_PADDING: egui::Vec2 = egui::vec2(4.0, 1.0);
+/// Length of the head of an arrow, in points.
+const ARROW_TIP: f32 = 7.0;
 /// Maximum number of points on a line that are marked individually.
 const MAX_MARKED_POINTS: usize = 30;
 
@@ -236,6 +238,13 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);
             let bars = BarChart::new(&series.name, bars.iter().map(bar).collect());
             plot.bar_chart(bars.color(color).allow_hover(false));
+        }
+        Shape::Arrows(arrows) => {
+            let ends = |index: usize| -> PlotPoints<'_> {
+                arrows.iter().map(|arrow| arrow[index]).collect()
+            };
+            let arrows = Arrows::new(&series.name, ends(0), ends(1)).color(color);
+            plot.add(arrows.tip_length(ARROW_TIP).allow_hover(false));
         }
         Shape::Boxes(boxes) => {
             for [left, right, bottom, top] in boxes {

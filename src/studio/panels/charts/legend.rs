@@ -72,6 +72,9 @@ fn sample(ui: &egui::Ui, rect: egui::Rect, series: &Series) {
         Shape::Dashed(_) => {
             painter.extend(egui::Shape::dashed_line(&ends, Stroke::new(1.5, color), 5.0, 3.0));
         }
+        Shape::Arrows(_) => {
+            painter.arrow(ends[0], ends[1] - ends[0], Stroke::new(1.5, color));
+        }
         Shape::Points(_) => {
             painter.circle_filled(rect.center(), 3.0, color);
         }

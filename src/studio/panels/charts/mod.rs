@@ -20,6 +20,7 @@ mod runs;
 mod search_charts;
 mod species;
 mod spread;
+mod stairs;
 mod torques;
 mod view;
 
@@ -275,6 +276,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         ChartKind::Bodies => {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
+        ChartKind::Stairs => Some(stairs::view(run.reports(), exploration?.stairs.as_ref()?)),
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),

@@ -17,7 +17,7 @@ impl CurrentRun {
     /// An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
         let genome = self.genome_of(place)?;
-        let trial = self.trial_in(place.generation);
+        let trial = self.trial_of(place);
         let evaluation = match self.evaluation_of(place) {
             Some(evaluation) => evaluation,
             None => caught(|| evaluate(&genome, &trial)).ok()?,
@@ -48,6 +48,28 @@ impl CurrentRun {
         let evaluation = caught(|| evaluate(&genome, &trial)).ok()?;
         let origin = self.origin(elite.generation, elite.individual);
         Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
+    }
+
+    /// The agent of stairs that evolved. The tree keeps its genes; the evaluation is computed again.
+    pub fn stairs_agent(&self, node: u32) -> Option<Champion> {
+        let tree = self.exploration()?.stairs.as_ref()?;
+        let node = tree.nodes.get(node as usize)?;
+        let agent = node.agent.as_ref()?;
+        let trial = node.trial(&self.settings().trial);
+        let evaluation = caught(|| evaluate(&agent.genome, &trial)).ok()?;
+        let origin = self.origin(agent.generation, agent.individual);
+        let genome = agent.genome.clone();
+        Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
+    }
+
+    /// The trial in which an individual was evaluated: where stairs evolve, on its own, if they are known.
+    pub(super) fn trial_of(&self, place: IndividualId) -> Trial {
+        let trial = self.trial_in(place.generation);
+        let latest = self.exploration().and_then(|explored| explored.generation.as_ref());
+        let latest = latest.filter(|latest| latest.number == place.generation);
+        let own = latest.and_then(|latest| latest.stairs.get(place.individual as usize));
+        let of_champion = || Some(self.champion_at(place)?.trial.clone());
+        own.map(|own| own.on(&trial)).or_else(of_champion).unwrap_or(trial)
     }
 
     /// The trial in which the individuals of a generation were evaluated.

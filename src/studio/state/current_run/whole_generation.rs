@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::CurrentRun;
-use crate::evolve::Champion;
+use crate::evolve::{Champion, IndividualId};
 use crate::run::GenerationReport;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
@@ -39,7 +39,8 @@ impl CurrentRun {
         }
         let champion = |member: &GenerationMember| Champion {
             genome: (*member.genome).clone(),
-            trial: self.trial_in(number),
+            trial: self
+                .trial_of(IndividualId { generation: number, individual: member.individual }),
             evaluation: member.evaluation,
             chosen_by: None,
             origin: self.origin(number, member.individual),

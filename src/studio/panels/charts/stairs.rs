@@ -1,0 +1,216 @@
+//! The tree of stairs that evolve: each staircase at the round in which it came and at its rise, with the transfers of snakes
+//! between them as arrows. A click replays the snake of a staircase. Below it, how many new challenges were solved.
+
+use super::view::{ChartHit, ChartView, HitShape};
+use crate::evolve::{IndividualId, StairsNode, StairsTree, Transfer};
+use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use crate::run::GenerationReport;
+use crate::studio::commands::pick::Pick;
+use crate::studio::ui::plot_axes::padded_range;
+
+/// Maximum number of the latest transfers that are drawn; more would hide the tree.
+const MOST_ARROWS: usize = 60;
+
+/// Charts of a tree.
+pub(super) fn view(reports: &[GenerationReport], tree: &StairsTree) -> ChartView {
+    let last = f64::from(tree.rounds.max(1));
+    let aside = last * 0.04;
+    let nodes = Chart {
+        name: "Stairs".to_owned(),
+        x: Axis::count("Round", -aside..=last + aside),
+        y: Axis::new("Mean rise", "m", padded_range(rises(tree), 0.1).unwrap_or(0.0..=1.0)),
+        series: series(tree),
+        marks: Vec::new(),
+    };
+    let solved = solved(reports);
+    let most = solved.last().map_or(1.0, |last| last[1]).max(1.0);
+    let challenges = Chart {
+        name: "New challenges".to_owned(),
+        x: Axis::count("Round", -aside..=last + aside),
+        y: Axis::count("Solved so far (ANNECS)", 0.0..=most * 1.05),
+        series: vec![Series::new("new challenges solved", Role::Third, Shape::Line(solved))],
+        marks: Vec::new(),
+    };
+    let hits = (0..).zip(&tree.nodes).map(|(index, node)| hit(index, node)).collect();
+    let figure = Figure {
+        title: "Stairs that evolve".to_owned(),
+        note: "Click stairs to see their snake climb them. A new challenge was neither too easy nor too hard for any snake of \
+               the run when it came."
+            .to_owned(),
+        charts: vec![nodes, challenges],
+        numbers: Some(table(tree)),
+    };
+    ChartView::new(figure, vec![hits, Vec::new()])
+}
+
+fn place(node: &StairsNode) -> [f64; 2] {
+    [node.born.into(), node.stairs.rise_m.into()]
+}
+
+fn rises(tree: &StairsTree) -> impl Iterator<Item = f64> {
+    tree.nodes.iter().map(|node| f64::from(node.stairs.rise_m))
+}
+
+fn series(tree: &StairsTree) -> Vec<Series> {
+    let node = |index: u32| tree.nodes.get(index as usize);
+    let descents =
+        tree.nodes.iter().filter_map(|child| Some([place(node(child.parent?)?), place(child)]));
+    let transfer = |of: &Transfer| Some([place(node(of.from)?), place(node(of.to)?)]);
+    let skipped = tree.transfers.len().saturating_sub(MOST_ARROWS);
+    let transfers = tree.transfers.iter().skip(skipped).filter_map(transfer);
+    let points = |wanted: &dyn Fn(&StairsNode) -> bool| {
+        Shape::Points(tree.nodes.iter().filter(|node| wanted(node)).map(place).collect())
+    };
+    let mut series = vec![
+        Series::new("descent", Role::Others, Shape::Arrows(descents.collect())),
+        Series::new("transfers of snakes", Role::Second, Shape::Arrows(transfers.collect())),
+        Series::new(
+            "archived unsolved",
+            Role::Others,
+            points(&|node| node.solved.is_none() && node.archived.is_some()),
+        ),
+        Series::new(
+            "active",
+            Role::Third,
+            points(&|node| node.solved.is_none() && node.archived.is_none()),
+        ),
+        Series::new("solved", Role::First, points(&|node| node.solved.is_some())),
+    ];
+    // Empty series need no legend entry.
+    series.retain(|series| match &series.shape {
+        Shape::Points(points) => !points.is_empty(),
+        Shape::Arrows(arrows) => !arrows.is_empty(),
+        _ => true,
+    });
+    series
+}
+
+/// The number of new challenges that were solved, at the end of each round.
+fn solved(reports: &[GenerationReport]) -> Vec<[f64; 2]> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    for count in reports.iter().filter_map(|report| report.stairs) {
+        let point = [f64::from(count.rounds), f64::from(count.challenges)];
+        match points.last_mut() {
+            Some(last) if last[0] == point[0] => *last = point,
+            _ => points.push(point),
+        }
+    }
+    points
+}
+
+fn hit(index: u32, node: &StairsNode) -> ChartHit {
+    let words = {
+        let node = node.clone();
+        move || words(index, &node)
+    };
+    let target = HitShape::Point(place(node));
+    match &node.agent {
+        Some(agent) => {
+            let at = IndividualId { generation: agent.generation, individual: agent.individual };
+            ChartHit::of(target, words, Pick::Stairs(index), at)
+        }
+        None => ChartHit::new(target, words),
+    }
+}
+
+/// A staircase in words.
+fn words(index: u32, node: &StairsNode) -> String {
+    let state = match (node.solved, node.archived) {
+        (Some(solved), _) => format!("solved in round {solved}"),
+        (None, None) => "not solved yet".to_owned(),
+        (None, Some(archived)) => format!("archived unsolved in round {archived}"),
+    };
+    let parent = match node.parent {
+        Some(parent) => format!("mutant of stairs {}", parent + 1),
+        None => "the first".to_owned(),
+    };
+    let score = node.score;
+    format!(
+        "Stairs {}: {}\n{parent}, {state}\nits snake covers {score:.2} of the way",
+        index + 1,
+        node.stairs
+    )
+}
+
+/// The stairs as a table, the names of the columns first.
+fn table(tree: &StairsTree) -> Vec<Vec<String>> {
+    let head = [
+        "stairs",
+        "shape",
+        "parent",
+        "round",
+        "archived",
+        "solved",
+        "new challenge",
+        "share",
+        "trials",
+    ];
+    let text = |number: Option<u32>| number.map_or(String::new(), |number| number.to_string());
+    let row = |(index, node): (u32, &StairsNode)| {
+        vec![
+            (index + 1).to_string(),
+            node.stairs.to_string(),
+            text(node.parent.map(|parent| parent + 1)),
+            node.born.to_string(),
+            text(node.archived),
+            text(node.solved),
+            node.is_new_challenge.to_string(),
+            node.score.to_string(),
+            node.trials.to_string(),
+        ]
+    };
+    let rows = (0..).zip(&tree.nodes).map(row);
+    [head.map(str::to_owned).to_vec()].into_iter().chain(rows).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Agent;
+    use crate::genome::{GenomeShape, GenomeSpace, StairsGenome};
+    use crate::rng::{Purpose, stream};
+
+    fn tree() -> StairsTree {
+        let shape = GenomeShape { joints: 4, duration_s: 1.0 };
+        let mut rng = stream(1, 0, 0, Purpose::Birth);
+        let genome = GenomeSpace::default().random_genome(shape, &mut rng);
+        let node = |parent, born, solved, archived, rise_m| StairsNode {
+            stairs: StairsGenome { rise_m, ..StairsGenome::default() },
+            parent,
+            born,
+            archived,
+            solved,
+            is_new_challenge: born > 0,
+            agent: Some(Agent { genome: genome.clone(), generation: 7, individual: 3 }),
+            score: 0.5,
+            trials: 100,
+        };
+        StairsTree {
+            rounds: 4,
+            nodes: vec![
+                node(None, 0, Some(1), Some(4), 0.1),
+                node(Some(0), 1, None, Some(4), 0.3),
+                node(Some(0), 2, None, None, 0.5),
+            ],
+            transfers: vec![Transfer { round: 3, from: 1, to: 2 }],
+        }
+    }
+
+    #[test]
+    fn each_staircase_can_be_clicked_and_arrows_lead_from_parents_and_along_transfers() {
+        let view = view(&[], &tree());
+        let names: Vec<&str> = view.figure.listed().iter().map(|of| of.name.as_str()).collect();
+        for name in ["descent", "transfers of snakes", "archived unsolved", "active", "solved"] {
+            assert!(names.contains(&name), "{name} in {names:?}");
+        }
+        let picks: Vec<Option<Pick>> = view.hits[0].iter().map(|hit| hit.pick).collect();
+        assert_eq!(picks, [0, 1, 2].map(|index| Some(Pick::Stairs(index))));
+        let text = view.hits[0][1].words();
+        assert!(text.contains("mutant of stairs 1, archived unsolved in round 4"), "{text}");
+        let Shape::Arrows(arrows) = &view.figure.charts[0].series[0].shape else {
+            panic!("arrows")
+        };
+        assert_eq!(arrows.len(), 2);
+        assert_eq!(view.figure.numbers.as_ref().map(Vec::len), Some(4));
+    }
+}
