@@ -7,6 +7,7 @@ use std::sync::LazyLock;
 use libfuzzer_sys::fuzz_target;
 use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume};
 use snakes_and_stairs::genome::ControllerKind;
+use snakes_and_stairs::score::Fitness;
 use snakes_and_stairs::save::{fingerprint, parse_checkpoint};
 
 /// A plan for each strategy, and its fingerprint.
@@ -26,6 +27,11 @@ fn plan(strategy: StrategyKind) -> (RunPlan, String) {
         settings.genome.bodies.limbs_max = 3;
         settings.evolution.islands.candidates = 4;
         settings.evolution.generations = 40;
+    }
+    if strategy.info().evolves_stairs {
+        settings.trial.fitness = Fitness::Share;
+        settings.evolution.poet.pair_candidates = 4;
+        settings.evolution.generations = 100;
     }
     settings.evolution.population = 3;
     settings.trial.duration_s = 0.1;

@@ -80,7 +80,8 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
     if compared.strategies == "all" {
         // Those that vary bodies are compared with the others where they are named.
         let varies = settings.genome.bodies.vary;
-        strategies.retain(|kind| kind.info().varies_bodies == varies);
+        strategies
+            .retain(|kind| kind.info().varies_bodies == varies && !kind.info().evolves_stairs);
     }
     let controllers: Vec<ControllerKind> = kinds("--controllers", &compared.controllers)?;
     let first_seed = args.seed()?;

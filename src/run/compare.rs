@@ -29,13 +29,18 @@ impl PlannedRun {
     /// would change nothing. The others keep the population of the settings.
     ///
     /// # Errors
-    /// The budget is too small for one generation, or the settings do not fit together.
+    /// The budget is too small for one generation, the settings do not fit together, or the stairs evolve, so that results on
+    /// different stairs would be compared.
     pub fn plan(
         &self,
         preset: &str,
         settings: &Settings,
         evaluations: u32,
     ) -> Result<RunPlan, Invalid> {
+        if self.strategy.info().evolves_stairs {
+            let allowed = "strategies whose snakes all learn on the stairs of the preset";
+            return Err(Invalid::new("--strategies", self.strategy, allowed));
+        }
         let mut settings = settings.clone();
         settings.genome.controller = self.controller;
         settings.evolution.strategy = self.strategy;
@@ -310,9 +315,9 @@ mod tests {
             let controller = controller.or(strategy.controllers().next()).expect("a controller");
             PlannedRun { strategy, controller, seed: 3 }
         };
-        StrategyKind::ALL
-            .map(|strategy| planned(strategy).plan("test", &settings, 24).expect("allowed"))
-            .to_vec()
+        let all = StrategyKind::ALL.into_iter().filter(|kind| !kind.info().evolves_stairs);
+        all.map(|strategy| planned(strategy).plan("test", &settings, 24).expect("allowed"))
+            .collect()
     }
 
     fn compared(plans: &[RunPlan], threads: usize) -> Comparison {
@@ -324,6 +329,14 @@ mod tests {
         let evaluator = LocalPool::new(threads).expect("threads");
         run_all(plans, &evaluator, &RunControl::default(), |_| (), done).expect("not cancelled");
         comparison
+    }
+
+    #[test]
+    fn a_strategy_whose_stairs_evolve_is_not_compared() {
+        let (strategy, controller) = (StrategyKind::Poet, ControllerKind::Gait);
+        let planned = PlannedRun { strategy, controller, seed: 1 };
+        let error = planned.plan("test", &Settings::default(), 1000).expect_err("refused");
+        assert!(error.to_string().starts_with("--strategies is poet; allowed: "), "{error}");
     }
 
     #[test]

@@ -68,6 +68,25 @@ fn the_vector_and_fma_variants_of_the_c_library_change_no_bit() {
 }
 
 #[test]
+fn stairs_that_evolve_have_one_run_hash_for_any_number_of_threads() {
+    let folder = folder();
+    let hash = |threads: usize| {
+        let arguments = format!(
+            "--no-render --json --preset poet --seed 9 --duration 3 --population 100 --generations 30 --set pairs=3 \
+             --set pair_candidates=4 --set learn_generations=1 --set transfers=1 --set reproduces_from=0 \
+             --set too_hard_below=0 --set too_easy_above=1.1 --out out-{threads} --threads {threads}"
+        );
+        let lines = json_lines(folder.path(), &arguments);
+        let last = &lines[lines.len() - 2]["stairs"];
+        assert!(last["all"].as_u64().is_some_and(|all| all > 3), "{last}");
+        lines[lines.len() - 1]["run_hash"].clone()
+    };
+    let one = hash(1);
+    assert_eq!(one, hash(2));
+    assert_eq!(one, hash(4));
+}
+
+#[test]
 fn the_program_gives_one_run_hash_for_any_number_of_threads() {
     let folder = folder();
     let hash = |threads: usize| {

@@ -16,6 +16,7 @@ use snakes_and_stairs::save::{
     fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
     parse_plan, parse_preset, parse_records, parse_stairs,
 };
+use snakes_and_stairs::score::Fitness;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// A change to a file's bytes.
@@ -255,6 +256,8 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::BodyMapElites, ControllerKind::Gait, "body-map-elites"),
         (StrategyKind::CreatureGa, ControllerKind::PartNeurons, "creature-ga"),
         (StrategyKind::Islands, ControllerKind::Gait, "islands"),
+        (StrategyKind::Poet, ControllerKind::Gait, "poet"),
+        (StrategyKind::BodyPoet, ControllerKind::Gait, "body-poet"),
     ] {
         let (mut plan, _) = plan();
         plan.settings.evolution.strategy = strategy;
@@ -265,6 +268,11 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
             plan.settings.genome.bodies.limbs_max = 3;
             plan.settings.evolution.islands.candidates = 4;
             plan.settings.evolution.generations = 40;
+        }
+        if strategy.info().evolves_stairs {
+            plan.settings.trial.fitness = Fitness::Share;
+            plan.settings.evolution.generations = 100;
+            plan.settings.evolution.poet.pair_candidates = 4;
         }
         plan.settings.evolution.xcs.rules = 20;
         plan.settings.evolution.zcs.rules = 20;

@@ -38,9 +38,13 @@ const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
 const WITH_CREATURES: &str =
     "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
 
-/// Number of runs that are killed: each of ten strategies seven times, four of which vary bodies, and two of them again with
-/// soft blocks.
-const ROUNDS: usize = 84;
+/// What lets stairs evolve in such a run, through all phases of a round.
+const WITH_STAIRS: &str = "--set trial.fitness=share --set pairs=3 --set pair_candidates=4 \
+                           --set learn_generations=1 --set transfers=1 --set reproduces_from=0 \
+                           --set too_hard_below=0 --set too_easy_above=1.1";
+
+/// Number of runs that are killed: each of sixteen kinds of run six times.
+const ROUNDS: usize = 96;
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -92,11 +96,24 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let soft = ["soft cma_es", "soft body_ga"];
     let on_ladders = ["ladder cma_es"];
-    let strategies: Vec<&str> =
-        strategies.into_iter().chain(of_bodies).chain(soft).chain(on_ladders).collect();
+    let with_stairs = ["poet", "body_poet"];
+    let strategies: Vec<&str> = strategies
+        .into_iter()
+        .chain(of_bodies)
+        .chain(soft)
+        .chain(on_ladders)
+        .chain(with_stairs)
+        .collect();
     let tiny = |strategy: &str| {
         if let Some(strategy) = strategy.strip_prefix("ladder ") {
             return format!("{TINY} --set strategy={strategy} {WITH_LADDER}");
+        }
+        if with_stairs.contains(&strategy) {
+            // Their generations are larger.
+            let tiny = TINY.replace("--population 4", "--population 100");
+            let bodies =
+                if strategy == "body_poet" { WITH_BODIES } else { "--set controller=gait" };
+            return format!("{tiny} --set strategy={strategy} {WITH_STAIRS} {bodies}");
         }
         let (strategy, is_soft) =
             strategy.strip_prefix("soft ").map_or((strategy, false), |strategy| (strategy, true));

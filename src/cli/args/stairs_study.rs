@@ -7,6 +7,6 @@ pub struct StairsStudyArgs {
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub seeds: u64,
     /// Evaluations that each run of a generalist may spend; each has nine trials, and a specialist has nine times as many
-    #[arg(long, value_name = "M", default_value_t = 2000)]
+    #[arg(long, value_name = "M", default_value_t = 6000)]
     pub evaluations: u32,
 }

@@ -26,12 +26,14 @@ impl StudyArm for StairsArm {
     fn plan(self, settings: &Settings, seed: u64, evaluations: u32) -> Result<RunPlan, Invalid> {
         let mut settings = settings.clone();
         let trials = settings.trial.repeats.trials;
-        let champion_trials = settings.trial.repeats.champion_trials;
+        let mut champion_trials = settings.trial.repeats.champion_trials;
         let mut evaluations = evaluations;
         if self == Self::Specialist {
             let repeats = &mut settings.trial.repeats;
             (repeats.trials, repeats.off.stairs) = (1, StairsVariation::Own);
             evaluations = evaluations.saturating_mul(trials);
+            // It has as many times more generations, each of which chooses a champion.
+            champion_trials = (champion_trials / trials).max(1);
         }
         let mut plan = budgeted("generalist", settings, seed, evaluations)?;
         // Both choose their champions with care, each on variations of what it has learned.

@@ -18,6 +18,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "floppy",
     "foam",
     "four",
+    "generalist",
     "learner",
     "paddler",
     "rearer",

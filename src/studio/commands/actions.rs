@@ -234,6 +234,9 @@ const FIXED: &[Action] = &[
     action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
         Some(Command::Stage(StageCommand::RaceLeaders(None)))
     }),
+    action(Menu::Run, "Race the snake over ten staircases", &[], |_| {
+        Some(Command::Stage(StageCommand::RaceStairs))
+    }),
     action(Menu::Run, "Examine the snake on 100 unseen staircases", &[], |_| {
         Some(Command::Exam(ExamCommand::Examine))
     }),

@@ -152,6 +152,8 @@ pub(super) enum StageCommand {
     RaceLeaders(Option<u32>),
     /// Show the snake at five values of this setting of the world, by its full dotted name, side by side.
     Sweep(String),
+    /// Show the snake on its own stairs and on the built-in ones, side by side.
+    RaceStairs,
     /// Accept the change of a what-if: only the changed lane stays.
     KeepChange,
     /// Leave the changed lane of a what-if as it is: the next change makes another lane beside it.

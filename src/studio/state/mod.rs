@@ -16,6 +16,7 @@ pub mod plan_commands;
 pub mod run_context;
 pub mod shares;
 pub mod stairs_exams;
+pub mod stairs_race;
 mod stopped_run;
 pub mod sweep;
 pub mod turns;

@@ -114,9 +114,9 @@ pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
 /// Maximum height of an open list, in points: all presets of the program and some of the user's.
-const LIST_HEIGHT: f32 = 610.0;
+const LIST_HEIGHT: f32 = 660.0;
 /// Maximum share of the window's height that an open list takes.
-const LIST_SHARE: f32 = 0.85;
+const LIST_SHARE: f32 = 0.92;
 /// Minimum width that panel layouts support, in points.
 #[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;

@@ -35,6 +35,9 @@ fn runs_of_every_strategy_and_of_learners_have_the_hash_of_one_machine() {
         "--preset xcs --generations 2",
         "--preset zcs --generations 2",
         "--preset waves-by-rules --population 12 --generations 2",
+        "--preset poet --population 200 --generations 24 --set pairs=3 --set pair_candidates=4 \
+         --set learn_generations=1 --set transfers=1 --set reproduces_from=0 --set too_hard_below=0 \
+         --set too_easy_above=1.1",
     ] {
         let arguments = format!("--no-render {arguments} --duration 2 --seed 3");
         let (local, distributed) = both(&server, &arguments);

@@ -15,6 +15,7 @@ fn plan() -> RunPlan {
     settings.evolution.poet.pairs = 4;
     settings.evolution.poet.learn_generations = 6;
     settings.evolution.poet.transfers = 2;
+    settings.evolution.poet.children = 24;
     settings.check().expect("they go together");
     RunPlan::new("test", 1, settings)
 }
@@ -52,7 +53,7 @@ fn run(rounds: u32) -> (Poet<CmaEs>, u32) {
 
 #[test]
 fn stairs_come_are_solved_and_the_oldest_are_archived() {
-    let (poet, _) = run(12);
+    let (poet, _) = run(16);
     let tree = poet.stairs_tree().expect("it has one");
     assert!(tree.nodes.len() > 6, "{} stairs", tree.nodes.len());
     assert!(tree.active() <= 4);
@@ -118,7 +119,7 @@ fn a_resumed_run_goes_on_with_the_same_bits_from_any_phase() {
     finished += 1;
     let mut resumed: Option<Poet<CmaEs>> = None;
     let mut phases = std::collections::BTreeSet::new();
-    for _ in 0..60 {
+    for _ in 0..120 {
         let state = expected.state();
         let text = ron::to_string(&state).expect("written");
         let state: StrategyState = ron::from_str(&text).expect("read");

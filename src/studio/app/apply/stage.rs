@@ -16,6 +16,7 @@ use crate::studio::stage::{Show, StageMode, end_s};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
+use crate::studio::state::stairs_race::stairs_race;
 use crate::studio::state::sweep::sweep;
 use crate::studio::state::turns::Turns;
 use crate::studio::state::what_if::{another_beside, kept};
@@ -174,6 +175,10 @@ impl StageParams<'_, '_> {
             StageCommand::Sweep(field) => {
                 let on_show = self.champions_to_change();
                 on_show.first().map(|champion| sweep(champion, field)).transpose()?
+            }
+            StageCommand::RaceStairs => {
+                let on_show = self.champions_to_change();
+                on_show.first().map(stairs_race).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),

@@ -1,0 +1,50 @@
+//! Race of one champion over many staircases, in lanes side by side.
+
+use crate::save::built_in_stairs;
+use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{MAX_LANES, Show, StageMode};
+
+/// The champion on its own stairs and on each of the built-in ones.
+///
+/// # Errors
+/// It fits none of them; in a sentence.
+pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
+    let own = champion.simulated().named("its own stairs".to_owned());
+    let others = built_in_stairs().map_err(|error| format!("{error}."))?;
+    let others = others.into_iter().map(|other| {
+        let trial = champion.trial().on_stairs(other.stairs);
+        champion.in_world(&trial, other.name.replace('-', " "))
+    });
+    // It may have learned on one of these.
+    let others = others.filter(|staged| staged.is_changed() && staged.check().is_ok());
+    let champions: Vec<StagedChampion> = [own].into_iter().chain(others).take(MAX_LANES).collect();
+    if champions.len() < 2 {
+        return Err("The snake on the stage fits no other stairs.".to_owned());
+    }
+    Ok(Show { champions, mode: StageMode::Race })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::shipped_champion;
+
+    #[test]
+    fn a_race_has_the_own_stairs_and_all_built_in_ones() {
+        let loaded = shipped_champion().expect("well formed");
+        let champion = StagedChampion::from_file(&loaded, 0, "climber");
+        let show = stairs_race(&champion).expect("it fits");
+        assert_eq!(show.mode, StageMode::Race);
+        let labels: Vec<&str> = show.champions.iter().map(StagedChampion::label).collect();
+        assert_eq!(labels.len(), MAX_LANES, "{labels:?}");
+        assert_eq!(labels[0], "its own stairs");
+        for name in ["house", "missing step", "over the top"] {
+            assert!(labels.contains(&name), "{name} in {labels:?}");
+        }
+        let stairs = |index: usize| &show.champions[index].trial().stairs;
+        assert!((1..labels.len()).all(|index| stairs(index) != stairs(0)));
+        // A race that begins in one of its lanes has the same stairs.
+        let again = stairs_race(&show.champions[1]).expect("it fits");
+        assert!(again.champions.len() >= MAX_LANES - 1);
+    }
+}
