@@ -135,8 +135,14 @@ fn measure_poet(
     study.stairs = tree.nodes.len() as u32;
     study.solved = tree.nodes.iter().filter(|node| node.solved.is_some()).count() as u32;
     study.challenges = challenges;
-    study.run_hash = format!("{:016x}", experiment.run_hash());
-    study.hardest = hardest_stairs(&plan, &tree, evaluator, control).map_err(cancelled)?;
-    study.controls = Vec::new();
+    let run_hash = format!("{:016x}", experiment.run_hash());
+    if study.run_hash != run_hash {
+        study.hardest = hardest_stairs(&plan, &tree, evaluator, control).map_err(cancelled)?;
+        study.controls = Vec::new();
+        study.run_hash = run_hash;
+    }
+    if tree.rounds < rounds {
+        say(&format!("the run is over after {} rounds", tree.rounds));
+    }
     Ok(study)
 }

@@ -30,7 +30,8 @@ pub struct StairsNode {
     pub archived: Option<u32>,
     /// The round in which its agent first solved it.
     pub solved: Option<u32>,
-    /// Whether it was neither too easy nor too hard for the best of all agents of the run when it came.
+    /// Whether it was neither too easy nor too hard, when it came, for the best of the active agents and of a copy of each
+    /// earlier one as it was when its stairs came.
     pub is_new_challenge: bool,
     /// Its agent; none before the root's first measurement.
     pub agent: Option<Agent>,

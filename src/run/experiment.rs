@@ -103,8 +103,10 @@ impl Experiment {
         experiment.evaluated =
             progress.records.iter().map(|record| u64::from(record.evaluations)).sum();
         experiment.known = progress.evaluations.iter().copied().collect();
-        for champion in &progress.champions {
-            experiment.keep_if_better(champion.as_ref());
+        for champion in progress.champions.iter().flatten() {
+            if experiment.was_better(champion) {
+                experiment.best = Some(champion.clone());
+            }
         }
         experiment.lineage = Lineage::recalled(&progress.lineage);
         if let Some(last) = progress.lineage.last().filter(|last| last.generation == finished) {
@@ -277,7 +279,8 @@ impl Experiment {
                 ranks[b].partial_cmp(&ranks[a]).unwrap_or(std::cmp::Ordering::Equal)
             });
         }
-        let mut champion = choose_champion(&evaluated, &ranking, evaluator, control)?;
+        let mut champion =
+            choose_champion(&evaluated, &ranking, evaluator, control, |of| self.rank(of))?;
         if trials.are_own() {
             // There are thousands of generations. Those that are better than all before are enough.
             champion = champion.filter(|champion| self.is_better(champion));
@@ -389,13 +392,19 @@ impl Experiment {
     }
 
     /// The numbers by which champions of this run are compared: the greater are the better one.
-    pub fn rank(&self, champion: &Champion) -> [f32; 2] {
+    fn rank(&self, champion: &Champion) -> [f32; 2] {
         let settings = &self.plan.settings.evolution;
         if settings.strategy.info().evolves_stairs {
             champion.rank_of_climbed(settings.poet.solved_from)
         } else {
             champion.rank()
         }
+    }
+
+    /// Whether a champion that an earlier session has kept is better than those before it. Where stairs evolve, only better
+    /// ones were kept, by the settings of that time.
+    fn was_better(&self, kept: &Champion) -> bool {
+        self.plan.settings.evolution.strategy.info().evolves_stairs || self.is_better(kept)
     }
 
     /// Whether a champion is better than all before.

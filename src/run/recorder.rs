@@ -94,9 +94,9 @@ impl RunSource {
             .collect();
         let mut recorder = RunRecorder { folder, best: None };
         for report in &reports {
-            if let Some(champion) = &report.champion {
+            if let Some(rank) = report.champion_rank() {
                 let path = recorder.folder.champion_path(report.generation);
-                recorder.keep_if_best(experiment.rank(champion), path);
+                recorder.keep_if_best(rank, path);
             }
         }
         Ok(RecordedRun { plan_at_start: self.plan, experiment, recorder, reports })
@@ -165,8 +165,8 @@ impl RunRecorder {
             &experiment.knowledge(),
             experiment.run_hash(),
         )?;
-        if let Some((path, champion)) = path.zip(champion) {
-            self.keep_if_best(experiment.rank(champion), path);
+        if let Some((path, rank)) = path.zip(report.champion_rank()) {
+            self.keep_if_best(rank, path);
         }
         Ok(crashes)
     }

@@ -126,7 +126,7 @@ impl StairsCount {
         let Self { rounds, all, active, solved, challenges } = self;
         format!(
             "round {}, {all} stairs, {active} active, {solved} solved, {challenges} new challenges",
-            rounds + 1
+            rounds.saturating_add(1)
         )
     }
 

@@ -252,7 +252,7 @@ impl SettingGroup for Settings {
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
         self.check_bodies()?;
-        self.check_fitness()?;
+        self.check_trials_of_stairs()?;
         let rises_m = &self.trial.stairs.rise_m;
         let strategy = self.evolution.strategy;
         self.evolution.ladder.check_with(strategy.name(), strategy.climbs_ladders(), rises_m)?;

@@ -7,7 +7,7 @@ use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
 use crate::schema::Choices;
-use crate::score::Fitness;
+use crate::score::{Fitness, StairsVariation};
 
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
@@ -55,8 +55,17 @@ impl Settings {
         let partner = changes.iter().find(|(field, _)| *field == "evolution.strategy");
         let strategy = if field == "evolution.strategy" { named(text) } else { None };
         if let Some(strategy) = strategy.or_else(|| partner.and_then(|(_, text)| named(text))) {
-            if strategy.info().evolves_stairs && self.trial.fitness != Fitness::Share {
-                changes.push(("trial.fitness", Fitness::Share.name()));
+            if strategy.info().evolves_stairs {
+                let repeats = &self.trial.repeats;
+                for (field, text, is_set) in [
+                    ("trial.fitness", Fitness::Share.name(), self.trial.fitness == Fitness::Share),
+                    ("trial.repeats.trials", "1", repeats.trials == 1),
+                    ("trial.repeats.off.stairs", "own", repeats.off.stairs == StairsVariation::Own),
+                ] {
+                    if !is_set {
+                        changes.push((field, text));
+                    }
+                }
             }
             let varies = strategy.info().varies_bodies;
             if varies != self.genome.bodies.vary {
@@ -101,10 +110,24 @@ impl Settings {
         }
     }
 
-    /// Checks that the fitness can be compared between stairs, if they evolve.
-    pub(super) fn check_fitness(&self) -> Result<(), Invalid> {
+    /// Checks that snakes can be compared between stairs, if these evolve: the strategy adds perturbed trials of its own.
+    pub(super) fn check_trials_of_stairs(&self) -> Result<(), Invalid> {
         let (strategy, fitness) = (self.evolution.strategy, self.trial.fitness);
-        if !strategy.info().evolves_stairs || fitness == Fitness::Share {
+        if !strategy.info().evolves_stairs {
+            return Ok(());
+        }
+        let repeats = &self.trial.repeats;
+        let with = format!("with evolution.strategy {strategy}");
+        if repeats.trials != 1 {
+            let allowed = format!("1 {with}, which adds evolution.poet.perturbed trials itself");
+            return Err(Invalid::new("trial.repeats.trials", repeats.trials, allowed));
+        }
+        if repeats.off.stairs != StairsVariation::Own {
+            let allowed = format!("own {with}, whose snakes are measured on their own stairs");
+            let name = repeats.off.stairs.choice().name;
+            return Err(Invalid::new("trial.repeats.off.stairs", name, allowed));
+        }
+        if fitness == Fitness::Share {
             return Ok(());
         }
         let allowed = format!(
@@ -155,6 +178,7 @@ mod tests {
         let all = |settings: &Settings, field, text| settings.partner_changes(field, text);
         let vary = "genome.bodies.vary";
         assert_eq!(all(&settings, strategy, "islands"), [(vary, "true")]);
+        assert_eq!(all(&settings, strategy, "poet"), [("trial.fitness", "share")]);
         assert_eq!(all(&settings, vary, "true"), [(strategy, "islands")]);
         let bodies = with_fields(&settings, [(vary, "true"), (strategy, "body_ga")]);
         let bodies = bodies.expect("they go together");
@@ -177,6 +201,22 @@ mod tests {
         assert_eq!(partner(&settings, strategy, "ga"), Some((controller, "gait")));
         assert_eq!(partner(&settings, strategy, "xcs"), None);
         assert_eq!(partner(&settings, controller, "gait"), Some((strategy, "cma_es")));
+    }
+
+    #[test]
+    fn stairs_that_evolve_need_a_share_as_fitness_and_one_trial_on_the_own_stairs() {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::Poet;
+        settings.genome.controller = ControllerKind::Gait;
+        let refused = |settings: &Settings| settings.check().expect_err("refused").to_string();
+        assert!(refused(&settings).starts_with("trial.fitness is centre; allowed: share with"));
+        settings.trial.fitness = Fitness::Share;
+        settings.check().expect("allowed");
+        settings.trial.repeats.trials = 2;
+        assert!(refused(&settings).starts_with("trial.repeats.trials is 2; allowed: 1 with"));
+        settings.trial.repeats.trials = 1;
+        settings.trial.repeats.off.stairs = StairsVariation::Drawn;
+        assert!(refused(&settings).starts_with("trial.repeats.off.stairs is drawn; allowed: own"));
     }
 
     #[test]

@@ -80,7 +80,7 @@ setting_group! {
 
         /// Perturbed trials, beside the nominal one, in which agents are measured and transferred.
         perturbed: u32 = 2,
-            whole("Perturbed trials of a measurement", 0..=100).advanced()
+            whole("Perturbed trials of a measurement", 0..=99).advanced()
                 .hint("Varied trials in which the snakes of pairs are compared, so that none moves by luck")
                 .slider(0.0, 10.0);
 

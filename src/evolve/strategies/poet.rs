@@ -28,7 +28,7 @@ use crate::rng::{Purpose, drawn, stream};
 use crate::score::Evaluation;
 use crate::world::Stairs;
 use batch::Candidate;
-use state::{Child, Pair, Phase, Progress, Proposal, Tuned};
+use state::{Child, FineTuned, Pair, Phase, PoetProgress, Proposal};
 
 /// Random genomes with which the search of the first pair begins; in a short run a quarter of its evaluations.
 const NEWBORNS: u32 = 100;
@@ -49,11 +49,11 @@ pub struct Poet<S> {
     plan: RunPlan,
     /// The next generation; the first is 1.
     generation: u32,
-    progress: Progress<S>,
+    progress: PoetProgress<S>,
 }
 
 impl<S: Strategy> Poet<S> {
-    fn with(plan: &RunPlan, finished: u32, progress: Progress<S>) -> Self {
+    fn with(plan: &RunPlan, finished: u32, progress: PoetProgress<S>) -> Self {
         let settings = plan.settings.evolution.poet.clone();
         Self { settings, plan: plan.clone(), generation: finished + 1, progress }
     }
@@ -92,7 +92,8 @@ impl<S: Strategy> Poet<S> {
         let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
         for candidate in candidates {
             if let Some(node) = candidate.node.and_then(|node| self.progress.node_mut(node)) {
-                node.trials += u64::from(candidate.perturbed) + 1;
+                let trials = u64::from(candidate.perturbed) + 1;
+                node.trials = node.trials.saturating_add(trials);
             }
         }
         let phase = std::mem::replace(&mut self.progress.phase, Phase::Measure);
@@ -148,7 +149,7 @@ impl<S: Strategy> Poet<S> {
         let round = self.progress.rounds + 1;
         let mut own =
             candidates.iter().zip(scores).filter(|(candidate, _)| candidate.from.is_none());
-        let Progress { pairs, nodes, .. } = &mut self.progress;
+        let PoetProgress { pairs, nodes, .. } = &mut self.progress;
         for pair in pairs.iter_mut() {
             let Some(node) = nodes.get_mut(pair.node as usize) else { continue };
             let incumbent = node.agent.take();
@@ -163,7 +164,7 @@ impl<S: Strategy> Poet<S> {
                 }
             }
             let Some((agent, score, is_new)) = best else { continue };
-            pair.stale = if is_new { 0 } else { pair.stale + 1 };
+            pair.stale = if is_new { 0 } else { pair.stale.saturating_add(1) };
             node.agent = Some(agent);
             Self::note_score(node, pair, score, round, self.settings.solved_from);
         }
@@ -187,7 +188,7 @@ impl<S: Strategy> Poet<S> {
         for index in 0..self.progress.pairs.len() {
             let pair = &self.progress.pairs[index];
             if pair.stale >= STALE {
-                let (node, restarts) = (pair.node, pair.restarts + 1);
+                let (node, restarts) = (pair.node, pair.restarts.saturating_add(1));
                 self.begin_again(node, restarts);
             }
         }
@@ -255,7 +256,7 @@ impl<S: Strategy> Poet<S> {
             {
                 let Proposal { from, to, .. } = proposal;
                 let (genome, generation) = (genome.clone(), self.generation);
-                tuned.push(Tuned { from, to, agent: Agent { genome, generation, individual } });
+                tuned.push(FineTuned { from, to, agent: Agent { genome, generation, individual } });
             }
         }
         if tuned.is_empty() { self.after_transfers() } else { Phase::Confirm { tuned } }
@@ -268,19 +269,20 @@ impl<S: Strategy> Poet<S> {
     }
 
     /// Replaces the agents of stairs by those fine-tuned ones that beat them, too.
-    fn after_confirmation(&mut self, tuned: Vec<Tuned>, scores: &[f32]) -> Phase {
+    fn after_confirmation(&mut self, tuned: Vec<FineTuned>, scores: &[f32]) -> Phase {
         let round = self.progress.rounds + 1;
-        for (Tuned { from, to, agent }, &score) in tuned.into_iter().zip(scores) {
+        for (FineTuned { from, to, agent }, &score) in tuned.into_iter().zip(scores) {
             if score <= self.to_beat(to) {
                 continue;
             }
             if let Some(node) = self.progress.node_mut(to) {
                 node.agent = Some(agent);
             }
-            let restarts = self.progress.pair_mut(to).map_or(0, |pair| pair.restarts + 1);
+            let restarts =
+                self.progress.pair_mut(to).map_or(0, |pair| pair.restarts.saturating_add(1));
             self.begin_again(to, restarts);
             let solved = self.settings.solved_from;
-            let Progress { pairs, nodes, transfers, .. } = &mut self.progress;
+            let PoetProgress { pairs, nodes, transfers, .. } = &mut self.progress;
             let pair = pairs.iter_mut().find(|pair| pair.node == to);
             if let Some((node, pair)) = nodes.get_mut(to as usize).zip(pair) {
                 Self::note_score(node, pair, score, round, solved);
@@ -302,8 +304,16 @@ impl<S: Strategy> Poet<S> {
         if children.is_empty() { self.end_round() } else { Phase::Breed { children } }
     }
 
+    /// Archives the oldest pairs, if there are too many.
     fn end_round(&mut self) -> Phase {
         self.progress.rounds += 1;
+        let PoetProgress { rounds, nodes, pairs, .. } = &mut self.progress;
+        while pairs.len() > self.settings.pairs as usize {
+            let oldest = pairs.remove(0);
+            if let Some(node) = nodes.get_mut(oldest.node as usize) {
+                node.archived = Some(*rounds);
+            }
+        }
         self.progress.transfers_done = 0;
         Phase::Learn { left: self.settings.learn_generations }
     }
@@ -425,23 +435,16 @@ impl<S: Strategy> Poet<S> {
             trials: 0,
         });
         self.progress.rows.push(row);
-        self.progress.pairs.push(Pair { recent: vec![score], ..Pair::new(number, search) });
+        self.progress.pairs.push(Pair::new(number, search));
     }
 
-    /// Adds the agents of the new stairs to the panel, and archives the oldest pairs.
+    /// Adds the agents of the new stairs to the panel.
     fn after_placing(&mut self, first: u32, scores: &[f32]) -> Phase {
-        let round = self.progress.rounds + 1;
-        let Progress { nodes, rows, panel, pairs, .. } = &mut self.progress;
+        let PoetProgress { nodes, rows, panel, .. } = &mut self.progress;
         let count = nodes.len();
         for (node, column) in nodes.iter().skip(first as usize).zip(scores.chunks(count.max(1))) {
             panel.extend(node.agent.as_ref().map(|agent| agent.genome.clone()));
             rows.iter_mut().zip(column).for_each(|(row, score)| row.push(*score));
-        }
-        while pairs.len() > self.settings.pairs as usize {
-            let oldest = pairs.remove(0);
-            if let Some(node) = nodes.get_mut(oldest.node as usize) {
-                node.archived = Some(round);
-            }
         }
         self.end_round()
     }
@@ -486,11 +489,11 @@ impl<S: Strategy> Strategy for Poet<S> {
         };
         let search = S::begin(&search_plan(plan, 0, 0, founder));
         let left = plan.settings.evolution.poet.learn_generations;
-        Self::with(plan, 0, Progress::begin(root, Pair::new(0, search), left))
+        Self::with(plan, 0, PoetProgress::begin(root, Pair::new(0, search), left))
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
-        let progress = Progress::read(state, plan, finished)?;
+        let progress = PoetProgress::read(state, plan, finished)?;
         Ok(Self::with(plan, finished, progress))
     }
 
@@ -544,7 +547,7 @@ impl<S: Strategy> Strategy for Poet<S> {
     }
 
     fn stairs_tree(&self) -> Option<StairsTree> {
-        let Progress { rounds, nodes, transfers, .. } = &self.progress;
+        let PoetProgress { rounds, nodes, transfers, .. } = &self.progress;
         Some(StairsTree { rounds: *rounds, nodes: nodes.clone(), transfers: transfers.clone() })
     }
 }

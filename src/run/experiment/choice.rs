@@ -22,6 +22,7 @@ pub(super) fn choose_champion(
     ranking: &[usize],
     evaluator: &dyn Evaluator,
     control: &RunControl,
+    rank: impl Fn(&Champion) -> [f32; 2],
 ) -> Result<Option<Champion>, Cancelled> {
     let candidates = &ranking[..ranking.len().min(CANDIDATES)];
     let of = |&index: &usize| evaluated.trials.of(index).that_chooses_champions();
@@ -47,7 +48,7 @@ pub(super) fn choose_champion(
         let Ok(on_list) = result else { continue };
         let chosen_by = Some(on_list.evaluation.fitness);
         let candidate = Champion { chosen_by, ..evaluated.individual(index) };
-        if best.as_ref().is_none_or(|best| candidate.rank() > best.rank()) {
+        if best.as_ref().is_none_or(|best| rank(&candidate) > rank(best)) {
             best = Some(candidate);
         }
     }

@@ -12,20 +12,20 @@ const MINUTES: f64 = 60.0;
 
 /// The verdict on hard stairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Verdict {
+enum SolvedBy {
     OnlyPoet,
     Direct,
     NotMeasured,
 }
 
-fn verdict(study: &PoetStudy, hard: &HardStairs) -> Verdict {
+fn verdict(study: &PoetStudy, hard: &HardStairs) -> SolvedBy {
     let runs: Vec<_> = study.controls.iter().filter(|run| run.node == hard.node).collect();
     if runs.iter().any(|run| is_enough(run)) {
-        Verdict::Direct
+        SolvedBy::Direct
     } else if runs.len() as u64 >= SEEDS {
-        Verdict::OnlyPoet
+        SolvedBy::OnlyPoet
     } else {
-        Verdict::NotMeasured
+        SolvedBy::NotMeasured
     }
 }
 
@@ -55,9 +55,9 @@ fn row(study: &PoetStudy, hard: &HardStairs) -> Vec<String> {
     let runs = study.controls.iter().filter(|run| run.node == hard.node);
     let best = runs.clone().filter_map(|run| run.share).reduce(f32::max);
     let words = match verdict(study, hard) {
-        Verdict::OnlyPoet => "POET alone",
-        Verdict::Direct => "direct search too",
-        Verdict::NotMeasured => "not measured",
+        SolvedBy::OnlyPoet => "POET alone",
+        SolvedBy::Direct => "direct search too",
+        SolvedBy::NotMeasured => "not measured",
     };
     vec![
         (hard.node + 1).to_string(),
@@ -80,8 +80,8 @@ fn claim(claim: &str, must: String, measured: Option<(String, bool)>) -> Vec<Str
 
 fn only_poet(study: &PoetStudy) -> Vec<String> {
     let count =
-        |of: Verdict| study.hardest.iter().filter(|hard| verdict(study, hard) == of).count();
-    let (only, open) = (count(Verdict::OnlyPoet), count(Verdict::NotMeasured));
+        |of: SolvedBy| study.hardest.iter().filter(|hard| verdict(study, hard) == of).count();
+    let (only, open) = (count(SolvedBy::OnlyPoet), count(SolvedBy::NotMeasured));
     // The missing ones cannot change a verdict that is certain.
     let is_certain = only >= ONLY_POET || only + open < ONLY_POET || open == 0;
     let measured = (study.rounds > 0 && is_certain).then(|| {

@@ -30,7 +30,7 @@ pub fn planned_controls(study: &PoetStudy, poet: &RunPlan) -> Vec<PlannedControl
     let mut planned = Vec::new();
     for number in 1..=SEEDS {
         for hard in &study.hardest {
-            let seed = poet.seed + number;
+            let seed = poet.seed.wrapping_add(number);
             let mut of_node = study.controls.iter().filter(|run| run.node == hard.node);
             if of_node.any(|run| run.seed == seed || is_enough(run)) {
                 continue;

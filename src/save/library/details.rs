@@ -189,8 +189,11 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
         Some([record.rung.map_or(0.0, |rung| f64::from(rung.rise_m)), fitness])
     };
     let ranked = records.iter().zip(1..).filter_map(|(of, number)| Some((number, rank(of)?)));
-    // Of equal ones, the first.
-    let best = ranked.reduce(|best, next| if next.1 > best.1 { next } else { best });
+    // Of equal ones, the first. Where stairs evolve, a run keeps only champions that are better than all before.
+    let best = match champions.last().filter(|_| records.iter().any(|of| of.stairs.is_some())) {
+        Some(&last) => records.get(last as usize - 1).and_then(rank).map(|rank| (last, rank)),
+        None => ranked.reduce(|best, next| if next.1 > best.1 { next } else { best }),
+    };
     let shown = best.and_then(|(generation, _)| load_generation(folder, generation).ok());
     let best = best.and_then(|(generation, _)| {
         let of_all = best_of_each.get(generation as usize - 1).copied().flatten();

@@ -60,8 +60,9 @@ impl Milestones {
         let Some(champion) = &report.champion else { return };
         let fitness = champion.evaluation.fitness;
         let stairs_m = champion.trial.stairs.highest_m();
-        // On a ladder, higher stairs come before greater fitness.
-        if self.0.last().is_some_and(|last| [stairs_m, fitness] <= [last.stairs_m, last.fitness]) {
+        // On a ladder, higher stairs come before greater fitness. Where stairs evolve, only better champions are kept.
+        let is_no_better = |last: &Milestone| [stairs_m, fitness] <= [last.stairs_m, last.fitness];
+        if report.stairs.is_none() && self.0.last().is_some_and(is_no_better) {
             return;
         }
         self.0.push(Milestone {
@@ -71,7 +72,11 @@ impl Milestones {
             // On a ladder, only on the stairs to which it leads.
             is_landed: report.on_landing > 0
                 && champion.evaluation.is_on_landing(&champion.trial.stairs),
-            members: snakes.map_or_else(Arc::default, members_to_show),
+            // Those on stairs of their own would be shown on those of the run.
+            members: match report.stairs {
+                Some(_) => Arc::default(),
+                None => snakes.map_or_else(Arc::default, members_to_show),
+            },
             size: report.evaluations,
         });
         if self.0.iter().filter(|milestone| milestone.is_whole()).count() > MAX_WHOLE {

@@ -1,7 +1,7 @@
 //! The candidates of a generation, which follow from the phase.
 
 use super::Poet;
-use super::state::{Child, Phase, Proposal, Tuned};
+use super::state::{Child, FineTuned, Phase, Proposal};
 use crate::evolve::strategy::Strategy;
 use crate::genome::{Genome, StairsGenome};
 
@@ -30,7 +30,7 @@ impl<S: Strategy> Poet<S> {
                 proposals.iter().flat_map(|proposal| self.fine_tuned(proposal)).collect()
             }
             Phase::Confirm { tuned } => {
-                let confirmed = |Tuned { from, to, agent }: &Tuned| {
+                let confirmed = |FineTuned { from, to, agent }: &FineTuned| {
                     let perturbed = self.settings.perturbed;
                     let tuned = self.on_node(&agent.genome, *to, Some(*from))?;
                     Some(Candidate { perturbed, ..tuned })
@@ -72,8 +72,8 @@ impl<S: Strategy> Poet<S> {
         all
     }
 
-    /// The agents and challengers on their own stairs, the agent of a pair before its challenger; then the agents on the stairs
-    /// of all other pairs, in the nominal trial.
+    /// The agents and challengers on their own stairs, the agent of a pair before its challenger; then the better of both on
+    /// the stairs of all other pairs, in the nominal trial.
     fn measured(&self) -> Vec<Candidate> {
         let mut all = Vec::new();
         let mut sent = Vec::new();
@@ -85,7 +85,11 @@ impl<S: Strategy> Poet<S> {
                 let own = self.on_node(genome, pair.node, None);
                 all.extend(own.map(|own| Candidate { perturbed, ..own }));
             }
-            sent.extend(challenger.or(agent).map(|genome| (pair.node, genome)));
+            // A challenger that was worse in the nominal trial than the agent in all trials is not sent in its place.
+            let score = self.progress.node(pair.node).map_or(0.0, |node| node.score);
+            let is_better = pair.challenger.as_ref().is_some_and(|(_, nominal)| *nominal > score);
+            let best = if is_better { challenger } else { agent.or(challenger) };
+            sent.extend(best.map(|genome| (pair.node, genome)));
         }
         for pair in &self.progress.pairs {
             for &(from, genome) in sent.iter().filter(|(from, _)| *from != pair.node) {
@@ -99,7 +103,7 @@ impl<S: Strategy> Poet<S> {
     fn fine_tuned(&self, proposal: &Proposal) -> Vec<Candidate> {
         let Proposal { from, to, genome } = proposal;
         let restarts = self.progress.pairs.iter().find(|pair| pair.node == *to);
-        let restarts = restarts.map_or(0, |pair| pair.restarts + 1);
+        let restarts = restarts.map_or(0, |pair| pair.restarts.saturating_add(1));
         let perturbed = self.settings.perturbed;
         let direct = self.on_node(genome, *to, Some(*from));
         let mut all: Vec<Candidate> =

@@ -21,7 +21,7 @@ pub enum Phase {
     /// Agents that may move are measured, and fine-tuned for a generation.
     Tune { proposals: Vec<Proposal> },
     /// The fine-tuned ones are measured.
-    Confirm { tuned: Vec<Tuned> },
+    Confirm { tuned: Vec<FineTuned> },
     /// Mutants of stairs are tried with the agents of their parents.
     Breed { children: Vec<Child> },
     /// The mutants that are neither too easy nor too hard are tried with all agents.
@@ -42,7 +42,7 @@ pub struct Proposal {
 /// The best fine-tuned candidate of a proposal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Tuned {
+pub struct FineTuned {
     pub from: u32,
     pub to: u32,
     pub agent: Agent,
@@ -89,7 +89,7 @@ impl<S> Pair<S> {
 }
 
 /// Everything that POET has learned.
-pub struct Progress<S> {
+pub struct PoetProgress<S> {
     pub phase: Phase,
     /// Finished rounds.
     pub rounds: u32,
@@ -105,10 +105,10 @@ pub struct Progress<S> {
     pub transfers: Vec<Transfer>,
 }
 
-/// [`Progress`] in a file.
+/// [`PoetProgress`] in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SavedProgress {
+struct SavedPairs {
     phase: Phase,
     rounds: u32,
     transfers_done: u32,
@@ -132,7 +132,7 @@ struct SavedPair {
     challenger: Option<(Agent, f32)>,
 }
 
-impl<S: Strategy> Progress<S> {
+impl<S: Strategy> PoetProgress<S> {
     /// The beginning of a run, with one pair.
     pub fn begin(root: StairsNode, pair: Pair<S>, iterations: u32) -> Self {
         Self {
@@ -174,7 +174,7 @@ impl<S: Strategy> Progress<S> {
             stale: pair.stale,
             challenger: pair.challenger.clone(),
         };
-        StrategyState::of(&SavedProgress {
+        StrategyState::of(&SavedPairs {
             phase: self.phase.clone(),
             rounds: self.rounds,
             transfers_done: self.transfers_done,
@@ -188,7 +188,7 @@ impl<S: Strategy> Progress<S> {
 
     /// Reads what a run had learned after its first `finished` generations.
     pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid> {
-        let saved: SavedProgress = state.read()?;
+        let saved: SavedPairs = state.read()?;
         saved.check(plan, finished)?;
         let mut pairs = Vec::new();
         for (index, pair) in saved.pairs.into_iter().enumerate() {
@@ -201,6 +201,10 @@ impl<S: Strategy> Progress<S> {
                 finished => S::resume(&plan, finished, &pair.search)
                     .map_err(|error| error.inside(&format!("pairs[{index}].search")))?,
             };
+            let evolution = &plan.settings.evolution;
+            let most = evolution.population.max(evolution.cma_es.newborns) as usize;
+            within("population", search.population(), 1..=most)
+                .map_err(|error| error.inside(&format!("pairs[{index}].search")))?;
             pairs.push(Pair {
                 node: pair.node,
                 search,
@@ -224,7 +228,7 @@ impl<S: Strategy> Progress<S> {
     }
 }
 
-impl SavedProgress {
+impl SavedPairs {
     fn check(&self, plan: &RunPlan, finished: u32) -> Result<(), Invalid> {
         let settings = &plan.settings.evolution.poet;
         within("rounds", self.rounds, 0..=finished)?;
@@ -234,8 +238,8 @@ impl SavedProgress {
         within("transfers", self.transfers.len(), 0..=MOST_TRANSFERS)?;
         within("panel", self.panel.len(), 0..=self.nodes.len())?;
         within("rows", self.rows.len(), self.nodes.len()..=self.nodes.len())?;
-        for node in &self.nodes {
-            self.check_node(node, plan).map_err(|error| error.inside("nodes"))?;
+        for (index, node) in self.nodes.iter().enumerate() {
+            self.check_node(node, index, plan).map_err(|error| error.inside("nodes"))?;
         }
         for row in &self.rows {
             // A staircase that has just come lacks the columns of those that came with it.
@@ -263,11 +267,12 @@ impl SavedProgress {
             Phase::Confirm { tuned } => {
                 within("tuned", tuned.len(), 1..=most)?;
                 let moves =
-                    tuned.iter().map(|Tuned { from, to, agent }| (*from, *to, &agent.genome));
+                    tuned.iter().map(|FineTuned { from, to, agent }| (*from, *to, &agent.genome));
                 self.check_moves(moves, plan)
             }
             Phase::Breed { children } | Phase::Compare { children } => {
                 within("children", children.len(), 1..=most)?;
+                self.pairs.iter().try_for_each(|pair| self.check_agent(pair.node))?;
                 children.iter().try_for_each(|child| {
                     self.check_agent(child.parent)?;
                     check(&child.stairs)
@@ -281,10 +286,14 @@ impl SavedProgress {
         }
     }
 
-    fn check_node(&self, node: &StairsNode, plan: &RunPlan) -> Result<(), Invalid> {
+    fn check_node(&self, node: &StairsNode, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
         check(&node.stairs)?;
         check_score("score", node.score)?;
-        node.parent.map_or(Ok(()), |parent| self.check_place(parent))?;
+        // Those before it; the root has none.
+        if node.parent.is_none_or(|parent| parent as usize >= index) != (index == 0) {
+            let found = node.parent.map_or("none".to_owned(), |parent| parent.to_string());
+            return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
+        }
         within("born", node.born, 0..=self.rounds + 1)?;
         node.agent.as_ref().map_or(Ok(()), |agent| check_genome(&agent.genome, plan))
     }

@@ -34,8 +34,8 @@ pub(super) fn view(reports: &[GenerationReport], tree: &StairsTree) -> ChartView
     let hits = (0..).zip(&tree.nodes).map(|(index, node)| hit(index, node)).collect();
     let figure = Figure {
         title: "Stairs that evolve".to_owned(),
-        note: "Click stairs to see their snake climb them. A new challenge was neither too easy nor too hard for any snake of \
-               the run when it came."
+        note: "Click stairs to see their snake climb them. A new challenge was neither too easy nor too hard for the best \
+               snake when it came."
             .to_owned(),
         charts: vec![nodes, challenges],
         numbers: Some(table(tree)),
