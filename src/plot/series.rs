@@ -92,7 +92,7 @@ pub(super) fn paint_series(
 fn arrow_head(from: (i32, i32), to: (i32, i32)) -> [(i32, i32); 3] {
     const LENGTH: f64 = 12.0;
     let (x, y) = (f64::from(from.0 - to.0), f64::from(from.1 - to.1));
-    let length = x.hypot(y).max(1.0);
+    let length = libm::hypot(x, y).max(1.0);
     let (x, y) = (x / length * LENGTH, y / length * LENGTH);
     let side = |sign: f64| ((x - sign * y * 0.5) as i32, (y + sign * x * 0.5) as i32);
     [side(1.0), (0, 0), side(-1.0)]
