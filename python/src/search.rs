@@ -105,6 +105,11 @@ impl Search {
             let founder = Founder::new("a champion", champion.genome().clone());
             plan = plan.starting_from(founder).map_err(invalid)?;
         }
+        let kind = plan.settings.evolution.strategy;
+        if kind.info().evolves_stairs {
+            let allowed = "a strategy whose snakes all have the stairs of the problem; the command snakes runs this one";
+            return Err(refused("evolution.strategy", kind.name(), allowed));
+        }
         let strategy = py.detach(|| caught(|| begin(&plan))).map_err(crashed)?;
         let state = SearchState { strategy, asked: None, finished: 0, evaluated: 0 };
         Ok(Self { problem, plan, state: Mutex::new(state) })

@@ -61,6 +61,7 @@ fn perturbation_of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Perturba
         tread: 0.0,
         step_rate: 0.0,
         shove_m_s: 0.0,
+        ..PerturbationRange::default()
     };
     for (name, text) in changes_in("perturbation", "", Some(value))? {
         let path = schema::find(&range, &name).map_err(|error| {

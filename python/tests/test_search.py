@@ -12,7 +12,9 @@ from snakes_and_stairs import Problem, Search
 SMALL = {**SHORT, "evolution.population": 8, "evolution.generations": 3}
 #: Presets whose genomes are more than numbers.
 MORE_THAN_NUMBERS = ["bodies", "creatures", "neat", "q-learning", "xcs", "zcs"]
-ARRAYS = [name for name in sns.presets() if name not in MORE_THAN_NUMBERS]
+#: A preset whose stairs evolve, too.
+STAIRS = "poet"
+ARRAYS = [name for name in sns.presets() if name not in [*MORE_THAN_NUMBERS, STAIRS]]
 #: Strategies whose genomes are arrays in the space of the preset climb.
 STRATEGIES = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"]
 
@@ -113,6 +115,11 @@ def test_a_search_saves_the_snakes_that_it_found(preset, snakes, tmp_path):
         problem = Problem(preset, settings=SHORT)
         again = problem.evaluate(problem.genome_of(path))
         assert again.trace_hash[0] == champion.trace_hash
+
+
+def test_a_strategy_whose_stairs_evolve_is_refused():
+    with pytest.raises(ValueError, match="evolution.strategy is poet; allowed: a strategy whose"):
+        Search(STAIRS)
 
 
 def test_a_snake_that_was_not_asked_for_is_not_saved(tmp_path):
