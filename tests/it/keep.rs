@@ -38,7 +38,7 @@ const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
 const WITH_CREATURES: &str =
     "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
 
-/// What lets stairs evolve in such a run, through all phases of a round.
+/// Settings with which stairs evolve in such a run, through all phases of a round.
 const WITH_STAIRS: &str = "--set trial.fitness=share --set pairs=3 --set pair_candidates=4 \
                            --set learn_generations=1 --set transfers=1 --set reproduces_from=0 \
                            --set too_hard_below=0 --set too_easy_above=1.1";

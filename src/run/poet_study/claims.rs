@@ -1,4 +1,4 @@
-//! What the study says.
+//! The verdicts of the study, as tables.
 
 use super::controls::is_enough;
 use super::{HARDEST, SEEDS, TRIALS};

@@ -1,4 +1,4 @@
-//! What POET has learned: stairs, pairs, and the phase of the round.
+//! The state of POET: stairs, pairs, and the phase of the round.
 
 use serde::{Deserialize, Serialize};
 
