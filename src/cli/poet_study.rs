@@ -133,7 +133,7 @@ fn measure_poet(
     study.evaluations = experiment.evaluated();
     study.elapsed_s = reports.iter().map(|report| report.elapsed_s).sum();
     study.stairs = tree.nodes.len() as u32;
-    study.solved = tree.nodes.iter().filter(|node| node.solved.is_some()).count() as u32;
+    study.solved = tree.solved() as u32;
     study.challenges = challenges;
     let run_hash = format!("{:016x}", experiment.run_hash());
     if study.run_hash != run_hash {

@@ -80,6 +80,11 @@ impl StairsTree {
         self.nodes.iter().filter(|node| node.is_new_challenge && node.solved.is_some()).count()
     }
 
+    /// Number of stairs that were solved.
+    pub fn solved(&self) -> usize {
+        self.nodes.iter().filter(|node| node.solved.is_some()).count()
+    }
+
     /// Number of stairs whose agents still learn.
     pub fn active(&self) -> usize {
         self.nodes.iter().filter(|node| node.archived.is_none()).count()

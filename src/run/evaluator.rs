@@ -8,7 +8,7 @@ use std::fmt::Debug;
 use std::io;
 use std::num::NonZero;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -121,6 +121,29 @@ pub fn available_cores() -> usize {
 /// The evaluation panicked.
 pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
     caught(|| score(genome, trial))
+}
+
+/// Evaluates each genome in its trial of `trials`, and returns the results in the order of the jobs. What the evaluator does
+/// not report is evaluated here.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub(super) fn evaluate_in_order(
+    trials: &[Trial],
+    jobs: &[Job<'_>],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Vec<EvaluationResult>, Cancelled> {
+    let results: Vec<OnceLock<EvaluationResult>> = jobs.iter().map(|_| OnceLock::new()).collect();
+    evaluator.evaluate_jobs(trials, jobs, control, &|index, result| {
+        // Only the first result counts.
+        let _ = results[index].set(result);
+    })?;
+    let results = results.into_iter().zip(jobs).map(|(result, job)| {
+        control.wait_while_paused()?;
+        Ok(result.into_inner().unwrap_or_else(|| evaluate_caught(job.genome, &trials[job.trial])))
+    });
+    results.collect()
 }
 
 /// Simulates a genome in a condition of an exam; a panic in it counts as a crash.

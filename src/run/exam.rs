@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use super::evaluator::{Evaluator, examine_caught};
 use super::run_control::{Cancelled, RunControl};
 use crate::evolve::Champion;
+use crate::genome::Genome;
 use crate::score::{ExamCondition, ExamEnd, ExamSuite, StairsGrid, SuiteResult};
 
 /// Number of trials that the suites take for a champion, the undisturbed ones included.
@@ -31,7 +32,7 @@ pub fn examine(
     let result = |(suite, mut conditions): (ExamSuite, Vec<ExamCondition>)| {
         let first = conditions.len();
         conditions.push(suite.undisturbed(&champion.trial));
-        let mut ends = exam_ends(champion, &conditions, evaluator, control)?;
+        let mut ends = exam_ends(&champion.genome, &conditions, evaluator, control)?;
         let own = ends.remove(first);
         conditions.truncate(first);
         Ok(SuiteResult::of(suite, &own, &conditions, &ends))
@@ -55,7 +56,7 @@ pub fn examine_on_stairs(
 ) -> Result<Vec<StairsGrid>, Cancelled> {
     control.start_generation();
     let grid = |(suite, conditions): (ExamSuite, Vec<ExamCondition>)| {
-        let ends = exam_ends(champion, &conditions, evaluator, control)?;
+        let ends = exam_ends(&champion.genome, &conditions, evaluator, control)?;
         Ok(StairsGrid::of(suite, &champion.trial, &conditions, &ends))
     };
     stairs_conditions(champion).into_iter().map(grid).collect()
@@ -68,12 +69,12 @@ fn stairs_conditions(champion: &Champion) -> Vec<(ExamSuite, Vec<ExamCondition>)
     suites.map(|suite| (suite, suite.conditions(&champion.trial))).collect()
 }
 
-/// How a champion ends in each condition. A trial whose simulation panics counts as disqualified.
+/// How a snake ends in each condition. A trial whose simulation panics counts as disqualified.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
 pub fn exam_ends(
-    champion: &Champion,
+    genome: &Genome,
     conditions: &[ExamCondition],
     evaluator: &dyn Evaluator,
     control: &RunControl,
@@ -84,12 +85,12 @@ pub fn exam_ends(
             control.count_one();
         }
     };
-    evaluator.examine_batch(&champion.genome, conditions, control, &store)?;
+    evaluator.examine_batch(genome, conditions, control, &store)?;
     // What the evaluator did not report.
     for (index, condition) in conditions.iter().enumerate() {
         if ends[index].get().is_none() {
             control.wait_while_paused()?;
-            store(index, examine_caught(&champion.genome, condition));
+            store(index, examine_caught(genome, condition));
         }
     }
     Ok(ends.into_iter().filter_map(OnceLock::into_inner).collect())

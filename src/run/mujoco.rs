@@ -166,7 +166,7 @@ impl Mujoco {
         control.start_generation();
         let starts = PerturbationRange { friction: 0.0, rise: 0.0, ..PerturbationRange::default() };
         let conditions = varied(&champion.trial, &starts, TRIALS, SEED);
-        let here = exam_ends(champion, &conditions, evaluator, control)?;
+        let here = exam_ends(&champion.genome, &conditions, evaluator, control)?;
         let play = |condition| {
             control.wait_while_paused()?;
             let end = self.play(champion, condition, model, control)?;

@@ -42,7 +42,8 @@ pub fn robustness(
 ) -> Result<Robustness, Cancelled> {
     let trial = &champion.trial;
     control.start_generation();
-    let ends = exam_ends(champion, &varied(trial, range, trials, seed), evaluator, control)?;
+    let ends =
+        exam_ends(&champion.genome, &varied(trial, range, trials, seed), evaluator, control)?;
     let reached = |steps: u32| ends.iter().filter(|end| end.steps >= steps).count() as u32;
     Ok(Robustness {
         trials,

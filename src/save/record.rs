@@ -116,7 +116,7 @@ impl StairsCount {
             rounds: tree.rounds,
             all: tree.nodes.len() as u32,
             active: tree.active() as u32,
-            solved: tree.nodes.iter().filter(|node| node.solved.is_some()).count() as u32,
+            solved: tree.solved() as u32,
             challenges: tree.solved_challenges() as u32,
         }
     }

@@ -129,6 +129,11 @@ impl Stairs {
         self.tread_m.at(index as usize)
     }
 
+    /// Depth of all steps together along y, in metres.
+    pub fn treads_m(&self) -> f32 {
+        (0..self.steps).map(|step| self.step_tread_m(step)).sum()
+    }
+
     /// Mean depth of the steps along y, in metres.
     pub fn mean_tread_m(&self) -> f32 {
         match &self.tread_m {

@@ -72,9 +72,8 @@ impl<S: Strategy> Poet<S> {
 
     /// Length of the longest stairs, in m: a trial has time for those that its settings have.
     fn longest_m(&self) -> f32 {
-        let stairs = &self.plan.settings.trial.stairs;
-        let length_m: f32 = (0..stairs.steps).map(|step| stairs.step_tread_m(step)).sum();
-        length_m.max(Self::root(&self.plan).length_m())
+        let length_m = Self::root(&self.plan).length_m();
+        self.plan.settings.trial.stairs.treads_m().max(length_m)
     }
 
     /// A search for the agent of a staircase, around a genome or from random ones.
@@ -196,8 +195,7 @@ impl<S: Strategy> Poet<S> {
 
     /// Begins the search of a pair again, around the agent of its staircase.
     fn begin_again(&mut self, node: u32, restarts: u32) {
-        let agent = self.progress.node(node).and_then(|node| node.agent.as_ref());
-        let search = self.search(node, restarts, agent.map(|agent| &agent.genome));
+        let search = self.search(node, restarts, self.progress.agent(node));
         if let Some(pair) = self.progress.pair_mut(node) {
             *pair = Pair {
                 restarts,
@@ -212,7 +210,7 @@ impl<S: Strategy> Poet<S> {
     fn proposals(&self, candidates: &[Candidate], scores: &[f32]) -> Vec<Proposal> {
         let mut proposals = Vec::new();
         for pair in &self.progress.pairs {
-            let to_beat = pair.recent.iter().copied().fold(0.0, f32::max);
+            let to_beat = pair.to_beat();
             let mut best: Option<(&Candidate, f32)> = None;
             for (candidate, &score) in candidates.iter().zip(scores) {
                 if candidate.from.is_some()
@@ -251,7 +249,7 @@ impl<S: Strategy> Poet<S> {
                     best = Some((individual, &candidate.genome, *score));
                 }
             }
-            if direct > self.to_beat(proposal.to)
+            if direct > self.progress.pair(proposal.to).map_or(0.0, Pair::to_beat)
                 && let Some((individual, genome, _)) = best
             {
                 let Proposal { from, to, .. } = proposal;
@@ -262,24 +260,18 @@ impl<S: Strategy> Poet<S> {
         if tuned.is_empty() { self.after_transfers() } else { Phase::Confirm { tuned } }
     }
 
-    /// The greatest of a pair's recent scores.
-    fn to_beat(&self, node: u32) -> f32 {
-        let pair = self.progress.pairs.iter().find(|pair| pair.node == node);
-        pair.map_or(0.0, |pair| pair.recent.iter().copied().fold(0.0, f32::max))
-    }
-
     /// Replaces the agents of stairs by those fine-tuned ones that beat them, too.
     fn after_confirmation(&mut self, tuned: Vec<FineTuned>, scores: &[f32]) -> Phase {
         let round = self.progress.rounds + 1;
         for (FineTuned { from, to, agent }, &score) in tuned.into_iter().zip(scores) {
-            if score <= self.to_beat(to) {
+            let Some(pair) = self.progress.pair(to) else { continue };
+            let restarts = pair.restarts.saturating_add(1);
+            if score <= pair.to_beat() {
                 continue;
             }
             if let Some(node) = self.progress.node_mut(to) {
                 node.agent = Some(agent);
             }
-            let restarts =
-                self.progress.pair_mut(to).map_or(0, |pair| pair.restarts.saturating_add(1));
             self.begin_again(to, restarts);
             let solved = self.settings.solved_from;
             let PoetProgress { pairs, nodes, transfers, .. } = &mut self.progress;
@@ -320,15 +312,9 @@ impl<S: Strategy> Poet<S> {
 
     /// Mutants of the stairs whose agents are good enough.
     fn children(&self) -> Vec<Child> {
-        let node = |pair: &Pair<S>| self.progress.node(pair.node).map(|node| (pair.node, node));
-        let parents: Vec<u32> = self
-            .progress
-            .pairs
-            .iter()
-            .filter_map(node)
-            .filter(|(_, node)| node.score >= self.settings.reproduces_from)
-            .map(|(index, _)| index)
-            .collect();
+        let score = |node: u32| self.progress.node(node).map_or(0.0, |node| node.score);
+        let mut parents: Vec<u32> = self.progress.pairs.iter().map(|pair| pair.node).collect();
+        parents.retain(|node| score(*node) >= self.settings.reproduces_from);
         let room = PoetSettings::MOST_STAIRS.saturating_sub(self.progress.nodes.len());
         if parents.is_empty() || room < self.settings.admitted as usize {
             return Vec::new();
@@ -358,8 +344,7 @@ impl<S: Strategy> Poet<S> {
         let children: Vec<Child> = children
             .into_iter()
             .zip(scores)
-            .filter(|(_, score)| fits(**score))
-            .map(|(child, _)| child)
+            .filter_map(|(child, score)| fits(*score).then_some(child))
             .collect();
         if self.progress.panel.is_empty()
             && let Some(root) = self.progress.nodes.first_mut()

@@ -46,8 +46,7 @@ impl StairsGenome {
 
     /// Length of all treads, in metres.
     pub fn length_m(&self) -> f32 {
-        let stairs = self.stairs();
-        (0..self.steps).map(|step| stairs.step_tread_m(step)).sum()
+        self.stairs().treads_m()
     }
 
     fn changed(&self, change: &StairsChange, rng: &mut ChaCha8Rng) -> Self {

@@ -1,9 +1,7 @@
 //! The choice of a generation's champion.
 
-use std::sync::OnceLock;
-
 use crate::evolve::Champion;
-use crate::run::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
+use crate::run::evaluator::{Evaluator, Job, evaluate_in_order};
 use crate::run::report::EvaluatedGeneration;
 use crate::run::run_control::{Cancelled, RunControl};
 use crate::score::Trial;
@@ -30,20 +28,11 @@ pub(super) fn choose_champion(
         return Ok(ranking.first().map(|&index| evaluated.individual(index)));
     };
     let genomes: Vec<_> = candidates.iter().map(|&index| &evaluated.genomes[index]).collect();
-    let results: Vec<OnceLock<EvaluationResult>> =
-        genomes.iter().map(|_| OnceLock::new()).collect();
     let jobs: Vec<Job<'_>> =
         genomes.iter().enumerate().map(|(trial, genome)| Job { genome, trial }).collect();
-    evaluator.evaluate_jobs(&trials, &jobs, control, &|index, result| {
-        // Only the first result counts.
-        let _ = results[index].set(result);
-    })?;
+    let results = evaluate_in_order(&trials, &jobs, evaluator, control)?;
     let mut best: Option<Champion> = None;
-    for (((&index, genome), trial), result) in
-        candidates.iter().zip(genomes).zip(&trials).zip(results)
-    {
-        control.wait_while_paused()?;
-        let result = result.into_inner().unwrap_or_else(|| evaluate_caught(genome, trial));
+    for (&index, result) in candidates.iter().zip(results) {
         // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
         let Ok(on_list) = result else { continue };
         let chosen_by = Some(on_list.evaluation.fitness);

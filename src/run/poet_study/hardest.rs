@@ -1,15 +1,13 @@
 //! The hardest of the stairs that a run of POET has solved.
 
-use std::sync::OnceLock;
-
 use super::{HARDEST, MUST_SUCCEED, SUCCESS, TRIALS};
-use crate::evolve::{Champion, Origin, RunPlan, StairsNode, StairsTree};
+use crate::evolve::{RunPlan, StairsNode, StairsTree};
 use crate::genome::Genome;
-use crate::run::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
+use crate::run::evaluator::{EvaluationResult, Evaluator, Job, evaluate_in_order};
 use crate::run::exam::exam_ends;
 use crate::run::run_control::{Cancelled, RunControl};
 use crate::save::HardStairs;
-use crate::score::{Evaluation, PerturbationRange, Trial, varied};
+use crate::score::{PerturbationRange, Trial, varied};
 
 /// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
 ///
@@ -44,9 +42,9 @@ pub fn hardest_stairs(
         }
         let (node, of) = solved[index];
         let Some(agent) = &of.agent else { continue };
-        let champion = agent_on(plan, &agent.genome, trials[index].clone());
-        let conditions = varied(&champion.trial, &PerturbationRange::default(), TRIALS, plan.seed);
-        let ends = exam_ends(&champion, &conditions, evaluator, control)?;
+        let range = PerturbationRange::default();
+        let conditions = varied(&trials[index], &range, TRIALS, plan.seed);
+        let ends = exam_ends(&agent.genome, &conditions, evaluator, control)?;
         let successes = ends.iter().filter(|end| end.way >= SUCCESS).count() as u32;
         if successes >= MUST_SUCCEED {
             let trials = ancestors(tree, node).map(|node| tree.nodes[node].trials).sum();
@@ -55,21 +53,6 @@ pub fn hardest_stairs(
         }
     }
     Ok(found)
-}
-
-fn agent_on(plan: &RunPlan, agent: &Genome, trial: Trial) -> Champion {
-    let origin =
-        Origin { preset: plan.preset.clone(), seed: plan.seed, generation: 1, individual: 0 };
-    let evaluation = Evaluation {
-        fitness: 0.0,
-        centre_y_m: 0.0,
-        disqualified: None,
-        trace_hash: 0,
-        steps: 0,
-        effort: None,
-        behaviour: None,
-    };
-    Champion { genome: agent.clone(), trial, evaluation, chosen_by: None, origin }
 }
 
 /// A staircase and all its ancestors.
@@ -85,18 +68,12 @@ fn shares(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<f32>, Cancelled> {
-    let results: Vec<OnceLock<EvaluationResult>> = jobs.iter().map(|_| OnceLock::new()).collect();
-    evaluator.evaluate_jobs(trials, jobs, control, &|index, result| {
-        // A second result of the same job is the same.
-        let _ = results[index].set(result);
-    })?;
-    let share = |(result, job): (OnceLock<EvaluationResult>, &Job<'_>)| {
-        let result =
-            result.into_inner().unwrap_or_else(|| evaluate_caught(job.genome, &trials[job.trial]));
+    let share = |result: EvaluationResult| {
         result.map_or(0.0, |scored| match scored.evaluation.disqualified {
             None => scored.evaluation.fitness.max(0.0),
             Some(_) => 0.0,
         })
     };
-    Ok(results.into_iter().zip(jobs).map(share).collect())
+    let results = evaluate_in_order(trials, jobs, evaluator, control)?;
+    Ok(results.into_iter().map(share).collect())
 }

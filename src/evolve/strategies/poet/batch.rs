@@ -102,8 +102,7 @@ impl<S: Strategy> Poet<S> {
     /// An agent on the stairs to which it may move, in all trials, and the candidates of one generation around it.
     fn fine_tuned(&self, proposal: &Proposal) -> Vec<Candidate> {
         let Proposal { from, to, genome } = proposal;
-        let restarts = self.progress.pairs.iter().find(|pair| pair.node == *to);
-        let restarts = restarts.map_or(0, |pair| pair.restarts.saturating_add(1));
+        let restarts = self.progress.pair(*to).map_or(0, |pair| pair.restarts.saturating_add(1));
         let perturbed = self.settings.perturbed;
         let direct = self.on_node(genome, *to, Some(*from));
         let mut all: Vec<Candidate> =

@@ -86,6 +86,11 @@ impl<S> Pair<S> {
             challenger: None,
         }
     }
+
+    /// The score that an agent from other stairs has to beat: the greatest of the recent ones.
+    pub fn to_beat(&self) -> f32 {
+        self.recent.iter().copied().fold(0.0, f32::max)
+    }
 }
 
 /// Everything that POET has learned.
@@ -158,6 +163,10 @@ impl<S: Strategy> PoetProgress<S> {
 
     pub fn node_mut(&mut self, index: u32) -> Option<&mut StairsNode> {
         self.nodes.get_mut(index as usize)
+    }
+
+    pub fn pair(&self, node: u32) -> Option<&Pair<S>> {
+        self.pairs.iter().find(|pair| pair.node == node)
     }
 
     pub fn pair_mut(&mut self, node: u32) -> Option<&mut Pair<S>> {
