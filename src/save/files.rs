@@ -218,6 +218,12 @@ pub struct Header {
 }
 
 impl Header {
+    /// The kind that a text states; none of a damaged text, or one without a kind.
+    pub fn kind_of(text: &str) -> Option<String> {
+        let Self { kind, .. } = ron::from_str(text).ok()?;
+        (!kind.is_empty()).then_some(kind)
+    }
+
     /// Checks that a file is of the expected kind and in the supported format.
     pub fn check(
         path: &Path,

@@ -23,14 +23,13 @@ mod lineage;
 mod lock;
 mod log;
 mod notes;
-mod own_preset;
+mod own_files;
 mod picture;
 mod plan;
 mod poet_study;
 mod poses;
 mod preferences;
 mod preset;
-mod preset_list;
 mod record;
 mod run;
 mod run_name;
@@ -64,7 +63,7 @@ pub use files::{SaveError, hash_of, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
-pub use own_preset::{OwnPreset, check_own_name};
+pub use own_files::{KnownFiles, OwnFile, OwnKind, check_own_name};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
 pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
@@ -75,7 +74,6 @@ pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_preset_names, shipped_presets,
     store_preset,
 };
-pub use preset_list::PresetList;
 pub use record::{
     GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
     generations_hash, load_log, parse_evaluations, parse_records,
@@ -83,7 +81,8 @@ pub use record::{
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
-    NamedStairs, built_in_stairs, built_in_stairs_names, load_stairs, parse_stairs,
+    NamedStairs, built_in_stairs, built_in_stairs_names, is_stairs_file, load_stairs, parse_stairs,
+    store_stairs,
 };
 pub use stairs_study::StairsStudyRun;
 pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};

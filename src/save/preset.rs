@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::files::{check_format, embedded, embedded_names, parse, pretty, read_text, store_ron};
-use super::whole_file::write_new;
+use super::own_files::OwnKind;
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
@@ -104,12 +104,33 @@ pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     store_ron(path, &file_of(preset))
 }
 
-/// Writes a preset to a new file; never overwrites one.
-///
-/// # Errors
-/// The file exists, or cannot be written.
-pub fn store_new_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
-    write_new(path, pretty(path, &file_of(preset))?.as_bytes())
+impl OwnKind for Preset {
+    const FOLDER: &'static str = "presets";
+    const WORD: &'static str = "preset";
+
+    fn built_in() -> Result<Vec<Self>, SaveError> {
+        shipped_presets()
+    }
+
+    fn built_in_names() -> Vec<&'static str> {
+        shipped_preset_names()
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn renamed(self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self }
+    }
+
+    fn parse(path: &Path, text: &str) -> Result<Self, SaveError> {
+        parse_preset(path, text)
+    }
+
+    fn text(&self, path: &Path) -> Result<String, SaveError> {
+        pretty(path, &file_of(self))
+    }
 }
 
 fn file_of(preset: &Preset) -> PresetFile {

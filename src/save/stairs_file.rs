@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::files::{Header, embedded, embedded_names, parse, read_text};
+use super::files::{Header, embedded, embedded_names, parse, pretty, read_text};
+use super::own_files::OwnKind;
+use super::whole_file::write_new;
 use crate::check::{self, Invalid, quoted, within};
 use crate::schema;
 use crate::world::Stairs;
@@ -22,12 +24,10 @@ pub struct NamedStairs {
 }
 
 /// The whole file, whose header is checked before. Once released, it never changes.
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StairsFile {
-    #[expect(dead_code, reason = "part of the file")]
     kind: String,
-    #[expect(dead_code, reason = "part of the file")]
     format: u32,
     name: String,
     about: String,
@@ -79,6 +79,49 @@ pub fn load_stairs(name_or_path: &str) -> Result<NamedStairs, SaveError> {
     }
     let allowed = format!("{}, or a file", built_in_stairs_names().join(", "));
     Err(SaveError::UnknownStairs(Invalid::new("stairs", format!("{name_or_path:?}"), allowed)))
+}
+
+/// Whether a text is that of stairs, perhaps damaged, and not of a champion or another file.
+pub fn is_stairs_file(text: &str) -> bool {
+    Header::kind_of(text).is_some_and(|kind| kind == KIND)
+}
+
+/// Writes stairs to a new file; never overwrites one.
+///
+/// # Errors
+/// The file exists, or cannot be written.
+pub fn store_stairs(path: &Path, stairs: &NamedStairs) -> Result<(), SaveError> {
+    write_new(path, stairs.text(path)?.as_bytes())
+}
+
+impl OwnKind for NamedStairs {
+    const FOLDER: &'static str = "stairs";
+    const WORD: &'static str = "staircase";
+
+    fn built_in() -> Result<Vec<Self>, SaveError> {
+        built_in_stairs()
+    }
+
+    fn built_in_names() -> Vec<&'static str> {
+        built_in_stairs_names()
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn renamed(self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self }
+    }
+
+    fn parse(path: &Path, text: &str) -> Result<Self, SaveError> {
+        parse_stairs(path, text)
+    }
+
+    fn text(&self, path: &Path) -> Result<String, SaveError> {
+        let Self { name, about, stairs } = self.clone();
+        pretty(path, &StairsFile { kind: KIND.to_owned(), format: FORMAT, name, about, stairs })
+    }
 }
 
 /// Parses stairs; `path` is the file's name in errors.

@@ -13,7 +13,10 @@ use crate::save::files::read_bytes;
 use crate::save::lock::{LOCK_FILE, Lock, OWNER_FILE};
 use crate::save::plan::{RUN_FILE, load_plan};
 use crate::save::whole_file::{UNFINISHED, prepare_folder, write_new};
-use crate::save::{SaveError, SavedProgress, SavesFolder, parse_champion, run_name};
+use crate::save::{
+    KnownFiles, NamedStairs, SaveError, SavedProgress, SavesFolder, is_stairs_file, parse_champion,
+    parse_stairs, run_name,
+};
 
 /// Folder for exported copies within a folder of saves, unless another is given.
 pub const EXPORTS: &str = "exports";
@@ -84,8 +87,8 @@ pub fn run_of_plan(path: &Path) -> SavePlace {
     }
 }
 
-/// Copies a champion or a run from anywhere into the folder of saves, after it has been read and checked completely. A
-/// run may be given as its file `run.ron`.
+/// Copies a champion, a run or stairs from anywhere into the folder of saves, after it has been read and checked
+/// completely. A run may be given as its file `run.ron`; stairs join the user's own.
 ///
 /// # Errors
 /// The entry is unreadable, damaged, a link or of another kind; the run exists already; the copy cannot be written.
@@ -95,12 +98,22 @@ pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
         return import_run(saves, &run);
     }
     let text = text_of_file(from)?;
+    if is_stairs_file(&text) {
+        return import_stairs(saves, from, &text);
+    }
     parse_champion(from, &text)?;
     saves.prepare()?;
     let name = from.file_stem().unwrap_or_default().to_string_lossy();
     let path = free_path(saves.path(), &plain_name(&name), Some(ENDING));
     write_new(&path, text.as_bytes())?;
     copy_notes(from, &path);
+    Ok(FileStep::Added { path })
+}
+
+fn import_stairs(saves: &SavesFolder, from: &Path, text: &str) -> Result<FileStep, SaveError> {
+    let stairs = parse_stairs(from, text)?;
+    let name = KnownFiles::<NamedStairs>::read(saves).allowed_name(&stairs.name);
+    let path = saves.store_own(&NamedStairs { name, ..stairs })?;
     Ok(FileStep::Added { path })
 }
 
@@ -261,6 +274,28 @@ mod tests {
         let step = import(&saves, &file).expect("imported");
         step.undo(&saves).expect("undone");
         assert_eq!(own(&saves), ["a 2", "a"]);
+    }
+
+    #[test]
+    fn imported_stairs_join_the_users_own_under_a_free_name() {
+        let (_folder, saves) = saves();
+        let shipped = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/stairs/ramps.ron"));
+        for expected in ["ramps-2", "ramps-3"] {
+            let step = import(&saves, shipped).expect("imported");
+            let path = saves.path().join(format!("stairs/{expected}.ron"));
+            assert_eq!(step, FileStep::Added { path });
+        }
+        let stairs = KnownFiles::<NamedStairs>::read(&saves);
+        let imported = stairs.find("ramps-3").expect("whole").expect("there");
+        let built_in = stairs.find("ramps").expect("whole").expect("built in");
+        assert_eq!(imported.stairs, built_in.stairs);
+        assert!(own(&saves).is_empty(), "they are no champions");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let steep = elsewhere.path().join("steep.ron");
+        let text = fs::read_to_string(shipped).expect("shipped").replace("rise_m: ", "rise_m: 1");
+        fs::write(&steep, text).expect("written");
+        let error = import(&saves, &steep).expect_err("too steep").to_string();
+        assert!(error.contains("steep.ron: stairs.rise_m is 10.5; allowed: -5 to 5"), "{error}");
     }
 
     #[cfg(unix)]

@@ -7,7 +7,7 @@ use bevy::prelude::*;
 
 use super::options::Options;
 use crate::run::{Evaluator, RunSource};
-use crate::save::{PresetList, SavesFolder};
+use crate::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
 
 /// Shared by all runs of a session.
 #[derive(Resource, Debug, Clone)]
@@ -21,7 +21,9 @@ pub(crate) struct RunContext {
     /// Whether to offer the run that was stopped last.
     pub offers_stopped_run: bool,
     /// Presets to choose from.
-    pub presets: Arc<PresetList>,
+    pub presets: Arc<KnownFiles<Preset>>,
+    /// Stairs to choose from.
+    pub stairs: Arc<KnownFiles<NamedStairs>>,
     run_folder: RunInProgress,
 }
 
@@ -32,7 +34,8 @@ impl RunContext {
             saves: options.saves.clone(),
             first: options.run.clone(),
             offers_stopped_run: options.offers_stopped_run,
-            presets: Arc::new(PresetList::read(&options.saves)),
+            presets: Arc::new(KnownFiles::read(&options.saves)),
+            stairs: Arc::new(KnownFiles::read(&options.saves)),
             run_folder: RunInProgress::default(),
         }
     }

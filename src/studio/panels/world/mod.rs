@@ -1,7 +1,6 @@
 //! World and snake of the next run, section by section, with a search over all settings.
 
 pub mod presets;
-mod stairs_choice;
 pub mod surface_readout;
 
 use std::collections::BTreeSet;
@@ -9,10 +8,12 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::settings::Sheet;
+use super::stairs::stairs_choice;
 use super::undo_buttons::undo_buttons;
 use crate::schema::{ListedSetting, Section, SettingKind};
 use crate::score::{AgentSettings, Trial};
-use crate::studio::commands::{Command, PlanCommand, RunCommand};
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::check_box::check_box;
@@ -21,7 +22,6 @@ use crate::studio::ui::theme;
 use crate::world::Stairs;
 
 use presets::PresetChoice;
-use stairs_choice::stairs_choice;
 use surface_readout::{ReadLanes, ReadSurface};
 
 /// The panel with its search text and fields.
@@ -105,7 +105,7 @@ impl WorldPanel {
                     ground_switch(ui, run, commands);
                 }
                 if section == Stairs::SECTION {
-                    stairs_choice(ui, run, commands);
+                    stairs_row(ui, run, commands);
                 }
                 if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
                     on_stage.ui(ui, *surface);
@@ -149,6 +149,17 @@ const READ_OUT: [(Section, ReadSurface); 3] = [
     (Trial::GROUND, ReadSurface::Ground),
     (AgentSettings::SKIN, ReadSurface::Skin),
 ];
+
+/// Draws the selection of known stairs, and the button that opens their editor.
+fn stairs_row(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        stairs_choice(ui, run, commands);
+        let hint = "Drag the edges of the steps, change each step in a table, and save the stairs";
+        if ui.button("Edit…").on_hover_text(hint).clicked() {
+            commands.push(Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs)));
+        }
+    });
+}
 
 /// Draws the switch for a separate ground surface.
 fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {

@@ -1,11 +1,12 @@
 //! The plan of the next run: edits, presets, undo.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::CurrentRun;
 use crate::check::Invalid;
 use crate::evolve::{RunPlan, Settings, fields, with_fields};
-use crate::save::{Preset, PresetList, load_preset};
+use crate::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
     /// Seed of the next run.
@@ -106,13 +107,38 @@ impl CurrentRun {
     }
 
     /// Presets to choose from.
-    pub fn presets(&self) -> &PresetList {
+    pub fn presets(&self) -> &KnownFiles<Preset> {
         &self.context.presets
     }
 
     /// Reads the user's presets again.
     pub fn list_presets(&mut self) {
-        self.context.presets = Arc::new(PresetList::read(&self.context.saves));
+        self.context.presets = Arc::new(KnownFiles::read(&self.context.saves));
+    }
+
+    /// Stairs to choose from.
+    pub fn known_stairs(&self) -> &KnownFiles<NamedStairs> {
+        &self.context.stairs
+    }
+
+    /// Reads the user's stairs again.
+    pub fn list_stairs(&mut self) {
+        self.context.stairs = Arc::new(KnownFiles::read(&self.context.saves));
+    }
+
+    /// The folder with the user's stairs.
+    pub fn stairs_folder(&self) -> PathBuf {
+        self.context.saves.own_folder::<NamedStairs>()
+    }
+
+    /// Stores the next run's stairs among the user's own.
+    pub fn store_stairs(&mut self, name: &str) -> Result<(), String> {
+        let about = format!("Your own stairs, made in the world of {}.", self.next_preset());
+        let stairs = self.next_settings().trial.stairs.clone();
+        let named = NamedStairs { name: name.to_owned(), about, stairs };
+        self.context.saves.store_own(&named).map_err(|error| error.to_string())?;
+        self.list_stairs();
+        Ok(())
     }
 
     /// Unchanged settings of the next run's preset, if known.
@@ -148,7 +174,7 @@ impl CurrentRun {
         let next = &self.plan_next;
         let about = format!("Your own preset, based on {}.", next.preset);
         let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
-        self.context.saves.store_own_preset(&preset).map_err(|error| error.to_string())?;
+        self.context.saves.store_own(&preset).map_err(|error| error.to_string())?;
         self.list_presets();
         self.plan_next.preset = preset.name;
         self.take_over_if_ready()

@@ -1,0 +1,79 @@
+//! The name under which settings are saved as a file of the user's own: a preset, or stairs.
+
+use bevy_egui::egui;
+
+use crate::save::{KnownFiles, OwnKind};
+use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
+use crate::studio::ui::theme;
+
+/// A button that opens a field for a name.
+#[derive(Debug, Default)]
+pub(super) struct OwnName {
+    /// The name while it is typed.
+    prompt: Option<TextPrompt>,
+}
+
+impl OwnName {
+    /// Draws the button.
+    pub fn button(
+        &mut self,
+        ui: &mut egui::Ui,
+        (label, hint): (&str, &str),
+        suggestion: impl FnOnce() -> String,
+    ) {
+        let mut is_open = self.prompt.is_some();
+        if ui.toggle_value(&mut is_open, label).on_hover_text(hint).changed() {
+            self.prompt = is_open.then(|| TextPrompt::new(suggestion()));
+        }
+    }
+
+    /// Draws the field if it is open. Returns the name once the user saves.
+    pub fn field<T: OwnKind>(
+        &mut self,
+        ui: &mut egui::Ui,
+        known: &KnownFiles<T>,
+    ) -> Option<String> {
+        let mut prompt = self.prompt.take()?;
+        let mut is_saved = false;
+        let mut is_cancelled = false;
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label("Name");
+            let (_, end) = prompt.ui(ui, |ui, field| {
+                let field = field
+                    .desired_width(theme::COMBO_WIDTH)
+                    .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
+                    .hint_text(format!("my-{}", T::WORD));
+                ui.add(field).labelled_by(label.id)
+            });
+            let is_valid = !prompt.text.is_empty() && known.problem_with(&prompt.text).is_none();
+            let folder = T::FOLDER;
+            let hint =
+                format!("Writes a file to the \"{folder}\" folder inside the saves folder (Enter)");
+            let refusal = "Type another name first: this one is empty, taken or not allowed";
+            let save = ui.add_enabled(is_valid, egui::Button::new("Save")).on_hover_text(hint);
+            let save = save.on_disabled_hover_text(refusal);
+            is_saved = is_valid && (save.clicked() || end == Some(PromptEnd::Accepted));
+            let cancel_hint = "Save nothing (Esc)";
+            is_cancelled = end == Some(PromptEnd::Cancelled)
+                || ui.button("Cancel").on_hover_text(cancel_hint).clicked();
+            if end == Some(PromptEnd::Accepted) && !is_valid {
+                prompt.ask_again();
+            }
+        });
+        let problem = known.problem_with(&prompt.text).filter(|_| !prompt.text.is_empty());
+        if let Some(problem) = problem {
+            let text = egui::RichText::new(problem).color(theme::of(ui).problem);
+            ui.add(egui::Label::new(text).wrap());
+            let allowed = known.allowed_name(&prompt.text);
+            if ui.button(format!("Use the name {allowed}")).clicked() {
+                prompt.text = allowed;
+                prompt.ask_again();
+            }
+        }
+        if is_saved {
+            return Some(prompt.text);
+        }
+        self.prompt = (!is_cancelled).then_some(prompt);
+        None
+    }
+}
