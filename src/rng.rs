@@ -46,6 +46,8 @@ pub enum Purpose {
     StairsMutation = 16,
     /// Drawing the seed of a pair's search.
     Pair = 17,
+    /// Drawing the staircase that belongs to a seed in the editor.
+    StairsDice = 18,
 }
 
 /// The stream of random numbers for one purpose of one individual of one generation.

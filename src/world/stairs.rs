@@ -1,8 +1,11 @@
 //! The staircase: its shape, and the meaning of a position on it.
 
+mod codes;
+mod editing;
 mod limits;
 mod shape;
 
+pub use codes::{BUILDING_CODES, BuildingCode, TRUE_MM_PER_M};
 pub use shape::{StairBox, StairSolid};
 
 use limits::GROUND_M;

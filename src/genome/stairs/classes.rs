@@ -36,6 +36,11 @@ impl StairsGenome {
 }
 
 impl StairsClass {
+    /// The staircase of this class that belongs to a seed; another seed gives another one. None is held out.
+    pub fn of_seed(self, seed: u32) -> StairsGenome {
+        self.draw(&mut stream(seed.into(), self as u32, 0, Purpose::StairsDice))
+    }
+
     /// A staircase of this class.
     fn draw(self, rng: &mut ChaCha8Rng) -> StairsGenome {
         let mut genome = StairsGenome {
@@ -84,6 +89,25 @@ mod tests {
             }
         }
         assert_eq!(seen.len(), 60);
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_stairs_again_and_none_is_held_out() {
+        let mut seen: Vec<Stairs> = Vec::new();
+        for &class in StairsClass::OPTIONS {
+            for number in 0..HELD_OUT_PER_CLASS {
+                seen.push(held_out(class, number).stairs());
+            }
+            for seed in 0..200 {
+                let genome = class.of_seed(seed);
+                check(&genome).expect("within the ranges");
+                let stairs = genome.stairs();
+                check(&stairs).expect("can be built");
+                assert!(!seen.contains(&stairs), "{class:?} {seed}");
+                assert_eq!(class.of_seed(seed), genome);
+                seen.push(stairs);
+            }
+        }
     }
 
     #[test]

@@ -348,6 +348,9 @@ const FIXED: &[Action] = &[
     action(Menu::Panels, "Body", &["Ctrl 9"], |_| {
         Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Body)))
     }),
+    action(Menu::Panels, "Stairs", &["Ctrl T"], |_| {
+        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs)))
+    }),
     action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
         Some(Command::Window(WindowCommand::ClosePanel))
     }),

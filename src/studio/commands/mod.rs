@@ -119,6 +119,10 @@ pub(super) enum PlanCommand {
     StorePreset(String),
     /// Reread the list of presets.
     ListPresets,
+    /// Store the stairs among the user's own under this name.
+    StoreStairs(String),
+    /// Reread the list of the user's stairs.
+    ListStairs,
     /// Start from this individual, in its world.
     StartFrom(Pick),
     /// Start from the champion of this entry of the library, now.

@@ -25,11 +25,13 @@ pub(crate) enum PanelKind {
     Machines,
     /// The blocks of the snake on the stage, to be edited.
     Body,
+    /// The stairs of the next run, to be edited.
+    Stairs,
 }
 
 impl PanelKind {
     /// All panels except the stage, in the order of the menu.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Run,
         Self::World,
         Self::Charts,
@@ -39,6 +41,7 @@ impl PanelKind {
         Self::Senses,
         Self::Machines,
         Self::Body,
+        Self::Stairs,
     ];
 
     /// The panels of the initial layout, in the order of their tabs. Few people have several computers, so the others open
@@ -66,6 +69,7 @@ impl PanelKind {
             Self::Senses => "Senses",
             Self::Machines => "Machines",
             Self::Body => "Body",
+            Self::Stairs => "Stairs",
         }
     }
 
@@ -81,6 +85,9 @@ impl PanelKind {
             Self::Lessons => "Two-minute experiments (Ctrl 6)",
             Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
             Self::Body => "The blocks of the snake: change, add and remove them (Ctrl 9)",
+            Self::Stairs => {
+                "The stairs of the next run: drag their edges, roll others, save them (Ctrl T)"
+            }
             Self::Machines => "Let other computers compute, too (Ctrl 8)",
         }
     }

@@ -12,12 +12,14 @@ mod lessons;
 mod library;
 mod machines;
 mod on_stage;
+mod own_name;
 mod own_stairs_button;
 mod player;
 mod run;
 mod senses;
 mod settings;
 mod shown;
+mod stairs;
 mod tab_names;
 mod tab_viewer;
 mod thumbnail;
@@ -68,6 +70,7 @@ use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
+use stairs::StairsPanel;
 use tab_names::small_tabs;
 use world::WorldPanel;
 use world::surface_readout::ReadLanes;
@@ -86,6 +89,7 @@ struct Panels {
     world: WorldPanel,
     senses: SensesPanel,
     body: BodyPanel,
+    stairs: StairsPanel,
     machines: MachinesPanel,
     timeline: TimelinePanel,
     palette: CommandPalette,
@@ -109,6 +113,7 @@ impl FromWorld for Panels {
             world: WorldPanel::default(),
             senses: SensesPanel::default(),
             body: BodyPanel::default(),
+            stairs: StairsPanel::default(),
             machines: MachinesPanel::default(),
             timeline: TimelinePanel::default(),
             palette: CommandPalette::default(),
@@ -367,6 +372,11 @@ impl Viewer<'_, '_, '_> {
                 let lane = focused(self.lanes, &self.data.on_stage);
                 let limb = self.data.on_stage.selection.limb;
                 panels.body.ui(ui, self.data.bodies.edited(), lane, limb, commands);
+            }
+            PanelKind::Stairs => {
+                let lane = focused(self.lanes, &self.data.on_stage);
+                let history = &self.data.on_stage.history;
+                panels.stairs.ui(ui, run, history, lane, commands);
             }
             PanelKind::Library => {
                 let history = &self.data.on_stage.history;

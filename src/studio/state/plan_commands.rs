@@ -64,6 +64,11 @@ pub(crate) fn apply_to_plan(
         }
         PlanCommand::StorePreset(name) => run.store_preset(name)?,
         PlanCommand::ListPresets => run.list_presets(),
+        PlanCommand::StoreStairs(name) => {
+            run.store_stairs(name)?;
+            notices.info(format!("The stairs are saved as {name}."));
+        }
+        PlanCommand::ListStairs => run.list_stairs(),
         PlanCommand::StartFrom(pick) => {
             if let Some(founder) = champion_of(pick, run, opening) {
                 run.start_next_from(founder.champion(), founder.name())?;

@@ -225,7 +225,9 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
             PlanCommand::ForgetFounder => {
                 ("founder", "start of the next run from scratch".to_owned())
             }
-            PlanCommand::ListPresets => return None,
+            PlanCommand::ListPresets | PlanCommand::StoreStairs(_) | PlanCommand::ListStairs => {
+                return None;
+            }
         },
         Command::Run(RunCommand::Continue(_)) => {
             let RunPlan { preset, seed, .. } = after;

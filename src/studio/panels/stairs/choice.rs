@@ -1,48 +1,87 @@
-//! Selection of built-in stairs for the next run.
-
-use std::sync::LazyLock;
+//! Selection of built-in stairs or the user's own for the next run.
 
 use bevy_egui::egui;
 
 use crate::evolve::{Settings, fields};
-use crate::save::{NamedStairs, built_in_stairs};
+use crate::save::NamedStairs;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
-
-/// The built-in stairs. A test of them ensures that they can be read.
-static BUILT_IN: LazyLock<Vec<NamedStairs>> =
-    LazyLock::new(|| built_in_stairs().unwrap_or_default());
 
 /// The name of stairs that are none of these.
 const OTHER: &str = "none of these";
 
 /// Draws the selection and collects the user's commands.
-pub(super) fn stairs_choice(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+pub(in crate::studio::panels) fn stairs_choice(
+    ui: &mut egui::Ui,
+    run: &CurrentRun,
+    commands: &mut Vec<Command>,
+) {
     let settings = run.next_settings();
-    let present = BUILT_IN.iter().find(|named| named.stairs == settings.trial.stairs);
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Built-in stairs");
-        let list = egui::ComboBox::from_id_salt("built-in stairs")
-            .selected_text(present.map_or(OTHER, |named| &named.name))
-            .width(theme::COMBO_WIDTH)
-            .height(theme::list_height(ui))
-            .show_ui(ui, |ui| {
-                for NamedStairs { name, about, stairs } in BUILT_IN.iter() {
-                    let is_present = present.is_some_and(|present| present.name == *name);
-                    if ui.selectable_label(is_present, name).on_hover_text(about).clicked() {
-                        let changes = changes(settings, stairs);
-                        commands.push(Command::Plan(PlanCommand::SetFields(changes)));
+    let present = name_of(run, &settings.trial.stairs);
+    let mut chosen: Option<&NamedStairs> = None;
+    ui.label("Shape");
+    let list = egui::ComboBox::from_id_salt("known stairs")
+        .selected_text(present.unwrap_or(OTHER))
+        .width(theme::COMBO_WIDTH)
+        .height(theme::list_height(ui))
+        .show_ui(ui, |ui| {
+            for named in run.known_stairs().built_in() {
+                chosen = choice(ui, named, &named.name, present).or(chosen);
+            }
+            if run.known_stairs().own().is_empty() {
+                return;
+            }
+            ui.separator();
+            explain(ui, "Your stairs");
+            for own in run.known_stairs().own() {
+                match &own.content {
+                    Ok(named) => chosen = choice(ui, named, &own.name, present).or(chosen),
+                    Err(reason) => {
+                        let button = egui::Button::selectable(false, &own.name);
+                        ui.add_enabled(false, button).on_disabled_hover_text(reason);
                     }
                 }
-            });
-        let is_on = ui.is_enabled();
-        list.response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Built-in stairs")
+            }
         });
-        list.response.on_hover_text("Replaces all settings of the stairs");
+    let is_on = ui.is_enabled();
+    list.response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Known stairs")
     });
+    if list.response.clicked() {
+        // The folder may have new files.
+        commands.push(Command::Plan(PlanCommand::ListStairs));
+    }
+    list.response.on_hover_text("Replaces all settings of the stairs");
+    if let Some(named) = chosen {
+        commands.extend(replacement(settings, &named.stairs));
+    }
+}
+
+fn choice<'s>(
+    ui: &mut egui::Ui,
+    named: &'s NamedStairs,
+    name: &str,
+    present: Option<&str>,
+) -> Option<&'s NamedStairs> {
+    let button = ui.selectable_label(present == Some(name), name).on_hover_text(&named.about);
+    button.clicked().then_some(named)
+}
+
+/// The name of known stairs.
+pub(super) fn name_of<'r>(run: &'r CurrentRun, stairs: &Stairs) -> Option<&'r str> {
+    let known = run.known_stairs();
+    let own = known.own().iter().filter_map(|own| own.content.as_ref().ok());
+    let mut all = known.built_in().iter().chain(own);
+    all.find(|named| named.stairs == *stairs).map(|named| named.name.as_str())
+}
+
+/// The command that puts other stairs into the next run; none if it has them already.
+pub(super) fn replacement(settings: &Settings, stairs: &Stairs) -> Option<Command> {
+    let changes = changes(settings, stairs);
+    (!changes.is_empty()).then_some(Command::Plan(PlanCommand::SetFields(changes)))
 }
 
 /// The changes of settings that lead to these stairs.
@@ -65,12 +104,16 @@ mod tests {
     #[test]
     fn a_choice_sets_all_that_differs_and_is_shown_afterwards() {
         let mut run = prepared_run();
-        for NamedStairs { name, stairs, .. } in BUILT_IN.iter() {
+        let all: Vec<NamedStairs> = run.known_stairs().built_in().to_vec();
+        assert!(all.len() >= 9);
+        for NamedStairs { name, stairs, .. } in &all {
             let changes = changes(run.next_settings(), stairs);
             let changes: Vec<(&str, &str)> =
                 changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect();
             run.set_fields(&changes).expect(name);
             assert_eq!(run.next_settings().trial.stairs, *stairs, "{name}");
+            assert_eq!(name_of(&run, stairs), Some(name.as_str()));
+            assert_eq!(replacement(run.next_settings(), stairs), None);
         }
         let draw = move |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
             stairs_choice(ui, &run, commands);
@@ -79,12 +122,14 @@ mod tests {
             .with_size(egui::vec2(theme::PANEL_WIDTH, 400.0))
             .build_ui_state(draw, Vec::new());
         panel.run();
-        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Built-in stairs").click();
+        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Known stairs").click();
         panel.run();
         panel.get_by_label("ramps").click();
         panel.run();
-        let [Command::Plan(PlanCommand::SetFields(sent))] = panel.state().as_slice() else {
-            panic!("one command");
+        let [Command::Plan(PlanCommand::ListStairs), Command::Plan(PlanCommand::SetFields(sent))] =
+            panel.state().as_slice()
+        else {
+            panic!("two commands: {:?}", panel.state());
         };
         assert!(sent.iter().any(|(field, _)| field == "trial.stairs.slope_m"), "{sent:?}");
     }

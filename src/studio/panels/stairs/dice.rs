@@ -1,0 +1,61 @@
+//! Stairs by chance: of a class, and of a seed that gives the same stairs again.
+
+use bevy_egui::egui;
+
+use crate::genome::{StairsClass, StairsGenome};
+use crate::schema::{Choice, Choices};
+use crate::studio::ui::theme;
+
+/// The class and the seed that were chosen.
+#[derive(Debug)]
+pub(super) struct Dice {
+    class: StairsClass,
+    seed: u32,
+}
+
+/// The greatest seed.
+const MOST: u32 = 999_999;
+
+impl Default for Dice {
+    fn default() -> Self {
+        Self { class: StairsClass::Irregular, seed: 0 }
+    }
+}
+
+impl Dice {
+    /// Draws the row. Returns other stairs.
+    pub fn ui(&mut self, ui: &mut egui::Ui) -> Option<StairsGenome> {
+        let mut is_rolled = false;
+        ui.horizontal_wrapped(|ui| {
+            ui.label("By chance");
+            let list = egui::ComboBox::from_id_salt("class of stairs")
+                .selected_text(self.class.choice().title)
+                .width(theme::COMBO_WIDTH * 0.75)
+                .show_ui(ui, |ui| {
+                    for &class in StairsClass::OPTIONS {
+                        let Choice { title, sentence, .. } = class.choice();
+                        let button = ui.selectable_label(class == self.class, title);
+                        if button.on_hover_text(sentence).clicked() {
+                            self.class = class;
+                            is_rolled = true;
+                        }
+                    }
+                });
+            let is_on = ui.is_enabled();
+            list.response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Class of stairs")
+            });
+            let field = egui::DragValue::new(&mut self.seed)
+                .range(0..=MOST)
+                .prefix("seed ")
+                .update_while_editing(false);
+            let seed = ui.add(field).on_hover_text("The same seed gives the same stairs again");
+            is_rolled |= (seed.changed() && !seed.dragged()) || seed.drag_stopped();
+            if ui.button("Roll").on_hover_text("Stairs of the next seed").clicked() {
+                self.seed = if self.seed < MOST { self.seed + 1 } else { 0 };
+                is_rolled = true;
+            }
+        });
+        is_rolled.then(|| self.class.of_seed(self.seed))
+    }
+}

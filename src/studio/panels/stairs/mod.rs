@@ -1,0 +1,160 @@
+//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, dice, and what building codes say.
+
+mod choice;
+mod codes;
+mod dice;
+mod profile;
+mod table;
+
+use bevy_egui::egui;
+
+use super::own_name::OwnName;
+use super::undo_buttons::undo_buttons;
+use crate::schema::check;
+use crate::studio::commands::files::FileCommand;
+use crate::studio::commands::{Command, PlanCommand, WindowCommand};
+use crate::studio::stage::lane::Lane;
+use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::undo::UndoHistory;
+use crate::studio::ui::text_rows::{explain, title_and};
+use crate::studio::ui::theme;
+use crate::world::Stairs;
+
+pub(super) use choice::stairs_choice;
+use choice::{name_of, replacement};
+use codes::codes;
+use dice::Dice;
+use profile::Profile;
+use table::table;
+
+/// The panel with what is being changed.
+#[derive(Debug, Default)]
+pub(super) struct StairsPanel {
+    /// The stairs while they are changed.
+    draft: Option<Stairs>,
+    /// Why the latest change is not allowed, in a sentence.
+    problem: Option<String>,
+    /// The step that is pointed at, in the drawing or in the table; the lowest is 0.
+    pointed: Option<u32>,
+    name: OwnName,
+    dice: Dice,
+}
+
+/// A change of the stairs by one of the panel's parts.
+#[derive(Debug, Clone, PartialEq)]
+struct Edit {
+    /// The stairs after it.
+    stairs: Stairs,
+    /// Whether it is complete, or a drag is still going on.
+    is_complete: bool,
+}
+
+impl Edit {
+    /// A change that is complete.
+    fn complete(stairs: Stairs) -> Self {
+        Self { stairs, is_complete: true }
+    }
+}
+
+impl StairsPanel {
+    /// Draws the panel and collects the user's commands. `lane` is the selected lane of the stage.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        history: &UndoHistory,
+        lane: Option<&Lane>,
+        commands: &mut Vec<Command>,
+    ) {
+        let next = &run.next_settings().trial;
+        let stairs = self.draft.clone().unwrap_or_else(|| next.stairs.clone());
+        title_and(ui, "Stairs", |ui| undo_buttons(ui, history, commands));
+        explain(ui, "The stairs of the next run. The stage shows each change beside the original.");
+        self.files(ui, run, lane, commands);
+        let profile = Profile { stairs: &stairs, agent: &next.agent, pointed: self.pointed };
+        let drawn = profile.ui(ui);
+        let mut pointed = drawn.pointed;
+        let mut edit = drawn.edit;
+        codes(ui, &stairs);
+        if let Some(problem) = &self.problem {
+            ui.label(egui::RichText::new(problem).color(theme::of(ui).problem));
+        }
+        if let Some(genome) = self.dice.ui(ui) {
+            let (first_riser_y_m, landing_m) = (stairs.first_riser_y_m, stairs.landing_m);
+            let rolled = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
+            edit = Some(Edit::complete(rolled));
+        }
+        ui.add_space(theme::GAP / 2.0);
+        let listed = table(ui, &stairs, self.pointed);
+        pointed = pointed.or(listed.pointed);
+        edit = listed.edit.or(edit);
+        let hint =
+            "Width, landing, nosing and the other settings of the stairs, in the World panel";
+        if ui.button("More settings").on_hover_text(hint).clicked() {
+            commands.push(Command::Window(WindowCommand::FindSetting("Stairs")));
+        }
+        if pointed != self.pointed {
+            self.pointed = pointed;
+            ui.ctx().request_repaint();
+        }
+        if let Some(edit) = edit {
+            self.take(edit, run, commands);
+        }
+    }
+
+    /// The row of known stairs, and the buttons that save and take over stairs.
+    fn files(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        lane: Option<&Lane>,
+        commands: &mut Vec<Command>,
+    ) {
+        let stairs = &run.next_settings().trial.stairs;
+        ui.horizontal_wrapped(|ui| stairs_choice(ui, run, commands));
+        ui.horizontal_wrapped(|ui| {
+            let hint = "Save these stairs as a file, to use them again and to pass them on";
+            let suggestion = || {
+                let copied = name_of(run, stairs).unwrap_or("stairs");
+                run.known_stairs().name_for_copy(copied)
+            };
+            self.name.button(ui, ("Save as…", hint), suggestion);
+            let has_own = !run.known_stairs().own().is_empty();
+            let hint = "Show the files of your stairs. File > Import adds the stairs of others";
+            let refusal = "Save stairs first";
+            let button = ui.add_enabled(has_own, egui::Button::new("Show files"));
+            if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
+                commands.push(Command::File(FileCommand::OpenFolder(run.stairs_folder())));
+            }
+            let staged = lane.map(|lane| &lane.trial().stairs).filter(|staged| *staged != stairs);
+            if let Some(staged) = staged {
+                let hint = "Take over the stairs of the selected snake on the stage";
+                if ui.button("Stairs of the stage").on_hover_text(hint).clicked() {
+                    commands.extend(replacement(run.next_settings(), staged));
+                }
+            }
+        });
+        if let Some(name) = self.name.field(ui, run.known_stairs()) {
+            commands.push(Command::Plan(PlanCommand::StoreStairs(name)));
+        }
+    }
+
+    /// Takes a change over: into the draft, and into the next run once it is complete. One that is not allowed leaves
+    /// the stairs as they were.
+    fn take(&mut self, edit: Edit, run: &CurrentRun, commands: &mut Vec<Command>) {
+        match check(&edit.stairs) {
+            Ok(()) => {
+                self.problem = None;
+                self.draft = Some(edit.stairs);
+            }
+            Err(error) => self.problem = Some(format!("Not possible: {error}.")),
+        }
+        if edit.is_complete {
+            let draft = self.draft.take();
+            commands.extend(draft.and_then(|stairs| replacement(run.next_settings(), &stairs)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

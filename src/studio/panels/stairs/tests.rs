@@ -1,0 +1,188 @@
+//! The panel as its users work with it.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use super::*;
+use crate::genome::StairsClass;
+use crate::studio::state::current_run::prepared_run;
+
+/// A next run, the panel, and the commands that it sent.
+struct Editing {
+    run: CurrentRun,
+    panel: StairsPanel,
+    commands: Vec<Command>,
+}
+
+type Window = Harness<'static, Editing>;
+
+/// The panel for a next run with these stairs.
+fn editing(stairs: &Stairs, width: f32) -> Window {
+    let mut run = prepared_run();
+    set(&mut run, stairs);
+    let draw = |ui: &mut egui::Ui, of: &mut Editing| {
+        theme::apply(ui.ctx());
+        let mut commands = Vec::new();
+        of.panel.ui(ui, &of.run, &UndoHistory::default(), None, &mut commands);
+        for command in &commands {
+            if let Command::Plan(PlanCommand::SetFields(changes)) = command {
+                set_fields(&mut of.run, changes);
+            }
+        }
+        of.commands.extend(commands);
+    };
+    let state = Editing { run, panel: StairsPanel::default(), commands: Vec::new() };
+    let mut window = Harness::builder()
+        .with_size(egui::vec2(width, 1200.0))
+        .with_step_dt(1.0 / 60.0)
+        .build_ui_state(draw, state);
+    window.run();
+    window
+}
+
+fn set(run: &mut CurrentRun, stairs: &Stairs) {
+    if let Some(Command::Plan(PlanCommand::SetFields(changes))) =
+        replacement(run.next_settings(), stairs)
+    {
+        set_fields(run, &changes);
+    }
+}
+
+fn set_fields(run: &mut CurrentRun, changes: &[(String, String)]) {
+    let changes: Vec<(&str, &str)> =
+        changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect();
+    run.set_fields(&changes).expect("allowed");
+}
+
+fn stairs(window: &Window) -> Stairs {
+    window.state().run.next_settings().trial.stairs.clone()
+}
+
+fn house() -> Stairs {
+    Stairs { tread_m: 0.8.into(), ..Stairs::default() }
+}
+
+fn centre(window: &Window, name: &str) -> egui::Pos2 {
+    window.get_by_label(name).rect().center()
+}
+
+/// Drags a thing by some points, in many small steps.
+fn drag(window: &mut Window, name: &str, by: egui::Vec2) {
+    let from = centre(window, name);
+    window.hover_at(from);
+    window.run_steps(2);
+    window.drag_at(from);
+    window.run_steps(2);
+    for share in 1_u8..=8 {
+        window.hover_at(from + by * (f32::from(share) / 8.0));
+        window.run_steps(1);
+    }
+    window.drop_at(from + by);
+    window.run_steps(3);
+}
+
+#[test]
+fn a_dragged_edge_moves_one_step_and_is_one_change() {
+    let mut window = editing(&house(), theme::PANEL_WIDTH);
+    let points_per_m =
+        (centre(&window, "Edge of step 3").x - centre(&window, "Edge of step 2").x) / 0.8;
+    drag(&mut window, "Edge of step 3", egui::vec2(0.2, -0.3) * points_per_m);
+    let expected = house().with_handle_at(2, [3.0 + 1.6 + 0.2, 1.5 + 0.3]);
+    assert_eq!(stairs(&window), expected);
+    let changes = window.state().commands.iter();
+    let sent = changes.filter(|of| matches!(of, Command::Plan(PlanCommand::SetFields(_))));
+    assert_eq!(sent.count(), 1, "one step to undo");
+    assert!(window.state().panel.draft.is_none());
+}
+
+#[test]
+fn an_edge_stays_where_a_further_move_is_not_allowed_and_the_panel_says_why() {
+    let mut window = editing(&house(), theme::PANEL_WIDTH);
+    let [from, next] = ["Edge of step 3", "Edge of step 4"].map(|name| centre(&window, name));
+    // Beyond the edge behind it.
+    drag(&mut window, "Edge of step 3", egui::vec2((next - from).x * 1.5, 0.0));
+    let tread_m = stairs(&window).step_tread_m(2);
+    assert!((0.1..0.3).contains(&tread_m), "{tread_m}");
+    assert!(window.query_by_label_contains("Not possible: tread_m").is_some());
+    drag(&mut window, "Edge of step 3", egui::vec2(-10.0, 0.0));
+    assert!(window.query_by_label_contains("Not possible").is_none());
+}
+
+#[test]
+fn the_table_changes_copies_and_removes_steps() {
+    let mut window = editing(&house(), theme::PANEL_WIDTH);
+    window.get_by_label("Copy step 2").click();
+    window.run();
+    assert_eq!(stairs(&window), Stairs { steps: 11, ..house() });
+    window.get_by_label("Remove step 11").click();
+    window.run();
+    assert_eq!(stairs(&window), house());
+    let field = "Rise of step 2";
+    window.get_by_label(field).click();
+    window.run();
+    window.event(egui::Event::Text("0.7".to_owned()));
+    window.run();
+    window.key_press(egui::Key::Enter);
+    window.run();
+    assert_eq!(stairs(&window), house().with_step_rise(1, 0.7));
+}
+
+#[test]
+fn the_last_step_can_be_removed_and_put_back() {
+    let one = Stairs { steps: 1, ..house() };
+    let mut window = editing(&one, theme::PANEL_WIDTH);
+    window.get_by_label("Remove step 1").click();
+    window.run();
+    assert_eq!(stairs(&window).steps, 0);
+    window.get_by_label("Add a step").click();
+    window.run();
+    assert_eq!(stairs(&window), one);
+}
+
+#[test]
+fn a_roll_gives_the_stairs_of_the_next_seed_where_the_others_were() {
+    let before = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..house() };
+    let mut window = editing(&before, theme::PANEL_WIDTH);
+    for seed in [1, 2] {
+        window.get_by_label("Roll").click();
+        window.run();
+        let drawn = StairsClass::Irregular.of_seed(seed).stairs();
+        let expected = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..drawn };
+        assert_eq!(stairs(&window), expected);
+    }
+}
+
+#[test]
+fn stairs_are_saved_under_a_suggested_name() {
+    let mut window = editing(&house(), theme::PANEL_WIDTH);
+    window.get_by_label("Save as…").click();
+    window.run();
+    window.key_press(egui::Key::Enter);
+    window.run();
+    let saved = Command::Plan(PlanCommand::StoreStairs("my-stairs".to_owned()));
+    assert_eq!(window.state().commands, [saved]);
+}
+
+#[test]
+fn building_codes_are_compared_in_words() {
+    let window = editing(&house(), theme::PANEL_WIDTH);
+    assert!(window.query_by_label_contains("32°, 175 × 280 mm").is_some());
+    assert_eq!(window.query_all_by_label("allowed").count(), 3);
+    let steep = Stairs { rise_m: 0.7.into(), ..house() };
+    let window = editing(&steep, theme::PANEL_WIDTH);
+    assert!(window.query_all_by_label_contains("step 1 rises 245 mm, over 196").count() > 0);
+}
+
+#[test]
+fn nothing_is_wider_than_the_panel() {
+    let long = Stairs { steps: 60, ..Stairs::default() };
+    for stairs in [house(), Stairs::uneven(), Stairs { steps: 0, ..house() }, long] {
+        for width in [theme::PANEL_WIDTH, 600.0] {
+            let window = editing(&stairs, width);
+            for step in 0..stairs.steps {
+                let at = centre(&window, &format!("Edge of step {}", step + 1));
+                assert!((0.0..=width).contains(&at.x), "{width}: step {step} at {at}");
+            }
+        }
+    }
+}
