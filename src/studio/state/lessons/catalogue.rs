@@ -1,6 +1,7 @@
 //! Texts and scenes of the lessons. Tests in [`super`] check that the conclusions are true.
 
 mod bodies;
+mod ladder;
 mod report;
 mod senses;
 
@@ -19,7 +20,7 @@ pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it 
     whole snake is on the landing.";
 
 /// All lessons. Only findings and conclusions may state a result: the other texts are read before the experiments.
-pub(crate) const LESSONS: [Lesson; 8] = [
+pub(crate) const LESSONS: [Lesson; 9] = [
     report::FRICTION,
     report::FRAME_RATE,
     report::JOINT_LIMITS,
@@ -28,6 +29,7 @@ pub(crate) const LESSONS: [Lesson; 8] = [
     senses::LEARNED_BY_HEART,
     senses::BLINDFOLD,
     bodies::PROTECTION,
+    ladder::LADDER,
 ];
 
 /// A built-in champion in each of these worlds or bodies.

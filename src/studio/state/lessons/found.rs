@@ -17,8 +17,15 @@ pub(crate) struct Found {
 impl Found {
     /// The best champion so far.
     pub fn best(&self) -> Option<&Champion> {
-        let champions = self.reports.iter().filter_map(|report| report.champion.as_ref());
-        champions.max_by(|a, b| a.evaluation.fitness.total_cmp(&b.evaluation.fitness))
+        let ranked = self.reports.iter().filter_map(|report| {
+            let [first, second] = report.champion_rank()?;
+            Some((report.champion.as_ref()?, [first, second]))
+        });
+        // The higher stairs of a ladder come before greater fitness.
+        let by_rank = |(_, a): &(_, [f32; 2]), (_, b): &(_, [f32; 2])| {
+            a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
+        };
+        ranked.max_by(by_rank).map(|(champion, _)| champion)
     }
 
     /// Number of generations in the second half whose best snake has another structure of its body than the best of the

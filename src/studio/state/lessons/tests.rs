@@ -3,7 +3,9 @@
 use std::sync::OnceLock;
 
 use super::*;
+use crate::evolve::Champion;
 use crate::run::{Experiment, LocalPool, RunControl};
+use crate::save::load_preset;
 use crate::score::{Evaluation, evaluate};
 use crate::studio::state::current_run::prepared_run;
 
@@ -206,6 +208,31 @@ fn the_conclusion_about_protection_is_true() {
     assert!(with.late_body_changes() >= 2 && without.late_body_changes() == 0);
     let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
     assert!(best(with) < best(without), "as the finding says");
+}
+
+#[test]
+fn the_conclusion_about_a_ladder_is_true() {
+    let places: Vec<(u32, bool)> = {
+        let lanes = LESSONS[8].scenes[0].sides();
+        let staged = champions("climber", lanes).expect("they fit");
+        let ends = staged.iter().zip(&result(8, 0).lanes);
+        ends.map(|(staged, (_, of))| {
+            let climbed = of.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
+            (climbed, of.is_on_landing(&staged.trial().stairs))
+        })
+        .collect()
+    };
+    assert!(places[0].1 && !places[1].1 && !places[2].1, "{places:?}");
+    assert!(places[1].0 > 2 && places[2].0 == 0, "{places:?}");
+    assert_eq!([answer(8, 0), answer(8, 1)], ["steps of 0.2 m", "by a ladder"]);
+    let [direct, ladder] = &result(8, 1).runs[..] else { panic!("two runs") };
+    let goal = &load_preset("house").expect("shipped").settings.trial.stairs;
+    let best = |of: &Found| of.best().expect("a champion").clone();
+    let lands = |best: &Champion| best.evaluation.is_on_landing(goal);
+    assert_eq!(best(ladder).trial.stairs, *goal, "the ladder has grown to its end");
+    assert!(lands(&best(ladder)) && !lands(&best(direct)));
+    let reached = best(direct).reached();
+    assert!(reached.ends_with("beside the stairs"), "as the finding says: {reached}");
 }
 
 #[test]

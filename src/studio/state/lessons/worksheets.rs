@@ -116,6 +116,18 @@ const SHEETS: [Sheet; LESSONS.len()] = [
         ],
         expected: "",
     },
+    Sheet {
+        steps: &[
+            "Begin lesson 9, guess, and watch the race to its end. Fill in the first table.",
+            "Choose \"Direct and by a ladder\", guess, and watch both lines. Fill in the second table.",
+            "Open the Stairs panel, build stairs that the snake on the stage just fails to climb, and save them.",
+        ],
+        questions: [
+            "Why does a search learn nothing from a task that all candidates fail alike?",
+            "Where do people learn by a ladder, too?",
+        ],
+        expected: "",
+    },
 ];
 
 /// A line to write on.
