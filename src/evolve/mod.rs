@@ -22,10 +22,10 @@ pub use plan::{
 };
 pub use settings::{
     BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
-    HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, Mutation, NeatSettings,
-    NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind, Settings,
-    StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields, with_field,
-    with_fields,
+    HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, MccSettings, Mutation,
+    NeatSettings, NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind,
+    Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields,
+    with_field, with_fields,
 };
 pub use stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};

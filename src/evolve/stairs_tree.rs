@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::plan::RunPlan;
+use crate::check::{Invalid, within};
 use crate::genome::{Genome, StairsGenome};
+use crate::schema::check;
 use crate::score::Trial;
 
 /// The stairs of a run, in the order in which they came; the first is the root.
@@ -66,7 +69,33 @@ pub struct Transfer {
     pub to: u32,
 }
 
+impl Agent {
+    /// Checks that a run with this plan can have found it.
+    ///
+    /// # Errors
+    /// Its genes do not fit.
+    pub fn check(&self, plan: &RunPlan) -> Result<(), Invalid> {
+        check_genome(&self.genome, plan)
+    }
+}
+
 impl StairsNode {
+    /// Checks that these stairs can be number `index`, from 0, of a run that has come to this round.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub fn check(&self, index: usize, round: u32, plan: &RunPlan) -> Result<(), Invalid> {
+        check(&self.stairs)?;
+        check_score("score", self.score)?;
+        // Those before it; the root has none.
+        if self.parent.is_none_or(|parent| parent as usize >= index) != (index == 0) {
+            let found = self.parent.map_or("none".to_owned(), |parent| parent.to_string());
+            return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
+        }
+        within("born", self.born, 0..=round)?;
+        self.agent.as_ref().map_or(Ok(()), |agent| agent.check(plan))
+    }
+
     /// A trial of the run on these stairs.
     pub fn trial(&self, trial: &Trial) -> Trial {
         trial.on_stairs(self.stairs.stairs())
@@ -89,4 +118,25 @@ impl StairsTree {
     pub fn active(&self) -> usize {
         self.nodes.iter().filter(|node| node.archived.is_none()).count()
     }
+}
+
+/// Greatest score in a file. A share is at most 1.1.
+const MOST_SCORE: f32 = 10.0;
+
+/// Checks a share of the way in a file.
+///
+/// # Errors
+/// It is negative, or greater than any share.
+pub fn check_score(field: &str, score: f32) -> Result<(), Invalid> {
+    within(field, score, 0.0..=MOST_SCORE)
+}
+
+/// Checks that a genome fits the plan of a run.
+///
+/// # Errors
+/// It has another shape, or a gene out of its range.
+pub fn check_genome(genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
+    let trial = &plan.settings.trial;
+    plan.settings.genome.check_genome(genome, trial.genome_shape())?;
+    trial.check_genome(genome)
 }

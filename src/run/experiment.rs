@@ -395,7 +395,7 @@ impl Experiment {
     fn rank(&self, champion: &Champion) -> [f32; 2] {
         let settings = &self.plan.settings.evolution;
         if settings.strategy.info().evolves_stairs {
-            champion.rank_of_climbed(settings.poet.solved_from)
+            champion.rank_of_climbed(settings.climbed_from())
         } else {
             champion.rank()
         }

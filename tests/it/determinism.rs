@@ -87,6 +87,25 @@ fn stairs_that_evolve_have_one_run_hash_for_any_number_of_threads() {
 }
 
 #[test]
+fn queues_of_snakes_and_stairs_have_one_run_hash_for_any_number_of_threads() {
+    let folder = folder();
+    let hash = |threads: usize| {
+        let arguments = format!(
+            "--no-render --json --preset poet --set strategy=mcc --seed 9 --duration 3 --population 100 --generations 30 \
+             --set criterion=0.05 --set snake_queue=6 --set snake_children=3 --set stairs_queue=3 --set stairs_children=2 \
+             --set first_snakes=4 --out out-{threads} --threads {threads}"
+        );
+        let lines = json_lines(folder.path(), &arguments);
+        let last = &lines[lines.len() - 2]["stairs"];
+        assert!(last["all"].as_u64().is_some_and(|all| all > 3), "{last}");
+        lines[lines.len() - 1]["run_hash"].clone()
+    };
+    let one = hash(1);
+    assert_eq!(one, hash(2));
+    assert_eq!(one, hash(4));
+}
+
+#[test]
 fn the_program_gives_one_run_hash_for_any_number_of_threads() {
     let folder = folder();
     let hash = |threads: usize| {

@@ -258,6 +258,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         (StrategyKind::Islands, ControllerKind::Gait, "islands"),
         (StrategyKind::Poet, ControllerKind::Gait, "poet"),
         (StrategyKind::BodyPoet, ControllerKind::Gait, "body-poet"),
+        (StrategyKind::Mcc, ControllerKind::Gait, "mcc"),
     ] {
         let (mut plan, _) = plan();
         plan.settings.evolution.strategy = strategy;
@@ -273,6 +274,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
             plan.settings.trial.fitness = Fitness::Share;
             plan.settings.evolution.generations = 100;
             plan.settings.evolution.poet.pair_candidates = 4;
+            plan.settings.evolution.mcc.snake_queue = 4;
         }
         plan.settings.evolution.xcs.rules = 20;
         plan.settings.evolution.zcs.rules = 20;

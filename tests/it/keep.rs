@@ -39,12 +39,13 @@ const WITH_CREATURES: &str =
     "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
 
 /// Settings with which stairs evolve in such a run, through all phases of a round.
-const WITH_STAIRS: &str = "--set trial.fitness=share --set pairs=3 --set pair_candidates=4 \
-                           --set learn_generations=1 --set transfers=1 --set reproduces_from=0 \
-                           --set too_hard_below=0 --set too_easy_above=1.1";
+const WITH_PAIRS: &str = "--set pairs=3 --set pair_candidates=4 --set learn_generations=1 --set transfers=1 \
+                          --set reproduces_from=0 --set too_hard_below=0 --set too_easy_above=1.1";
+const WITH_QUEUES: &str = "--set criterion=0.05 --set snake_queue=4 --set snake_children=2 --set stairs_queue=2 \
+                           --set stairs_children=1 --set uses_of_stairs=2 --set first_snakes=2";
 
-/// Number of runs that are killed: each of sixteen kinds of run six times.
-const ROUNDS: usize = 96;
+/// Number of runs that are killed: each of seventeen kinds of run six times.
+const ROUNDS: usize = 102;
 
 /// The only run in a folder of saves, if there is one yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
@@ -96,7 +97,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let strategies = ["halving", "ga", "cma_es", "map_elites", "novelty", "random"];
     let soft = ["soft cma_es", "soft body_ga"];
     let on_ladders = ["ladder cma_es"];
-    let with_stairs = ["poet", "body_poet"];
+    let with_stairs = ["poet", "body_poet", "mcc"];
     let strategies: Vec<&str> = strategies
         .into_iter()
         .chain(of_bodies)
@@ -111,9 +112,14 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
         if with_stairs.contains(&strategy) {
             // Their generations are larger.
             let tiny = TINY.replace("--population 4", "--population 100");
-            let bodies =
-                if strategy == "body_poet" { WITH_BODIES } else { "--set controller=gait" };
-            return format!("{tiny} --set strategy={strategy} {WITH_STAIRS} {bodies}");
+            let (pairs, bodies) = match strategy {
+                "mcc" => (WITH_QUEUES, "--set controller=gait"),
+                "poet" => (WITH_PAIRS, "--set controller=gait"),
+                _ => (WITH_PAIRS, WITH_BODIES),
+            };
+            return format!(
+                "{tiny} --set trial.fitness=share --set strategy={strategy} {pairs} {bodies}"
+            );
         }
         let (strategy, is_soft) =
             strategy.strip_prefix("soft ").map_or((strategy, false), |strategy| (strategy, true));

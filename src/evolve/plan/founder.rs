@@ -121,10 +121,10 @@ mod tests {
                 let founded = plan.starting_from(Founder::new("x", genome.clone())).expect("fits");
                 let asked = begin(&founded).ask();
                 let what = format!("{strategy}, {controller}");
-                if strategy == StrategyKind::Poet {
-                    assert_eq!(asked.len(), 4, "no random genomes");
-                } else {
-                    assert_eq!(asked.len(), random.len());
+                match strategy {
+                    StrategyKind::Poet => assert_eq!(asked.len(), 4, "no random genomes"),
+                    StrategyKind::Mcc => assert_eq!(asked.len(), 30, "no random genomes"),
+                    _ => assert_eq!(asked.len(), random.len()),
                 }
                 if matches!(
                     strategy,
@@ -141,7 +141,10 @@ mod tests {
                 }
                 if matches!(
                     strategy,
-                    StrategyKind::CmaEs | StrategyKind::Islands | StrategyKind::Poet
+                    StrategyKind::CmaEs
+                        | StrategyKind::Islands
+                        | StrategyKind::Poet
+                        | StrategyKind::Mcc
                 ) {
                     assert_ne!(asked, random, "{what}");
                     continue;

@@ -10,6 +10,7 @@ mod halving;
 mod ladder;
 mod learning;
 mod map_elites;
+mod mcc;
 mod neat;
 mod novelty;
 mod partners;
@@ -26,6 +27,7 @@ pub use halving::HalvingSettings;
 pub use ladder::LadderSettings;
 pub use learning::{ExplorationSettings, QLearningSettings, XcsRunSettings, ZcsRunSettings};
 pub use map_elites::MapElitesSettings;
+pub use mcc::MccSettings;
 pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
 pub use poet::PoetSettings;
@@ -101,6 +103,9 @@ setting_group! {
         /// POET.
         #[serde(default, skip_serializing_if = "is_default")]
         poet: PoetSettings = PoetSettings::default();
+        /// Minimal criterion coevolution.
+        #[serde(default, skip_serializing_if = "is_default")]
+        mcc: MccSettings = MccSettings::default();
         /// The ladder of stairs.
         #[serde(default, skip_serializing_if = "is_default")]
         ladder: LadderSettings = LadderSettings::default();
@@ -130,6 +135,7 @@ impl SettingGroup for EvolutionSettings {
             islands,
             creature_ga,
             poet,
+            mcc,
             ladder,
             exploration,
         } = self;
@@ -149,7 +155,7 @@ impl SettingGroup for EvolutionSettings {
                 .fixed("Takes effect with the next run, because another strategy cannot use the current state.");
         }
         let used = strategy.info().settings;
-        let groups: [(&str, &mut dyn SettingGroup); 15] = [
+        let groups: [(&str, &mut dyn SettingGroup); 16] = [
             ("halving", halving),
             ("ga", ga),
             ("cma_es", cma_es),
@@ -164,6 +170,7 @@ impl SettingGroup for EvolutionSettings {
             ("islands", islands),
             ("creature_ga", creature_ga),
             ("poet", poet),
+            ("mcc", mcc),
             ("exploration", exploration),
         ];
         for (name, group) in groups {
@@ -183,6 +190,14 @@ impl EvolutionSettings {
         title: "Strategy",
         about: "How each generation is created from the previous one.",
     };
+
+    /// The share of the way from which on a snake has climbed its stairs, where stairs evolve.
+    pub fn climbed_from(&self) -> f32 {
+        match self.strategy {
+            StrategyKind::Mcc => self.mcc.criterion,
+            _ => self.poet.solved_from,
+        }
+    }
 
     /// Number of evaluations that a run may cost.
     pub fn budget(&self) -> u64 {

@@ -119,7 +119,10 @@ impl Settings {
         let repeats = &self.trial.repeats;
         let with = format!("with evolution.strategy {strategy}");
         if repeats.trials != 1 {
-            let allowed = format!("1 {with}, which adds evolution.poet.perturbed trials itself");
+            let allowed = match strategy {
+                StrategyKind::Mcc => format!("1 {with}, whose criterion is met in one trial"),
+                _ => format!("1 {with}, which adds evolution.poet.perturbed trials itself"),
+            };
             return Err(Invalid::new("trial.repeats.trials", repeats.trials, allowed));
         }
         if repeats.off.stairs != StairsVariation::Own {

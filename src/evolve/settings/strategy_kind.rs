@@ -278,6 +278,18 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.poet.check_size(size),
         ..StrategyInfo::PLAIN
     };
+    /// Queues of snakes and of stairs with a minimal criterion.
+    Mcc = StrategyInfo {
+        name: "mcc",
+        title: "Minimal criterion coevolution",
+        words: "Stairs and snakes evolve without fitness: a snake has children if it climbs some stairs, and stairs have mutants if a snake climbs them.",
+        color: [0xc0, 0x50, 0xd0],
+        settings: &["mcc"],
+        is_budget_driven: true,
+        evolves_stairs: true,
+        check_size: |evolution, size| evolution.mcc.check_size(size),
+        ..StrategyInfo::PLAIN
+    };
     /// A genetic algorithm over graphs that grow into creatures.
     CreatureGa = StrategyInfo {
         name: "creature_ga",

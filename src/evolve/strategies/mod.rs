@@ -16,6 +16,7 @@ mod islands;
 mod learned;
 mod learning;
 mod map_elites;
+mod mcc;
 mod neat;
 mod novelty;
 mod poet;
@@ -33,6 +34,7 @@ use body_ga::BodyGa;
 use ga::Ga;
 use learned::JointSystems;
 use learning::Learning;
+use mcc::Mcc;
 use novelty::Novelty;
 use poet::Poet;
 
@@ -57,6 +59,7 @@ fn constructors(settings: &Settings) -> Constructors {
         StrategyKind::Islands => Constructors::of::<islands::Islands>(),
         StrategyKind::Poet => Constructors::of::<Poet<cma_es::CmaEs>>(),
         StrategyKind::BodyPoet => Constructors::of::<Poet<BodyGa>>(),
+        StrategyKind::Mcc => Constructors::of::<Mcc<cma_es::CmaEs>>(),
         StrategyKind::CreatureGa => Constructors::of::<creature_ga::CreatureGa>(),
         StrategyKind::Random => Constructors::of::<random::Random>(),
     }

@@ -36,9 +36,6 @@ const NEWBORNS: u32 = 100;
 const RECENT: usize = 5;
 /// Number of measurements in turn without a better agent after which a pair's search begins again around its agent.
 const STALE: u32 = 8;
-/// Strengths of the mutation of stairs, equally likely. With the least alone, an agent that climbs low stairs well would find
-/// all mutants too easy, and no more would come.
-const STRENGTHS: [u32; 4] = [1, 2, 4, 8];
 /// Maximum number of transfers that are remembered.
 const MOST_TRANSFERS: usize = 2000;
 
@@ -60,14 +57,8 @@ impl<S: Strategy> Poet<S> {
 
     /// The stairs on which a run begins: those of the trial with the first rise.
     fn root(plan: &RunPlan) -> StairsGenome {
-        let stairs = &plan.settings.trial.stairs;
-        StairsGenome {
-            steps: stairs.steps.clamp(3, 20),
-            rise_m: plan.settings.evolution.poet.root_rise_m,
-            tread_m: stairs.mean_tread_m().clamp(0.6, 3.0),
-            width_m: stairs.width_m.clamp(2.5, 6.0),
-            ..StairsGenome::default()
-        }
+        let rise_m = plan.settings.evolution.poet.root_rise_m;
+        StairsGenome::like(&plan.settings.trial.stairs, rise_m)
     }
 
     /// Length of the longest stairs, in m: a trial has time for those that its settings have.
@@ -324,11 +315,7 @@ impl<S: Strategy> Poet<S> {
             let round = self.progress.rounds + 1;
             let mut rng = stream(self.plan.seed, round, number, Purpose::StairsMutation);
             let parent = drawn(&parents, &mut rng);
-            let change = StairsChange {
-                strength: drawn(&STRENGTHS, &mut rng),
-                longest_m,
-                features: self.settings.features,
-            };
+            let change = StairsChange::drawn(longest_m, self.settings.features, &mut rng);
             let stairs = self.progress.node(parent)?.stairs.mutant(&change, &mut rng);
             let is_known = self.progress.nodes.iter().any(|node| node.stairs == stairs);
             (!is_known).then_some(Child { parent, stairs })

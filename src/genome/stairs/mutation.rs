@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::StairsGenome;
 use crate::rng::drawn;
 use crate::schema::check;
+use crate::world::Stairs;
 
 /// Probability that the number of steps changes by one.
 const STEPS_CHANGE: f64 = 0.2;
@@ -29,7 +30,30 @@ pub struct StairsChange {
     pub features: bool,
 }
 
+/// Strengths of a mutation, equally likely. With the least alone, a snake that climbs low stairs well would find all mutants too
+/// easy.
+const STRENGTHS: [u32; 4] = [1, 2, 4, 8];
+
+impl StairsChange {
+    /// A change of a strength that is drawn.
+    pub fn drawn(longest_m: f32, features: bool, rng: &mut ChaCha8Rng) -> Self {
+        Self { strength: drawn(&STRENGTHS, rng), longest_m, features }
+    }
+}
+
 impl StairsGenome {
+    /// Stairs with equal steps of this rise, and with the steps, the mean tread and the width of other stairs, as far as they
+    /// are allowed.
+    pub fn like(stairs: &Stairs, rise_m: f32) -> Self {
+        Self {
+            steps: stairs.steps.clamp(3, 20),
+            rise_m,
+            tread_m: stairs.mean_tread_m().clamp(0.6, 3.0),
+            width_m: stairs.width_m.clamp(2.5, 6.0),
+            ..Self::default()
+        }
+    }
+
     /// A mutant: each of its numbers changes with an even chance, by at most a step of 0.1 m of rise, 0.2 m of tread, 5 % of
     /// irregularity, 0.05 m of nosing and 0.25 m of width, times the strength. Unchanged if no attempt gives a staircase that
     /// is allowed.

@@ -300,6 +300,13 @@ const CASES: &[Case] = &[
          transfers=1; features=false; reproduces_from=0; too_hard_below=0; too_easy_above=1.1; trial.fitness=share; \
          start_y_m=-3; trial.duration_s=3",
     ),
+    (
+        "minimal criterion coevolution",
+        [3, 40, 20],
+        "controller=gait; strategy=mcc; criterion=0.15; snake_queue=8; snake_children=3; child_step=0.1; stairs_queue=3; \
+         stairs_children=2; uses_of_stairs=2; first_snakes=4; start_rise_m=0.15; special_steps=false; trial.fitness=share; \
+         start_y_m=-3; trial.duration_s=3",
+    ),
     // Many of their joints have asymmetric limits.
     (
         "creatures",

@@ -50,7 +50,7 @@ fn advance(strategy: &mut dyn Strategy, generation: u32) {
 }
 
 /// Allowed changes of each strategy.
-const ALLOWED: [(StrategyKind, &[(&str, &str)]); 12] = [
+const ALLOWED: [(StrategyKind, &[(&str, &str)]); 13] = [
     (
         StrategyKind::BodyMapElites,
         &[
@@ -84,6 +84,7 @@ const ALLOWED: [(StrategyKind, &[(&str, &str)]); 12] = [
     (StrategyKind::Islands, &[("generations", "40")]),
     (StrategyKind::Poet, &[("poet.children", "3")]),
     (StrategyKind::BodyPoet, &[("body_ga.tournament_size", "7")]),
+    (StrategyKind::Mcc, &[("mcc.uses_of_stairs", "3")]),
     (
         StrategyKind::Halving,
         &[

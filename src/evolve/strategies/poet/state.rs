@@ -6,7 +6,7 @@ use super::{MOST_TRANSFERS, RECENT, search_plan};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
-use crate::evolve::stairs_tree::{Agent, StairsNode, Transfer};
+use crate::evolve::stairs_tree::{Agent, StairsNode, Transfer, check_genome, check_score};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::{Genome, StairsGenome};
 use crate::schema::check;
@@ -248,7 +248,9 @@ impl SavedPairs {
         within("panel", self.panel.len(), 0..=self.nodes.len())?;
         within("rows", self.rows.len(), self.nodes.len()..=self.nodes.len())?;
         for (index, node) in self.nodes.iter().enumerate() {
-            self.check_node(node, index, plan).map_err(|error| error.inside("nodes"))?;
+            // Stairs that have just come belong to the round that is not finished yet.
+            let checked = node.check(index, self.rounds + 1, plan);
+            checked.map_err(|error| error.inside("nodes"))?;
         }
         for row in &self.rows {
             // A staircase that has just come lacks the columns of those that came with it.
@@ -295,18 +297,6 @@ impl SavedPairs {
         }
     }
 
-    fn check_node(&self, node: &StairsNode, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
-        check(&node.stairs)?;
-        check_score("score", node.score)?;
-        // Those before it; the root has none.
-        if node.parent.is_none_or(|parent| parent as usize >= index) != (index == 0) {
-            let found = node.parent.map_or("none".to_owned(), |parent| parent.to_string());
-            return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
-        }
-        within("born", node.born, 0..=self.rounds + 1)?;
-        node.agent.as_ref().map_or(Ok(()), |agent| check_genome(&agent.genome, plan))
-    }
-
     fn check_pair(&self, pair: &SavedPair, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
         self.check_place(pair.node)?;
         let is_twice = self.pairs.iter().take(index).any(|other| other.node == pair.node);
@@ -323,7 +313,7 @@ impl SavedPairs {
         match &pair.challenger {
             Some((agent, score)) => {
                 check_score("challenger", *score)?;
-                check_genome(&agent.genome, plan)
+                agent.check(plan)
             }
             None => Ok(()),
         }
@@ -353,17 +343,4 @@ impl SavedPairs {
             None => Err(Invalid::new("stairs", index, "stairs that have an agent")),
         }
     }
-}
-
-/// Greatest score in a file. A share is at most 1.1.
-const MOST_SCORE: f32 = 10.0;
-
-fn check_score(field: &str, score: f32) -> Result<(), Invalid> {
-    within(field, score, 0.0..=MOST_SCORE)
-}
-
-fn check_genome(genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
-    let trial = &plan.settings.trial;
-    plan.settings.genome.check_genome(genome, trial.genome_shape())?;
-    trial.check_genome(genome)
 }

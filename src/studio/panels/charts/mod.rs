@@ -276,7 +276,11 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         ChartKind::Bodies => {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
-        ChartKind::Stairs => Some(stairs::view(run.reports(), exploration?.stairs.as_ref()?)),
+        ChartKind::Stairs => Some(stairs::view(
+            run.settings().evolution.strategy,
+            run.reports(),
+            exploration?.stairs.as_ref()?,
+        )),
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),

@@ -2,17 +2,22 @@
 //! between them as arrows. A click replays the snake of a staircase. Below it, how many new challenges were solved.
 
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, StairsNode, StairsTree, Transfer};
+use crate::evolve::{IndividualId, StairsNode, StairsTree, StrategyKind, Transfer};
 use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::run::GenerationReport;
+use crate::save::StairsCount;
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::padded_range;
 
 /// Maximum number of the latest transfers that are drawn; more would hide the tree.
 const MOST_ARROWS: usize = 60;
 
-/// Charts of a tree.
-pub(super) fn view(reports: &[GenerationReport], tree: &StairsTree) -> ChartView {
+/// Charts of a tree of a run with this strategy.
+pub(super) fn view(
+    strategy: StrategyKind,
+    reports: &[GenerationReport],
+    tree: &StairsTree,
+) -> ChartView {
     let last = f64::from(tree.rounds.max(1));
     let aside = last * 0.04;
     let nodes = Chart {
@@ -22,21 +27,38 @@ pub(super) fn view(reports: &[GenerationReport], tree: &StairsTree) -> ChartView
         series: series(tree),
         marks: Vec::new(),
     };
-    let solved = solved(reports);
-    let most = solved.last().map_or(1.0, |last| last[1]).max(1.0);
+    let has_challenges = strategy != StrategyKind::Mcc;
+    let progress = by_round(reports, |count| match has_challenges {
+        true => count.challenges,
+        false => count.all,
+    });
+    let most = progress.last().map_or(1.0, |last| last[1]).max(1.0);
+    let (name, title, series, note) = if has_challenges {
+        (
+            "New challenges",
+            "Solved so far (ANNECS)",
+            "new challenges solved",
+            "A new challenge was neither too easy nor too hard for the best snake when it came.",
+        )
+    } else {
+        (
+            "Number of stairs",
+            "Climbed so far",
+            "stairs that a snake has climbed",
+            "Each staircase entered the queue because a snake climbed it.",
+        )
+    };
     let challenges = Chart {
-        name: "New challenges".to_owned(),
+        name: name.to_owned(),
         x: Axis::count("Round", -aside..=last + aside),
-        y: Axis::count("Solved so far (ANNECS)", 0.0..=most * 1.05),
-        series: vec![Series::new("new challenges solved", Role::Third, Shape::Line(solved))],
+        y: Axis::count(title, 0.0..=most * 1.05),
+        series: vec![Series::new(series, Role::Third, Shape::Line(progress))],
         marks: Vec::new(),
     };
     let hits = (0..).zip(&tree.nodes).map(|(index, node)| hit(index, node)).collect();
     let figure = Figure {
         title: "Stairs that evolve".to_owned(),
-        note: "Click stairs to see their snake climb them. A new challenge was neither too easy nor too hard for the best \
-               snake when it came."
-            .to_owned(),
+        note: format!("Click stairs to see their snake climb them. {note}"),
         charts: vec![nodes, challenges],
         numbers: Some(table(tree)),
     };
@@ -85,11 +107,11 @@ fn series(tree: &StairsTree) -> Vec<Series> {
     series
 }
 
-/// The number of new challenges that were solved, at the end of each round.
-fn solved(reports: &[GenerationReport]) -> Vec<[f64; 2]> {
+/// A number at the end of each round.
+fn by_round(reports: &[GenerationReport], number: impl Fn(&StairsCount) -> u32) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for count in reports.iter().filter_map(|report| report.stairs) {
-        let point = [f64::from(count.rounds), f64::from(count.challenges)];
+        let point = [f64::from(count.rounds), f64::from(number(&count))];
         match points.last_mut() {
             Some(last) if last[0] == point[0] => *last = point,
             _ => points.push(point),
@@ -198,7 +220,7 @@ mod tests {
 
     #[test]
     fn each_staircase_can_be_clicked_and_arrows_lead_from_parents_and_along_transfers() {
-        let view = view(&[], &tree());
+        let view = view(StrategyKind::Poet, &[], &tree());
         let names: Vec<&str> = view.figure.listed().iter().map(|of| of.name.as_str()).collect();
         for name in ["descent", "transfers of snakes", "archived unsolved", "active", "solved"] {
             assert!(names.contains(&name), "{name} in {names:?}");
@@ -212,5 +234,12 @@ mod tests {
         };
         assert_eq!(arrows.len(), 2);
         assert_eq!(view.figure.numbers.as_ref().map(Vec::len), Some(4));
+    }
+
+    #[test]
+    fn the_second_chart_counts_what_the_strategy_makes() {
+        let second = |strategy| view(strategy, &[], &tree()).figure.charts[1].name.clone();
+        let names = [StrategyKind::Poet, StrategyKind::Mcc].map(second);
+        assert_eq!(names, ["New challenges", "Number of stairs"]);
     }
 }

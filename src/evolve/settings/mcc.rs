@@ -1,0 +1,92 @@
+//! Settings of minimal criterion coevolution.
+
+use super::PoetSettings;
+use super::size::{GenomeSize, LARGEST_SAMPLE, LARGEST_STATE_GENES};
+use crate::check::Invalid;
+use crate::schema::{number, setting_group, switch, whole};
+
+setting_group! {
+    /// Settings of minimal criterion coevolution (Brant and Stanley, "Minimal Criterion Coevolution", 2017, with the resource
+    /// limit of "Diversity Preservation in Minimal Criterion Coevolution through Resource Limitation", 2020).
+    pub struct MccSettings in "Minimal criterion coevolution":
+        "Two queues without any fitness: snakes that climb some stairs, and stairs that some snake climbs."
+    {
+        /// Share of the way that a snake has to cover to climb stairs.
+        criterion: f32 = 0.85,
+            number("Criterion", 0.05..=1.1)
+                .hint("Share of the way that a snake has to cover to climb stairs. Further is not better")
+                .slider(0.05, 1.0);
+
+        /// Maximum number of snakes in their queue.
+        snake_queue: u32 = 60,
+            whole("Queue of snakes", 2..=1000)
+                .hint("Maximum number of snakes that have children in turn. When another one comes, the oldest goes")
+                .slider(2.0, 200.0);
+
+        /// Children of snakes in a generation.
+        snake_children: u32 = 12,
+            whole("Children of snakes", 1..=200)
+                .hint("How many children of snakes are tried on all stairs in a generation")
+                .slider(1.0, 50.0);
+
+        /// Standard deviation of each gene of a child, as a share of its range.
+        child_step: f32 = 0.05,
+            number("Step of a child", 0.001..=1.0)
+                .hint("Spread of children around their parents, as a share of each gene's range")
+                .slider(0.01, 0.5)
+                .logarithmic_from(0.01);
+
+        /// Maximum number of stairs in their queue.
+        stairs_queue: u32 = 12,
+            whole("Queue of stairs", 1..=100)
+                .hint("Maximum number of stairs that have mutants in turn. When another one comes, the oldest goes")
+                .slider(1.0, 40.0);
+
+        /// Mutants of stairs in a generation.
+        stairs_children: u32 = 4,
+            whole("Mutants of stairs", 1..=50)
+                .hint("How many mutants of stairs are tried with all snakes in a generation")
+                .slider(1.0, 20.0);
+
+        /// Number of snakes that may enter their queue by climbing the same stairs.
+        uses_of_stairs: u32 = 5,
+            whole("Uses of stairs", 1..=1000)
+                .hint("How many snakes may enter their queue by climbing the same stairs, so that snakes on easy stairs do not crowd out the others")
+                .slider(1.0, 50.0);
+
+        /// Snakes with which the queue begins.
+        first_snakes: u32 = 20,
+            whole("First snakes", 1..=1000).advanced()
+                .hint("How many snakes a search on the first stairs has to find before coevolution begins")
+                .slider(1.0, 100.0)
+                .fixed(super::cma_es::LEARNED);
+
+        /// Rise of the first stairs, in m.
+        start_rise_m: f32 = 0.1,
+            number("Rise at the start", 0.1..=1.2)
+                .unit("m")
+                .hint("Rise of the first stairs; their steps and treads are those of the trial")
+                .slider(0.1, 1.2)
+                .fixed("Takes effect with the next run, because this one has begun on its first stairs.");
+
+        /// Whether stairs may also get landings, missing steps, ramps and steps down.
+        special_steps: bool = true,
+            switch("Special steps")
+                .hint("Whether mutants may also have a landing, a missing step, ramps or steps down");
+    }
+}
+
+impl MccSettings {
+    /// Maximum number of evaluations in a generation of coevolution.
+    fn most_at_once(&self) -> u32 {
+        self.snake_children * self.stairs_queue + self.stairs_children * self.snake_queue
+    }
+
+    /// Checks that a generation, and the snakes of all stairs, fit into memory.
+    pub(super) fn check_size(&self, size: &GenomeSize<'_>) -> Result<(), Invalid> {
+        let field = "evolution.mcc.snake_queue";
+        size.check_count(field, self.most_at_once(), size.genes(), LARGEST_SAMPLE)?;
+        let kept = PoetSettings::MOST_STAIRS as u32 + self.snake_queue;
+        size.check_count(field, kept, size.genes(), LARGEST_STATE_GENES)
+    }
+}

@@ -1,0 +1,392 @@
+//! Minimal criterion coevolution: a queue of snakes and a queue of stairs, without any fitness (Brant and Stanley, "Minimal
+//! Criterion Coevolution", 2017).
+//!
+//! A snake enters its queue if it climbs some stairs of the other queue, and stairs enter theirs if some snake climbs them. Each
+//! has children in turn; when a queue is full, its oldest member goes. Stairs count for a limited number of snakes (Brant and
+//! Stanley, 2020): otherwise the snakes on the easiest stairs would crowd out all others. A search on the first stairs finds the
+//! snakes to begin with.
+
+mod state;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use rand::Rng;
+
+use crate::check::Invalid;
+use crate::evolve::parents::Parents;
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::{CmaEsSettings, MccSettings, PoetSettings, StrategyKind};
+use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree};
+use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
+use crate::genome::{Genome, StairsChange, StairsGenome};
+use crate::rng::{Purpose, stream};
+use crate::score::Evaluation;
+use state::{Beginning, MccProgress};
+
+/// Candidates of a generation of the search for the first snakes.
+const CANDIDATES: u32 = 30;
+/// Random genomes with which that search begins; in a short run a quarter of its evaluations.
+const NEWBORNS: u32 = 100;
+/// Its first step, as a share of each gene's range.
+const FIRST_STEP: f32 = 0.15;
+/// Generations of that search without a snake that climbs, after which it begins again.
+const PATIENCE: u32 = 50;
+
+/// Minimal criterion coevolution. Its children, and the first snakes, come from searches of the kind `S`.
+pub struct Mcc<S> {
+    /// The plan of the run.
+    plan: RunPlan,
+    /// The next generation; the first is 1.
+    generation: u32,
+    progress: MccProgress<S>,
+    /// The candidates of the next generation, which follow from the progress.
+    batch: Vec<Candidate>,
+}
+
+/// A genome to evaluate, and its stairs.
+#[derive(Debug, Clone)]
+struct Candidate {
+    genome: Genome,
+    stairs: StairsGenome,
+    role: Role,
+}
+
+/// What is tried with a candidate. Children are numbered within the generation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// Whether it is one of the first snakes.
+    First,
+    /// Whether a child of a snake climbs stairs of the queue.
+    Snake { child: u32, node: u32 },
+    /// Whether a snake of the queue climbs a mutant of stairs.
+    Stairs { child: u32, parent: u32, snake: u32 },
+}
+
+impl<S: Strategy> Mcc<S> {
+    fn with(plan: &RunPlan, finished: u32, progress: MccProgress<S>) -> Self {
+        let plan = plan.clone();
+        let mut mcc = Self { plan, generation: finished + 1, progress, batch: Vec::new() };
+        mcc.batch = mcc.next_batch();
+        mcc
+    }
+
+    fn settings(&self) -> &MccSettings {
+        &self.plan.settings.evolution.mcc
+    }
+
+    /// The candidates of the next generation.
+    fn next_batch(&self) -> Vec<Candidate> {
+        if let Some(beginning) = &self.progress.beginning {
+            let stairs = self.progress.nodes[0].stairs;
+            let first = |genome| Candidate { genome, stairs, role: Role::First };
+            return beginning.search.ask().into_iter().map(first).collect();
+        }
+        let mut all = self.children_of_snakes();
+        all.extend(self.mutants_of_stairs());
+        all
+    }
+
+    /// Each child of the snakes whose turn it is on all stairs that may still be used.
+    fn children_of_snakes(&self) -> Vec<Candidate> {
+        let MccProgress { snakes, snake_turn, .. } = &self.progress;
+        let open: Vec<u32> = self.progress.active().filter(|node| self.has_uses(*node)).collect();
+        let mut all = Vec::new();
+        for child in 0..self.settings().snake_children {
+            let parent = &snakes[(snake_turn + child) as usize % snakes.len()];
+            let individual = all.len() as u32;
+            let genome = self.child_of(&parent.genome, individual);
+            all.extend(open.iter().map(|&node| Candidate {
+                genome: genome.clone(),
+                stairs: self.progress.nodes[node as usize].stairs,
+                role: Role::Snake { child, node },
+            }));
+        }
+        all
+    }
+
+    /// Whether snakes may still enter their queue by climbing these stairs. Once no more stairs come, they always may.
+    fn has_uses(&self, node: u32) -> bool {
+        !self.has_room() || self.progress.uses[node as usize] < self.settings().uses_of_stairs
+    }
+
+    /// Whether more stairs may come.
+    fn has_room(&self) -> bool {
+        let most_new = self.settings().stairs_children as usize;
+        self.progress.nodes.len() + most_new <= PoetSettings::MOST_STAIRS
+    }
+
+    /// A child of a snake.
+    fn child_of(&self, parent: &Genome, individual: u32) -> Genome {
+        let mut plan = search_plan(&self.plan, 2, Some(parent));
+        plan.seed =
+            stream(self.plan.seed, self.generation, individual, Purpose::Mutation).next_u64();
+        let drawn = S::begin(&plan).ask().pop();
+        drawn.unwrap_or_else(|| parent.clone())
+    }
+
+    /// Each mutant of the stairs whose turn it is with all snakes.
+    fn mutants_of_stairs(&self) -> Vec<Candidate> {
+        let MccProgress { snakes, nodes, stairs_turn, .. } = &self.progress;
+        let active: Vec<u32> = self.progress.active().collect();
+        let longest_m = self.plan.settings.trial.stairs.treads_m().max(nodes[0].stairs.length_m());
+        let mut all = Vec::new();
+        if !self.has_room() {
+            return all;
+        }
+        for child in 0..self.settings().stairs_children {
+            let parent = active[(stairs_turn + child) as usize % active.len()];
+            let mut rng = stream(self.plan.seed, self.generation, child, Purpose::StairsMutation);
+            let change = StairsChange::drawn(longest_m, self.settings().special_steps, &mut rng);
+            let stairs = nodes[parent as usize].stairs.mutant(&change, &mut rng);
+            if nodes.iter().any(|node| node.stairs == stairs) {
+                continue;
+            }
+            all.extend((0..).zip(snakes).map(|(snake, of)| Candidate {
+                genome: of.genome.clone(),
+                stairs,
+                role: Role::Stairs { child, parent, snake },
+            }));
+        }
+        all
+    }
+
+    /// Whether a snake climbs its stairs.
+    fn climbs(&self, evaluation: &Evaluation) -> bool {
+        evaluation.disqualified.is_none() && evaluation.fitness >= self.settings().criterion
+    }
+
+    /// Takes the evaluations of the search for the first snakes.
+    fn after_first(&mut self, evaluations: &[Evaluation]) {
+        let genomes: Vec<Genome> =
+            self.batch.iter().map(|candidate| candidate.genome.clone()).collect();
+        let climbing: Vec<bool> = evaluations.iter().map(|of| self.climbs(of)).collect();
+        let wanted = self.settings().first_snakes.min(self.settings().snake_queue) as usize;
+        let (generation, mut found) = (self.generation, 0);
+        for (index, genome) in genomes.iter().enumerate().filter(|(index, _)| climbing[*index]) {
+            let individual = index as u32;
+            let agent = Agent { genome: genome.clone(), generation, individual };
+            found += 1;
+            let root = &mut self.progress.nodes[0];
+            if root.agent.is_none() || evaluations[index].fitness > root.score {
+                (root.agent, root.score) = (Some(agent.clone()), evaluations[index].fitness);
+            }
+            root.solved = root.solved.or(Some(0));
+            if self.progress.snakes.len() < wanted {
+                self.progress.snakes.push(agent);
+            }
+        }
+        self.progress.nodes[0].trials += evaluations.len() as u64;
+        if self.progress.snakes.len() >= wanted {
+            self.progress.beginning = None;
+            return;
+        }
+        let Some(beginning) = &mut self.progress.beginning else { return };
+        beginning.search.tell(&genomes, evaluations);
+        beginning.finished += 1;
+        beginning.idle = if found > 0 { 0 } else { beginning.idle + 1 };
+        if beginning.idle >= PATIENCE {
+            *beginning = Beginning::new(&self.plan, beginning.restarts.saturating_add(1));
+        }
+    }
+
+    /// Takes the evaluations of children, and lets those enter the queues that meet the criterion.
+    fn after_children(&mut self, evaluations: &[Evaluation]) {
+        self.progress.rounds += 1;
+        let batch = std::mem::take(&mut self.batch);
+        let tried: Vec<(u32, &Candidate, &Evaluation)> = (0..)
+            .zip(batch.iter().zip(evaluations))
+            .map(|(individual, (candidate, evaluation))| (individual, candidate, evaluation))
+            .collect();
+        for of_child in tried.chunk_by(|(_, a, _), (_, b, _)| a.role.is_of_child_of(b.role)) {
+            match of_child.first().map(|(_, candidate, _)| candidate.role) {
+                Some(Role::Snake { .. }) => self.take_snake(of_child),
+                Some(Role::Stairs { parent, .. }) => self.take_stairs(parent, of_child),
+                Some(Role::First) | None => {}
+            }
+        }
+        self.shorten_queues();
+    }
+
+    /// Lets a child of a snake enter the queue, if it climbs stairs that may still be used: the least used of those.
+    fn take_snake(&mut self, tried: &[(u32, &Candidate, &Evaluation)]) {
+        let mut least: Option<(u32, u32, f32, u32)> = None;
+        for (individual, candidate, evaluation) in tried {
+            let Role::Snake { node, .. } = candidate.role else { continue };
+            self.progress.nodes[node as usize].trials += 1;
+            let uses = self.progress.uses[node as usize];
+            if self.climbs(evaluation)
+                && self.has_uses(node)
+                && least.is_none_or(|(fewest, ..)| uses < fewest)
+            {
+                least = Some((uses, node, evaluation.fitness, *individual));
+            }
+        }
+        let Some((_, node, fitness, individual)) = least else { return };
+        let genome = tried[0].1.genome.clone();
+        let agent = Agent { genome, generation: self.generation, individual };
+        self.progress.uses[node as usize] += 1;
+        let of = &mut self.progress.nodes[node as usize];
+        (of.agent, of.score) = (Some(agent.clone()), fitness);
+        self.progress.snakes.push(agent);
+    }
+
+    /// Lets a mutant of stairs enter the queue, if a snake climbs it.
+    fn take_stairs(&mut self, parent: u32, tried: &[(u32, &Candidate, &Evaluation)]) {
+        let climbed = tried.iter().find(|(.., evaluation)| self.climbs(evaluation));
+        let Some((_, candidate, evaluation)) = climbed else { return };
+        let Role::Stairs { snake, .. } = candidate.role else { return };
+        let MccProgress { nodes, uses, snakes, rounds, .. } = &mut self.progress;
+        nodes.push(StairsNode {
+            stairs: candidate.stairs,
+            parent: Some(parent),
+            born: *rounds,
+            archived: None,
+            solved: Some(*rounds),
+            is_new_challenge: false,
+            agent: snakes.get(snake as usize).cloned(),
+            score: evaluation.fitness,
+            trials: tried.len() as u64,
+        });
+        uses.push(0);
+    }
+
+    /// Removes the oldest members of queues that are too long, and passes the turn on.
+    fn shorten_queues(&mut self) {
+        let (most_snakes, most_stairs) =
+            (self.settings().snake_queue as usize, self.settings().stairs_queue as usize);
+        let turns = [self.settings().snake_children, self.settings().stairs_children];
+        let round = self.progress.rounds;
+        let MccProgress { nodes, snakes, .. } = &mut self.progress;
+        let too_many = snakes.len().saturating_sub(most_snakes);
+        snakes.drain(..too_many);
+        let active = nodes.iter().filter(|node| node.archived.is_none()).count();
+        let oldest = nodes.iter_mut().filter(|node| node.archived.is_none());
+        for node in oldest.take(active.saturating_sub(most_stairs)) {
+            node.archived = Some(round);
+        }
+        let snakes = self.progress.snakes.len().max(1) as u32;
+        let stairs = self.progress.active().count().max(1) as u32;
+        let passed = |turn: u32, children: u32, of: u32| (turn + children) % of;
+        self.progress.snake_turn = passed(self.progress.snake_turn, turns[0], snakes);
+        self.progress.stairs_turn = passed(self.progress.stairs_turn, turns[1], stairs);
+    }
+}
+
+impl Role {
+    /// Whether two candidates belong to one child.
+    fn is_of_child_of(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Snake { child: a, .. }, Self::Snake { child: b, .. })
+            | (Self::Stairs { child: a, .. }, Self::Stairs { child: b, .. }) => a == b,
+            _ => false,
+        }
+    }
+}
+
+/// The plan of a search for snakes, around a genome or from random ones.
+fn search_plan(plan: &RunPlan, population: u32, around: Option<&Genome>) -> RunPlan {
+    let mut settings = plan.settings.clone();
+    let evolution = &mut settings.evolution;
+    let most = u32::try_from(evolution.budget() / 4).unwrap_or(u32::MAX);
+    evolution.strategy = StrategyKind::CmaEs;
+    evolution.population = population;
+    // It is never over.
+    evolution.generations = 10_000;
+    evolution.cma_es = match around {
+        Some(_) => CmaEsSettings { step: evolution.mcc.child_step, ..CmaEsSettings::default() },
+        None => CmaEsSettings {
+            step: FIRST_STEP,
+            newborns: NEWBORNS.min(most),
+            ..CmaEsSettings::default()
+        },
+    };
+    let founder = around.map(|genome| Arc::new(Founder::new("parent", genome.clone())));
+    RunPlan { founder, ..RunPlan::new(&plan.preset, plan.seed, settings) }
+}
+
+impl<S: Strategy> Strategy for Mcc<S> {
+    fn begin(plan: &RunPlan) -> Self {
+        let evolution = &plan.settings.evolution;
+        let root = StairsNode {
+            stairs: StairsGenome::like(&plan.settings.trial.stairs, evolution.mcc.start_rise_m),
+            parent: None,
+            born: 0,
+            archived: None,
+            solved: None,
+            is_new_challenge: false,
+            agent: None,
+            score: 0.0,
+            trials: 0,
+        };
+        Self::with(plan, 0, MccProgress::begin(root, Beginning::new(plan, 0)))
+    }
+
+    fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
+        let progress = MccProgress::read(state, plan, finished)?;
+        Ok(Self::with(plan, finished, progress))
+    }
+
+    fn ask(&self) -> Vec<Genome> {
+        self.batch.iter().map(|candidate| candidate.genome.clone()).collect()
+    }
+
+    fn population(&self) -> usize {
+        self.batch.len()
+    }
+
+    fn stairs(&self) -> Vec<OwnStairs> {
+        let own = |candidate: &Candidate| (candidate.stairs, Arc::new(candidate.stairs.stairs()));
+        let mut known: Vec<(StairsGenome, Arc<_>)> = Vec::new();
+        let mut all = Vec::with_capacity(self.batch.len());
+        for candidate in &self.batch {
+            let found = known.iter().find(|(genome, _)| *genome == candidate.stairs);
+            let stairs = match found {
+                Some((_, stairs)) => Arc::clone(stairs),
+                None => {
+                    let (genome, stairs) = own(candidate);
+                    known.push((genome, Arc::clone(&stairs)));
+                    stairs
+                }
+            };
+            all.push(OwnStairs { stairs, perturbed: 0 });
+        }
+        all
+    }
+
+    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+        if self.progress.beginning.is_some() {
+            self.after_first(evaluations);
+        } else {
+            self.after_children(evaluations);
+        }
+        self.generation += 1;
+        self.batch = self.next_batch();
+    }
+
+    fn state(&self) -> StrategyState {
+        self.progress.state()
+    }
+
+    fn apply_settings(&mut self, plan: &RunPlan) {
+        self.plan = plan.clone();
+        if let Some(beginning) = &mut self.progress.beginning {
+            beginning.search.apply_settings(&Beginning::<S>::plan(plan, beginning.restarts));
+        }
+        self.batch = self.next_batch();
+    }
+
+    fn parents(&self) -> Vec<Parents> {
+        let of = |candidate: &Candidate| match candidate.role {
+            Role::First => Parents::Distribution,
+            Role::Snake { .. } | Role::Stairs { .. } => Parents::Unknown,
+        };
+        self.batch.iter().map(of).collect()
+    }
+
+    fn stairs_tree(&self) -> Option<StairsTree> {
+        let MccProgress { rounds, nodes, .. } = &self.progress;
+        Some(StairsTree { rounds: *rounds, nodes: nodes.clone(), transfers: Vec::new() })
+    }
+}

@@ -1,0 +1,175 @@
+//! The state of minimal criterion coevolution: both queues, and the search for the first snakes.
+
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+use super::{CANDIDATES, PATIENCE, search_plan};
+use crate::check::{Invalid, within};
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::PoetSettings;
+use crate::evolve::stairs_tree::{Agent, StairsNode};
+use crate::evolve::strategy::{Strategy, StrategyState};
+use crate::rng::{Purpose, stream};
+
+/// The search for the first snakes.
+pub struct Beginning<S> {
+    pub search: S,
+    /// Generations that it has finished.
+    pub finished: u32,
+    /// How often it has begun again.
+    pub restarts: u32,
+    /// Generations in turn without a snake that climbs.
+    pub idle: u32,
+}
+
+impl<S: Strategy> Beginning<S> {
+    /// A search that has not begun.
+    pub fn new(plan: &RunPlan, restarts: u32) -> Self {
+        let search = S::begin(&Self::plan(plan, restarts));
+        Self { search, finished: 0, restarts, idle: 0 }
+    }
+
+    /// Its plan: around the founder of the run, or from random genomes.
+    pub fn plan(plan: &RunPlan, restarts: u32) -> RunPlan {
+        let around = plan.founder.as_ref().map(|founder| founder.genome());
+        let mut of = search_plan(plan, CANDIDATES, around);
+        of.seed = stream(plan.seed, 0, restarts, Purpose::Pair).next_u64();
+        of
+    }
+}
+
+/// Everything that the run has found.
+pub struct MccProgress<S> {
+    /// The search for the first snakes; none once they are found.
+    pub beginning: Option<Beginning<S>>,
+    /// Generations of coevolution.
+    pub rounds: u32,
+    /// All stairs that ever entered their queue; those that left it are archived.
+    pub nodes: Vec<StairsNode>,
+    /// For each of them, the number of snakes that entered their queue by climbing it.
+    pub uses: Vec<u32>,
+    /// The queue of snakes, the oldest first.
+    pub snakes: Vec<Agent>,
+    /// Place in the queue of the snake that has children next.
+    pub snake_turn: u32,
+    /// Place in the queue of the stairs that have mutants next.
+    pub stairs_turn: u32,
+}
+
+/// [`MccProgress`] in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedQueues {
+    beginning: Option<SavedBeginning>,
+    rounds: u32,
+    nodes: Vec<StairsNode>,
+    uses: Vec<u32>,
+    snakes: Vec<Agent>,
+    snake_turn: u32,
+    stairs_turn: u32,
+}
+
+/// [`Beginning`] in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SavedBeginning {
+    search: StrategyState,
+    finished: u32,
+    restarts: u32,
+    idle: u32,
+}
+
+impl<S: Strategy> MccProgress<S> {
+    /// The beginning of a run, with its first stairs.
+    pub fn begin(root: StairsNode, beginning: Beginning<S>) -> Self {
+        Self {
+            beginning: Some(beginning),
+            rounds: 0,
+            nodes: vec![root],
+            uses: vec![0],
+            snakes: Vec::new(),
+            snake_turn: 0,
+            stairs_turn: 0,
+        }
+    }
+
+    /// The queue of stairs, as indices of all stairs, the oldest first.
+    pub fn active(&self) -> impl Iterator<Item = u32> {
+        let nodes = (0..).zip(&self.nodes);
+        nodes.filter(|(_, node)| node.archived.is_none()).map(|(index, _)| index)
+    }
+
+    pub fn state(&self) -> StrategyState {
+        let beginning = self.beginning.as_ref().map(|beginning| SavedBeginning {
+            search: beginning.search.state(),
+            finished: beginning.finished,
+            restarts: beginning.restarts,
+            idle: beginning.idle,
+        });
+        StrategyState::of(&SavedQueues {
+            beginning,
+            rounds: self.rounds,
+            nodes: self.nodes.clone(),
+            uses: self.uses.clone(),
+            snakes: self.snakes.clone(),
+            snake_turn: self.snake_turn,
+            stairs_turn: self.stairs_turn,
+        })
+    }
+
+    /// Reads what a run had found after its first `finished` generations.
+    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid> {
+        let saved: SavedQueues = state.read()?;
+        saved.check(plan, finished)?;
+        let beginning = saved.beginning.map(|beginning| {
+            let SavedBeginning { search, finished, restarts, idle } = beginning;
+            let inside = |error: Invalid| error.inside("beginning");
+            within("idle", idle, 0..=PATIENCE).map_err(inside)?;
+            let plan = Beginning::<S>::plan(plan, restarts);
+            let search = match finished {
+                0 => S::begin(&plan),
+                _ => S::resume(&plan, finished, &search).map_err(inside)?,
+            };
+            let evolution = &plan.settings.evolution;
+            let most = evolution.population.max(evolution.cma_es.newborns) as usize;
+            within("population", search.population(), 1..=most).map_err(inside)?;
+            Ok(Beginning { search, finished, restarts, idle })
+        });
+        Ok(Self {
+            beginning: beginning.transpose()?,
+            rounds: saved.rounds,
+            nodes: saved.nodes,
+            uses: saved.uses,
+            snakes: saved.snakes,
+            snake_turn: saved.snake_turn,
+            stairs_turn: saved.stairs_turn,
+        })
+    }
+}
+
+impl SavedQueues {
+    fn check(&self, plan: &RunPlan, finished: u32) -> Result<(), Invalid> {
+        within("rounds", self.rounds, 0..=finished)?;
+        within("nodes", self.nodes.len(), 1..=PoetSettings::MOST_STAIRS)?;
+        within("uses", self.uses.len(), self.nodes.len()..=self.nodes.len())?;
+        // A queue may have become shorter by a change of settings, and is shortened with the next generation.
+        within("snakes", self.snakes.len(), 0..=1000 + 200)?;
+        for (index, node) in self.nodes.iter().enumerate() {
+            node.check(index, self.rounds, plan).map_err(|error| error.inside("nodes"))?;
+        }
+        for snake in &self.snakes {
+            snake.check(plan).map_err(|error| error.inside("snakes"))?;
+        }
+        let active = self.nodes.iter().filter(|node| node.archived.is_none()).count();
+        within("active", active, 1..=100 + 50)?;
+        match &self.beginning {
+            Some(beginning) => within("finished", beginning.finished, 0..=finished)
+                .map_err(|error| error.inside("beginning")),
+            None => {
+                within("snakes", self.snakes.len(), 1..=1000 + 200)?;
+                within("snake_turn", self.snake_turn as usize, 0..=self.snakes.len() - 1)?;
+                within("stairs_turn", self.stairs_turn as usize, 0..=active - 1)
+            }
+        }
+    }
+}

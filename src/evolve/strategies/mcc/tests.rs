@@ -1,0 +1,172 @@
+//! Tests of minimal criterion coevolution with made-up evaluations.
+
+use super::*;
+use crate::evolve::settings::Settings;
+use crate::evolve::strategies::cma_es::CmaEs;
+use crate::genome::ControllerKind;
+use crate::score::Fitness;
+use crate::world::Disqualification;
+
+fn plan() -> RunPlan {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = StrategyKind::Mcc;
+    settings.trial.fitness = Fitness::Share;
+    settings.genome.controller = ControllerKind::Gait;
+    let mcc = &mut settings.evolution.mcc;
+    (mcc.snake_queue, mcc.first_snakes, mcc.stairs_queue) = (20, 10, 6);
+    settings.check().expect("they go together");
+    RunPlan::new("test", 1, settings)
+}
+
+/// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
+fn evaluate(mcc: &Mcc<CmaEs>, candidate: &Candidate) -> Evaluation {
+    let point = mcc.plan.settings.genome.point_of(&candidate.genome);
+    let target = 0.5 + f64::from(candidate.stairs.rise_m) / 2.4;
+    let off = 1.5 * (point[point.len() - 1] - target).abs();
+    Evaluation::of_fitness((1.05 - off).clamp(0.0, 1.05) as f32)
+}
+
+fn advance(mcc: &mut Mcc<CmaEs>) {
+    let genomes = mcc.ask();
+    assert!(!genomes.is_empty());
+    assert_eq!([mcc.population(), mcc.stairs().len()], [genomes.len(); 2]);
+    let evaluations: Vec<Evaluation> =
+        mcc.batch.iter().map(|candidate| evaluate(mcc, candidate)).collect();
+    mcc.tell(&genomes, &evaluations);
+}
+
+/// A run of this many rounds, and its number of generations.
+fn run(rounds: u32) -> (Mcc<CmaEs>, u32) {
+    let mut mcc = Mcc::<CmaEs>::begin(&plan());
+    let mut generations = 0;
+    while mcc.progress.rounds < rounds {
+        advance(&mut mcc);
+        generations += 1;
+    }
+    (mcc, generations)
+}
+
+#[test]
+fn queues_are_filled_and_shortened_and_every_member_meets_the_criterion() {
+    let (mcc, _) = run(40);
+    let MccProgress { snakes, nodes, uses, rounds, .. } = &mcc.progress;
+    let tree = mcc.stairs_tree().expect("it has one");
+    assert_eq!((tree.rounds, *rounds), (40, 40));
+    assert_eq!(snakes.len(), 20);
+    assert_eq!(tree.active(), 6);
+    assert!(tree.nodes.len() > 10, "{} stairs", tree.nodes.len());
+    assert!(nodes.iter().any(|node| node.stairs.rise_m > 0.3), "they have become higher");
+    for (index, node) in nodes.iter().enumerate() {
+        assert_eq!(node.parent.is_none(), index == 0);
+        assert!(node.solved.is_some() && node.score >= mcc.settings().criterion);
+        let genome = node.agent.as_ref().expect("a snake climbs it").genome.clone();
+        let candidate = Candidate { genome, stairs: node.stairs, role: Role::First };
+        assert_eq!(evaluate(&mcc, &candidate).fitness, node.score);
+    }
+    assert!(uses.iter().all(|uses| *uses <= mcc.settings().uses_of_stairs), "{uses:?}");
+    let born: Vec<u32> = nodes.iter().map(|node| node.born).collect();
+    assert!(born.is_sorted());
+}
+
+#[test]
+fn used_up_stairs_let_no_more_snakes_in() {
+    let (mut mcc, _) = run(1);
+    mcc.progress
+        .uses
+        .iter_mut()
+        .for_each(|uses| *uses = mcc.plan.settings.evolution.mcc.uses_of_stairs);
+    mcc.batch = mcc.next_batch();
+    let is_of_snake = |candidate: &Candidate| matches!(candidate.role, Role::Snake { .. });
+    assert!(!mcc.batch.iter().any(is_of_snake), "no child can enter");
+    assert!(!mcc.batch.is_empty(), "mutants of stairs are tried");
+    let before = mcc.progress.snakes.clone();
+    advance(&mut mcc);
+    assert_eq!(mcc.progress.snakes, before);
+}
+
+#[test]
+fn a_child_enters_by_the_least_used_of_the_stairs_that_it_climbs() {
+    let (mut mcc, _) = run(3);
+    let open: Vec<u32> = mcc.progress.active().collect();
+    assert!(open.len() > 1);
+    let least = open[open.len() - 1];
+    mcc.progress.uses.iter_mut().for_each(|uses| *uses = 2);
+    mcc.progress.uses[least as usize] = 1;
+    mcc.batch = mcc.next_batch();
+    let genomes = mcc.ask();
+    let is_first = |candidate: &Candidate| matches!(candidate.role, Role::Snake { child: 0, .. });
+    let evaluations: Vec<Evaluation> = mcc
+        .batch
+        .iter()
+        .map(|candidate| Evaluation::of_fitness(if is_first(candidate) { 1.0 } else { 0.0 }))
+        .collect();
+    mcc.tell(&genomes, &evaluations);
+    assert_eq!(mcc.progress.uses[least as usize], 2);
+    let entered = mcc.progress.snakes.last().expect("one");
+    assert_eq!(entered.genome, genomes[0]);
+    assert_eq!(mcc.progress.nodes[least as usize].agent.as_ref(), Some(entered));
+}
+
+#[test]
+fn a_disqualified_snake_climbs_nothing() {
+    let mcc = Mcc::<CmaEs>::begin(&plan());
+    let evaluation = Evaluation::of_fitness(0.9);
+    assert!(mcc.climbs(&evaluation));
+    let disqualified = Some(Disqualification::TooFast);
+    assert!(!mcc.climbs(&Evaluation { disqualified, ..evaluation }));
+    assert!(!mcc.climbs(&Evaluation::of_fitness(0.8)));
+}
+
+#[test]
+fn a_resumed_run_goes_on_with_the_same_bits() {
+    let mut expected = Mcc::<CmaEs>::begin(&plan());
+    let mut resumed: Option<Mcc<CmaEs>> = None;
+    let mut phases = [false; 2];
+    for finished in 0..30 {
+        let text = ron::to_string(&expected.state()).expect("written");
+        let state: StrategyState = ron::from_str(&text).expect("read");
+        let mcc = Mcc::<CmaEs>::resume(&plan(), finished, &state).expect("its own state");
+        phases[usize::from(mcc.progress.beginning.is_some())] = true;
+        assert!(mcc.state() == expected.state());
+        if let Some(resumed) = &mut resumed {
+            advance(resumed);
+        }
+        assert!(resumed.as_ref().is_none_or(|before| before.state() == expected.state()));
+        resumed = Some(mcc);
+        advance(&mut expected);
+    }
+    assert_eq!(phases, [true; 2]);
+}
+
+#[test]
+fn a_search_that_finds_no_snake_begins_again() {
+    let mut mcc = Mcc::<CmaEs>::begin(&plan());
+    let first = mcc.ask();
+    for _ in 0..PATIENCE {
+        let genomes = mcc.ask();
+        mcc.tell(&genomes, &vec![Evaluation::of_fitness(0.1); genomes.len()]);
+    }
+    let beginning = mcc.progress.beginning.as_ref().expect("nothing was found");
+    assert_eq!((beginning.restarts, beginning.finished, beginning.idle), (1, 0, 0));
+    assert_ne!(mcc.ask(), first, "with other random genomes");
+}
+
+#[test]
+fn a_state_that_no_run_can_have_is_refused() {
+    let (mcc, finished) = run(6);
+    let text = ron::to_string(&mcc.state()).expect("written");
+    let refused = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let state: StrategyState = ron::from_str(&text.replacen(from, to, 1)).expect("RON");
+        let error = Mcc::<CmaEs>::resume(&plan(), finished, &state).err().expect("refused");
+        error.to_string()
+    };
+    let error = refused("rounds: 6", "rounds: 4000000");
+    assert!(error.starts_with("rounds is 4000000; allowed: 0 to "), "{error}");
+    let error = refused("steps: 10", "steps: 4000000");
+    assert!(error.contains("steps is 4000000; allowed: 3 to 20"), "{error}");
+    let error = refused("snake_turn: ", "snake_turn: 99");
+    assert!(error.starts_with("snake_turn is 99"), "{error}");
+    assert!(!refused("uses: [", "uses: [3, ").is_empty());
+    assert!(!refused("snakes: [", "snakes: [], old: [").is_empty());
+}
