@@ -32,6 +32,7 @@ fn plan(strategy: StrategyKind) -> (RunPlan, String) {
         settings.trial.fitness = Fitness::Share;
         settings.evolution.poet.pair_candidates = 4;
         settings.evolution.mcc.snake_queue = 4;
+        settings.evolution.mcc.first_snakes = 4;
         settings.evolution.generations = 100;
     }
     settings.evolution.population = 3;

@@ -124,10 +124,13 @@ impl StairsCount {
     /// In words.
     pub fn words(self) -> String {
         let Self { rounds, all, active, solved, challenges } = self;
-        format!(
-            "round {}, {all} stairs, {active} active, {solved} solved, {challenges} new challenges",
-            rounds.saturating_add(1)
-        )
+        let round = rounds.saturating_add(1);
+        let words = format!("round {round}, {all} stairs, {active} active, {solved} solved");
+        match challenges {
+            // Not every strategy knows new challenges.
+            0 => words,
+            _ => format!("{words}, {challenges} new challenges"),
+        }
     }
 
     fn check(self) -> Result<(), Invalid> {

@@ -275,6 +275,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
             plan.settings.evolution.generations = 100;
             plan.settings.evolution.poet.pair_candidates = 4;
             plan.settings.evolution.mcc.snake_queue = 4;
+            plan.settings.evolution.mcc.first_snakes = 4;
         }
         plan.settings.evolution.xcs.rules = 20;
         plan.settings.evolution.zcs.rules = 20;

@@ -14,13 +14,13 @@ setting_group! {
         /// Share of the way that a snake has to cover to climb stairs.
         criterion: f32 = 0.85,
             number("Criterion", 0.05..=1.1)
-                .hint("Share of the way that a snake has to cover to climb stairs. Further is not better")
+                .hint("Share of the way that a snake has to cover to climb stairs. To cover more has no advantage")
                 .slider(0.05, 1.0);
 
         /// Maximum number of snakes in their queue.
         snake_queue: u32 = 60,
             whole("Queue of snakes", 2..=1000)
-                .hint("Maximum number of snakes that have children in turn. When another one comes, the oldest goes")
+                .hint("Maximum number of snakes that have children in turn. When another one comes, the oldest is removed")
                 .slider(2.0, 200.0);
 
         /// Children of snakes in a generation.
@@ -39,7 +39,7 @@ setting_group! {
         /// Maximum number of stairs in their queue.
         stairs_queue: u32 = 12,
             whole("Queue of stairs", 1..=100)
-                .hint("Maximum number of stairs that have mutants in turn. When another one comes, the oldest goes")
+                .hint("Maximum number of stairs that have mutants in turn. When another one comes, the oldest is removed")
                 .slider(1.0, 40.0);
 
         /// Mutants of stairs in a generation.
@@ -51,15 +51,14 @@ setting_group! {
         /// Number of snakes that may enter their queue by climbing the same stairs.
         uses_of_stairs: u32 = 5,
             whole("Uses of stairs", 1..=1000)
-                .hint("How many snakes may enter their queue by climbing the same stairs, so that snakes on easy stairs do not crowd out the others")
+                .hint("How many snakes may enter their queue by climbing the same stairs. Without a limit, most snakes would be those of easy stairs")
                 .slider(1.0, 50.0);
 
         /// Snakes with which the queue begins.
         first_snakes: u32 = 20,
             whole("First snakes", 1..=1000).advanced()
-                .hint("How many snakes a search on the first stairs has to find before coevolution begins")
-                .slider(1.0, 100.0)
-                .fixed(super::cma_es::LEARNED);
+                .hint("How many snakes a search on the first stairs has to find before coevolution begins; at most as many as their queue holds")
+                .slider(1.0, 100.0);
 
         /// Rise of the first stairs, in m.
         start_rise_m: f32 = 0.1,
@@ -73,6 +72,14 @@ setting_group! {
         special_steps: bool = true,
             switch("Special steps")
                 .hint("Whether mutants may also have a landing, a missing step, ramps or steps down");
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        if self.first_snakes <= self.snake_queue {
+            return Ok(());
+        }
+        let allowed = format!("up to {}, the queue of snakes", self.snake_queue);
+        Err(Invalid::new("first_snakes", self.first_snakes, allowed))
     }
 }
 

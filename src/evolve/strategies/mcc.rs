@@ -2,9 +2,12 @@
 //! Criterion Coevolution", 2017).
 //!
 //! A snake enters its queue if it climbs some stairs of the other queue, and stairs enter theirs if some snake climbs them. Each
-//! has children in turn; when a queue is full, its oldest member goes. Stairs count for a limited number of snakes (Brant and
-//! Stanley, 2020): otherwise the snakes on the easiest stairs would crowd out all others. A search on the first stairs finds the
-//! snakes to begin with.
+//! member has children in turn; when a queue is full, its oldest member is removed. A limited number of snakes may enter by
+//! climbing the same stairs (Brant and Stanley, 2020): otherwise most snakes would be those of the easiest stairs. A search on the
+//! first stairs finds the snakes to begin with.
+//!
+//! Where this differs from the papers: there is one first staircase, children are drawn around their parents as by CMA-ES instead of
+//! by NEAT, a snake that climbs several stairs counts for the least used of them, and the limit ends once no more stairs fit.
 
 mod state;
 #[cfg(test)]
@@ -14,10 +17,11 @@ use std::sync::Arc;
 
 use rand::Rng;
 
+use super::inner_search::InnerSearch;
 use crate::check::Invalid;
 use crate::evolve::parents::Parents;
-use crate::evolve::plan::{Founder, RunPlan};
-use crate::evolve::settings::{CmaEsSettings, MccSettings, PoetSettings, StrategyKind};
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::{MccSettings, PoetSettings};
 use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree};
 use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
 use crate::genome::{Genome, StairsChange, StairsGenome};
@@ -27,8 +31,6 @@ use state::{Beginning, MccProgress};
 
 /// Candidates of a generation of the search for the first snakes.
 const CANDIDATES: u32 = 30;
-/// Random genomes with which that search begins; in a short run a quarter of its evaluations.
-const NEWBORNS: u32 = 100;
 /// Its first step, as a share of each gene's range.
 const FIRST_STEP: f32 = 0.15;
 /// Generations of that search without a snake that climbs, after which it begins again.
@@ -93,6 +95,9 @@ impl<S: Strategy> Mcc<S> {
         let MccProgress { snakes, snake_turn, .. } = &self.progress;
         let open: Vec<u32> = self.progress.active().filter(|node| self.has_uses(*node)).collect();
         let mut all = Vec::new();
+        if open.is_empty() {
+            return all;
+        }
         for child in 0..self.settings().snake_children {
             let parent = &snakes[(snake_turn + child) as usize % snakes.len()];
             let individual = all.len() as u32;
@@ -119,10 +124,15 @@ impl<S: Strategy> Mcc<S> {
 
     /// A child of a snake.
     fn child_of(&self, parent: &Genome, individual: u32) -> Genome {
-        let mut plan = search_plan(&self.plan, 2, Some(parent));
-        plan.seed =
-            stream(self.plan.seed, self.generation, individual, Purpose::Mutation).next_u64();
-        let drawn = S::begin(&plan).ask().pop();
+        let mut rng = stream(self.plan.seed, self.generation, individual, Purpose::Mutation);
+        let of = InnerSearch {
+            // The smallest generation of a search.
+            population: 2,
+            step: self.settings().child_step,
+            seed: rng.next_u64(),
+            around: Some(parent),
+        };
+        let drawn = S::begin(&of.plan(&self.plan)).ask().pop();
         drawn.unwrap_or_else(|| parent.clone())
     }
 
@@ -162,7 +172,7 @@ impl<S: Strategy> Mcc<S> {
         let genomes: Vec<Genome> =
             self.batch.iter().map(|candidate| candidate.genome.clone()).collect();
         let climbing: Vec<bool> = evaluations.iter().map(|of| self.climbs(of)).collect();
-        let wanted = self.settings().first_snakes.min(self.settings().snake_queue) as usize;
+        let wanted = self.settings().first_snakes as usize;
         let (generation, mut found) = (self.generation, 0);
         for (index, genome) in genomes.iter().enumerate().filter(|(index, _)| climbing[*index]) {
             let individual = index as u32;
@@ -177,7 +187,8 @@ impl<S: Strategy> Mcc<S> {
                 self.progress.snakes.push(agent);
             }
         }
-        self.progress.nodes[0].trials += evaluations.len() as u64;
+        let trials = &mut self.progress.nodes[0].trials;
+        *trials = trials.saturating_add(evaluations.len() as u64);
         if self.progress.snakes.len() >= wanted {
             self.progress.beginning = None;
             return;
@@ -194,6 +205,7 @@ impl<S: Strategy> Mcc<S> {
     /// Takes the evaluations of children, and lets those enter the queues that meet the criterion.
     fn after_children(&mut self, evaluations: &[Evaluation]) {
         self.progress.rounds += 1;
+        self.progress.pass_turns(self.settings().snake_children, self.settings().stairs_children);
         let batch = std::mem::take(&mut self.batch);
         let tried: Vec<(u32, &Candidate, &Evaluation)> = (0..)
             .zip(batch.iter().zip(evaluations))
@@ -209,12 +221,20 @@ impl<S: Strategy> Mcc<S> {
         self.shorten_queues();
     }
 
+    /// Removes the oldest members of queues that are too long.
+    fn shorten_queues(&mut self) {
+        let settings = self.settings();
+        let most = [settings.snake_queue, settings.stairs_queue].map(|most| most as usize);
+        self.progress.shorten(most);
+    }
+
     /// Lets a child of a snake enter the queue, if it climbs stairs that may still be used: the least used of those.
     fn take_snake(&mut self, tried: &[(u32, &Candidate, &Evaluation)]) {
         let mut least: Option<(u32, u32, f32, u32)> = None;
         for (individual, candidate, evaluation) in tried {
             let Role::Snake { node, .. } = candidate.role else { continue };
-            self.progress.nodes[node as usize].trials += 1;
+            let trials = &mut self.progress.nodes[node as usize].trials;
+            *trials = trials.saturating_add(1);
             let uses = self.progress.uses[node as usize];
             if self.climbs(evaluation)
                 && self.has_uses(node)
@@ -226,16 +246,21 @@ impl<S: Strategy> Mcc<S> {
         let Some((_, node, fitness, individual)) = least else { return };
         let genome = tried[0].1.genome.clone();
         let agent = Agent { genome, generation: self.generation, individual };
-        self.progress.uses[node as usize] += 1;
+        let uses = &mut self.progress.uses[node as usize];
+        *uses = uses.saturating_add(1);
         let of = &mut self.progress.nodes[node as usize];
-        (of.agent, of.score) = (Some(agent.clone()), fitness);
+        if fitness > of.score {
+            (of.agent, of.score) = (Some(agent.clone()), fitness);
+        }
         self.progress.snakes.push(agent);
     }
 
     /// Lets a mutant of stairs enter the queue, if a snake climbs it.
     fn take_stairs(&mut self, parent: u32, tried: &[(u32, &Candidate, &Evaluation)]) {
-        let climbed = tried.iter().find(|(.., evaluation)| self.climbs(evaluation));
-        let Some((_, candidate, evaluation)) = climbed else { return };
+        let climbed = tried.iter().filter(|(.., evaluation)| self.climbs(evaluation));
+        // Of equals the first.
+        let best = climbed.reduce(|a, b| if b.2.fitness > a.2.fitness { b } else { a });
+        let Some((_, candidate, evaluation)) = best else { return };
         let Role::Stairs { snake, .. } = candidate.role else { return };
         let MccProgress { nodes, uses, snakes, rounds, .. } = &mut self.progress;
         nodes.push(StairsNode {
@@ -251,27 +276,6 @@ impl<S: Strategy> Mcc<S> {
         });
         uses.push(0);
     }
-
-    /// Removes the oldest members of queues that are too long, and passes the turn on.
-    fn shorten_queues(&mut self) {
-        let (most_snakes, most_stairs) =
-            (self.settings().snake_queue as usize, self.settings().stairs_queue as usize);
-        let turns = [self.settings().snake_children, self.settings().stairs_children];
-        let round = self.progress.rounds;
-        let MccProgress { nodes, snakes, .. } = &mut self.progress;
-        let too_many = snakes.len().saturating_sub(most_snakes);
-        snakes.drain(..too_many);
-        let active = nodes.iter().filter(|node| node.archived.is_none()).count();
-        let oldest = nodes.iter_mut().filter(|node| node.archived.is_none());
-        for node in oldest.take(active.saturating_sub(most_stairs)) {
-            node.archived = Some(round);
-        }
-        let snakes = self.progress.snakes.len().max(1) as u32;
-        let stairs = self.progress.active().count().max(1) as u32;
-        let passed = |turn: u32, children: u32, of: u32| (turn + children) % of;
-        self.progress.snake_turn = passed(self.progress.snake_turn, turns[0], snakes);
-        self.progress.stairs_turn = passed(self.progress.stairs_turn, turns[1], stairs);
-    }
 }
 
 impl Role {
@@ -283,27 +287,6 @@ impl Role {
             _ => false,
         }
     }
-}
-
-/// The plan of a search for snakes, around a genome or from random ones.
-fn search_plan(plan: &RunPlan, population: u32, around: Option<&Genome>) -> RunPlan {
-    let mut settings = plan.settings.clone();
-    let evolution = &mut settings.evolution;
-    let most = u32::try_from(evolution.budget() / 4).unwrap_or(u32::MAX);
-    evolution.strategy = StrategyKind::CmaEs;
-    evolution.population = population;
-    // It is never over.
-    evolution.generations = 10_000;
-    evolution.cma_es = match around {
-        Some(_) => CmaEsSettings { step: evolution.mcc.child_step, ..CmaEsSettings::default() },
-        None => CmaEsSettings {
-            step: FIRST_STEP,
-            newborns: NEWBORNS.min(most),
-            ..CmaEsSettings::default()
-        },
-    };
-    let founder = around.map(|genome| Arc::new(Founder::new("parent", genome.clone())));
-    RunPlan { founder, ..RunPlan::new(&plan.preset, plan.seed, settings) }
 }
 
 impl<S: Strategy> Strategy for Mcc<S> {
@@ -324,7 +307,10 @@ impl<S: Strategy> Strategy for Mcc<S> {
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
-        let progress = MccProgress::read(state, plan, finished)?;
+        let mut progress = MccProgress::read(state, plan, finished)?;
+        // A change of settings may have made the queues shorter.
+        let mcc = &plan.settings.evolution.mcc;
+        progress.shorten([mcc.snake_queue, mcc.stairs_queue].map(|most| most as usize));
         Ok(Self::with(plan, finished, progress))
     }
 
@@ -374,6 +360,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
         if let Some(beginning) = &mut self.progress.beginning {
             beginning.search.apply_settings(&Beginning::<S>::plan(plan, beginning.restarts));
         }
+        self.shorten_queues();
         self.batch = self.next_batch();
     }
 

@@ -12,6 +12,7 @@ mod cma_es;
 mod creature_ga;
 mod ga;
 mod halving;
+mod inner_search;
 mod islands;
 mod learned;
 mod learning;

@@ -17,10 +17,11 @@ use std::sync::Arc;
 
 use rand::Rng;
 
+use super::inner_search::InnerSearch;
 use crate::check::Invalid;
 use crate::evolve::parents::Parents;
-use crate::evolve::plan::{Founder, RunPlan};
-use crate::evolve::settings::{PoetSettings, RestartKind, StrategyKind};
+use crate::evolve::plan::RunPlan;
+use crate::evolve::settings::PoetSettings;
 use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
 use crate::genome::{Genome, StairsChange, StairsGenome};
@@ -30,8 +31,6 @@ use crate::world::Stairs;
 use batch::Candidate;
 use state::{Child, FineTuned, Pair, Phase, PoetProgress, Proposal};
 
-/// Random genomes with which the search of the first pair begins; in a short run a quarter of its evaluations.
-const NEWBORNS: u32 = 100;
 /// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
 const RECENT: usize = 5;
 /// Number of measurements in turn without a better agent after which a pair's search begins again around its agent.
@@ -424,21 +423,14 @@ impl<S: Strategy> Poet<S> {
 
 /// The plan of a search for the agent of a staircase, around a genome or from random ones.
 fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>) -> RunPlan {
-    let mut settings = plan.settings.clone();
     let poet = &plan.settings.evolution.poet;
-    let evolution = &mut settings.evolution;
-    evolution.strategy =
-        if settings.genome.bodies.vary { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
-    evolution.population = poet.pair_candidates;
-    // It is never over.
-    evolution.generations = 10_000;
-    evolution.cma_es.step = poet.pair_step;
-    let most = u32::try_from(plan.settings.evolution.budget() / 4).unwrap_or(u32::MAX);
-    evolution.cma_es.newborns = NEWBORNS.min(most);
-    evolution.cma_es.restarts = RestartKind::None;
-    let seed = stream(plan.seed, node, restarts, Purpose::Pair).next_u64();
-    let founder = around.map(|genome| Arc::new(Founder::new("agent", genome.clone())));
-    RunPlan { founder, ..RunPlan::new(&plan.preset, seed, settings) }
+    let of = InnerSearch {
+        population: poet.pair_candidates,
+        step: poet.pair_step,
+        seed: stream(plan.seed, node, restarts, Purpose::Pair).next_u64(),
+        around,
+    };
+    of.plan(plan)
 }
 
 impl<S: Strategy> Strategy for Poet<S> {

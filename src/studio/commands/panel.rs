@@ -86,7 +86,7 @@ impl PanelKind {
             Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
             Self::Body => "The blocks of the snake: change, add and remove them (Ctrl 9)",
             Self::Stairs => {
-                "The stairs of the next run: drag their edges, roll others, save them (Ctrl T)"
+                "The stairs of the next run: drag their edges, draw random ones, save them (Ctrl T)"
             }
             Self::Machines => "Let other computers compute, too (Ctrl 8)",
         }

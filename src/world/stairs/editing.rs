@@ -1,4 +1,5 @@
-//! Changes of single steps, for an editor. The results may not be allowed: [`crate::schema::check`] says so.
+//! Changes of single steps, for an editor. Slopes become as deep as still fits. The results may not be allowed:
+//! [`crate::schema::check`] says so.
 
 use super::Stairs;
 use crate::schema::PerPart;
@@ -25,15 +26,20 @@ impl Stairs {
         let [from_y_m, from_z_m] = self.handle_m(step);
         let [along_m, up_m] = [y_m - from_y_m, z_m - from_z_m];
         let (mut rises_m, mut treads_m) = (self.rises_m(), self.each_tread_m());
-        rises_m[index] += up_m;
+        let add = |length_m: &mut f32, by_m: f32| {
+            if by_m != 0.0 {
+                *length_m = on_grain_m(*length_m + by_m);
+            }
+        };
+        add(&mut rises_m[index], up_m);
         if let Some(next_m) = rises_m.get_mut(index + 1) {
-            *next_m -= up_m;
-            treads_m[index] -= along_m;
+            add(next_m, -up_m);
+            add(&mut treads_m[index], -along_m);
         }
         let mut first_riser_y_m = self.first_riser_y_m;
         match index.checked_sub(1) {
-            Some(before) => treads_m[before] += along_m,
-            None => first_riser_y_m = on_grain_m(first_riser_y_m + along_m),
+            Some(before) => add(&mut treads_m[before], along_m),
+            None => add(&mut first_riser_y_m, along_m),
         }
         Self { first_riser_y_m, ..self.with_steps(rises_m, treads_m, self.slopes_m()) }
     }
@@ -43,7 +49,7 @@ impl Stairs {
     pub fn with_step_rise(&self, step: u32, rise_m: f32) -> Self {
         let mut rises_m = self.rises_m();
         if let Some(of) = rises_m.get_mut(step as usize) {
-            *of = rise_m;
+            *of = on_grain_m(rise_m);
         }
         self.with_steps(rises_m, self.each_tread_m(), self.slopes_m())
     }
@@ -53,7 +59,7 @@ impl Stairs {
     pub fn with_step_tread(&self, step: u32, tread_m: f32) -> Self {
         let mut treads_m = self.each_tread_m();
         if let Some(of) = treads_m.get_mut(step as usize) {
-            *of = tread_m;
+            *of = on_grain_m(tread_m);
         }
         self.with_steps(self.rises_m(), treads_m, self.slopes_m())
     }
@@ -107,12 +113,12 @@ impl Stairs {
             slope_m: shortest(slopes_m, &self.slope_m),
             ..self.clone()
         }
+        .with_room_for_slopes()
     }
 }
 
 /// One value for all steps if they are equal, so that equal steps stay plain stairs.
 fn shortest(each: Vec<f32>, before: &PerPart) -> PerPart {
-    let each: Vec<f32> = each.into_iter().map(on_grain_m).collect();
     match each.first() {
         Some(first) if each.iter().all(|value| value == first) => PerPart::All(*first),
         Some(_) => PerPart::Each(each),
@@ -172,6 +178,18 @@ mod tests {
             let [then_y_m, then_z_m] = moved.handle_m(step);
             assert!((then_y_m - y_m).abs() < 2.0e-3 && (then_z_m - z_m).abs() < 2.0e-3, "{step}");
         }
+    }
+
+    #[test]
+    fn steps_of_ramps_can_be_moved() {
+        let plain = Stairs::default();
+        let ramps = Stairs { slope_m: PerPart::Each(vec![1.75; 10]), ..plain };
+        check(&ramps).expect("as deep as is allowed");
+        let [y_m, z_m] = ramps.handle_m(4);
+        let higher = ramps.with_handle_at(4, [y_m, z_m + 0.2]);
+        check(&higher).expect("the slope is less deep now");
+        assert!((higher.step_slope_m(4) - 1.65).abs() < 1.0e-6);
+        check(&ramps.with_step_tread(3, 1.5)).expect("allowed");
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::{CANDIDATES, PATIENCE, search_plan};
+use super::super::inner_search::InnerSearch;
+use super::{CANDIDATES, FIRST_STEP, PATIENCE};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
@@ -31,10 +32,13 @@ impl<S: Strategy> Beginning<S> {
 
     /// Its plan: around the founder of the run, or from random genomes.
     pub fn plan(plan: &RunPlan, restarts: u32) -> RunPlan {
-        let around = plan.founder.as_ref().map(|founder| founder.genome());
-        let mut of = search_plan(plan, CANDIDATES, around);
-        of.seed = stream(plan.seed, 0, restarts, Purpose::Pair).next_u64();
-        of
+        let of = InnerSearch {
+            population: CANDIDATES,
+            step: FIRST_STEP,
+            seed: stream(plan.seed, 0, restarts, Purpose::Pair).next_u64(),
+            around: plan.founder.as_ref().map(|founder| founder.genome()),
+        };
+        of.plan(plan)
     }
 }
 
@@ -99,6 +103,32 @@ impl<S: Strategy> MccProgress<S> {
         nodes.filter(|(_, node)| node.archived.is_none()).map(|(index, _)| index)
     }
 
+    /// Passes the turn on by the numbers of children in a generation.
+    pub fn pass_turns(&mut self, snake_children: u32, stairs_children: u32) {
+        let passed = |turn: u32, children: u32, members: usize| {
+            turn.saturating_add(children) % (members as u32).max(1)
+        };
+        let stairs = self.active().count();
+        self.snake_turn = passed(self.snake_turn, snake_children, self.snakes.len());
+        self.stairs_turn = passed(self.stairs_turn, stairs_children, stairs);
+    }
+
+    /// Removes the oldest members of the queues of snakes and of stairs until they have at most these numbers. The turn stays
+    /// with the member that has it.
+    pub fn shorten(&mut self, [most_snakes, most_stairs]: [usize; 2]) {
+        let too_many = self.snakes.len().saturating_sub(most_snakes);
+        self.snakes.drain(..too_many);
+        let active = self.active().count();
+        let archived = active.saturating_sub(most_stairs);
+        let oldest = self.nodes.iter_mut().filter(|node| node.archived.is_none());
+        oldest.take(archived).for_each(|node| node.archived = Some(self.rounds));
+        let moved = |turn: u32, removed: usize, left: usize| {
+            turn.saturating_sub(removed as u32) % (left as u32).max(1)
+        };
+        self.snake_turn = moved(self.snake_turn, too_many, self.snakes.len());
+        self.stairs_turn = moved(self.stairs_turn, archived, active - archived);
+    }
+
     pub fn state(&self) -> StrategyState {
         let beginning = self.beginning.as_ref().map(|beginning| SavedBeginning {
             search: beginning.search.state(),
@@ -152,8 +182,8 @@ impl SavedQueues {
         within("rounds", self.rounds, 0..=finished)?;
         within("nodes", self.nodes.len(), 1..=PoetSettings::MOST_STAIRS)?;
         within("uses", self.uses.len(), self.nodes.len()..=self.nodes.len())?;
-        // A queue may have become shorter by a change of settings, and is shortened with the next generation.
-        within("snakes", self.snakes.len(), 0..=1000 + 200)?;
+        // A change of settings may have made a queue shorter.
+        within("snakes", self.snakes.len(), 0..=1000)?;
         for (index, node) in self.nodes.iter().enumerate() {
             node.check(index, self.rounds, plan).map_err(|error| error.inside("nodes"))?;
         }
@@ -161,15 +191,13 @@ impl SavedQueues {
             snake.check(plan).map_err(|error| error.inside("snakes"))?;
         }
         let active = self.nodes.iter().filter(|node| node.archived.is_none()).count();
-        within("active", active, 1..=100 + 50)?;
+        within("active", active, 1..=100)?;
+        within("snake_turn", self.snake_turn as usize, 0..=self.snakes.len().max(1) - 1)?;
+        within("stairs_turn", self.stairs_turn as usize, 0..=active - 1)?;
         match &self.beginning {
             Some(beginning) => within("finished", beginning.finished, 0..=finished)
                 .map_err(|error| error.inside("beginning")),
-            None => {
-                within("snakes", self.snakes.len(), 1..=1000 + 200)?;
-                within("snake_turn", self.snake_turn as usize, 0..=self.snakes.len() - 1)?;
-                within("stairs_turn", self.stairs_turn as usize, 0..=active - 1)
-            }
+            None => within("snakes", self.snakes.len(), 1..=1000),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Tests of minimal criterion coevolution with made-up evaluations.
 
 use super::*;
-use crate::evolve::settings::Settings;
+use crate::evolve::plan::Founder;
+use crate::evolve::settings::{Settings, StrategyKind};
 use crate::evolve::strategies::cma_es::CmaEs;
 use crate::genome::ControllerKind;
 use crate::score::Fitness;
@@ -64,6 +65,7 @@ fn queues_are_filled_and_shortened_and_every_member_meets_the_criterion() {
         assert_eq!(evaluate(&mcc, &candidate).fitness, node.score);
     }
     assert!(uses.iter().all(|uses| *uses <= mcc.settings().uses_of_stairs), "{uses:?}");
+    assert!(mcc.progress.snake_turn < 20 && mcc.progress.stairs_turn < 6);
     let born: Vec<u32> = nodes.iter().map(|node| node.born).collect();
     assert!(born.is_sorted());
 }
@@ -104,7 +106,8 @@ fn a_child_enters_by_the_least_used_of_the_stairs_that_it_climbs() {
     assert_eq!(mcc.progress.uses[least as usize], 2);
     let entered = mcc.progress.snakes.last().expect("one");
     assert_eq!(entered.genome, genomes[0]);
-    assert_eq!(mcc.progress.nodes[least as usize].agent.as_ref(), Some(entered));
+    let of_stairs = &mcc.progress.nodes[least as usize];
+    assert_eq!((of_stairs.agent.as_ref() == Some(entered)), of_stairs.score == 1.0);
 }
 
 #[test]
@@ -136,6 +139,70 @@ fn a_resumed_run_goes_on_with_the_same_bits() {
         advance(&mut expected);
     }
     assert_eq!(phases, [true; 2]);
+}
+
+#[test]
+fn each_snake_has_children_in_turn_while_others_come_and_go() {
+    let (mut mcc, _) = run(1);
+    let mut parents: Vec<u32> = Vec::new();
+    // Of each generation, two children enter, and the two oldest snakes are removed.
+    let queue = mcc.settings().snake_queue as usize;
+    let mut oldest = 0;
+    while mcc.progress.snakes.len() < queue {
+        let first = mcc.progress.snakes[0].clone();
+        mcc.progress.snakes.push(first);
+    }
+    for _ in 0..20 {
+        let children = mcc.settings().snake_children;
+        let turn = mcc.progress.snake_turn;
+        parents.extend((0..children).map(|child| oldest + (turn + child) % queue as u32));
+        mcc.progress.pass_turns(children, 1);
+        for _ in 0..2 {
+            let newest = mcc.progress.snakes[0].clone();
+            mcc.progress.snakes.push(newest);
+        }
+        mcc.progress.shorten([queue, 6]);
+        oldest += 2;
+    }
+    // Numbered by the order in which they came, the snakes follow one another, from the newest back to the oldest.
+    for pair in parents.windows(2) {
+        let is_next = pair[1] == pair[0] + 1;
+        assert!(is_next || pair[1] < pair[0], "{pair:?} of {parents:?}");
+    }
+}
+
+#[test]
+fn a_search_with_a_founder_and_equal_values_is_resumed_after_a_change_of_settings() {
+    let mut plan = plan();
+    let space = &plan.settings.genome;
+    let genome = space
+        .random_genome(plan.settings.trial.genome_shape(), &mut stream(5, 0, 0, Purpose::Birth));
+    plan.founder = Some(Arc::new(Founder::new("x", genome)));
+    let mut mcc = Mcc::<CmaEs>::begin(&plan);
+    for finished in 1..PATIENCE + 3 {
+        if finished == 7 || finished == PATIENCE {
+            plan.settings.evolution.mcc.child_step = 0.2 + finished as f32 / 1000.0;
+            plan.settings.evolution.mcc.snake_queue = 15;
+            mcc.apply_settings(&plan);
+        }
+        let genomes = mcc.ask();
+        mcc.tell(&genomes, &vec![Evaluation::of_fitness(0.1); genomes.len()]);
+        let resumed = Mcc::<CmaEs>::resume(&plan, finished, &mcc.state()).expect("its own state");
+        assert_eq!(resumed.ask(), mcc.ask(), "after generation {finished}");
+    }
+}
+
+#[test]
+fn shorter_queues_take_effect_at_once_and_after_a_resume() {
+    let (mut mcc, finished) = run(20);
+    let state = mcc.state();
+    let mut plan = plan();
+    let of = &mut plan.settings.evolution.mcc;
+    (of.snake_queue, of.first_snakes, of.stairs_queue) = (5, 5, 2);
+    mcc.apply_settings(&plan);
+    let resumed = Mcc::<CmaEs>::resume(&plan, finished, &state).expect("its own state");
+    assert_eq!((mcc.progress.snakes.len(), mcc.progress.active().count()), (5, 2));
+    assert!(resumed.state() == mcc.state());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests of POET with made-up evaluations.
 
 use super::*;
-use crate::evolve::settings::Settings;
+use crate::evolve::settings::{Settings, StrategyKind};
 use crate::evolve::strategies::cma_es::CmaEs;
 use crate::genome::ControllerKind;
 use crate::score::Fitness;

@@ -18,19 +18,19 @@ pub(super) fn view(
     reports: &[GenerationReport],
     tree: &StairsTree,
 ) -> ChartView {
+    let has_challenges = strategy != StrategyKind::Mcc;
     let last = f64::from(tree.rounds.max(1));
     let aside = last * 0.04;
     let nodes = Chart {
         name: "Stairs".to_owned(),
         x: Axis::count("Round", -aside..=last + aside),
         y: Axis::new("Mean rise", "m", padded_range(rises(tree), 0.1).unwrap_or(0.0..=1.0)),
-        series: series(tree),
+        series: series(tree, has_challenges),
         marks: Vec::new(),
     };
-    let has_challenges = strategy != StrategyKind::Mcc;
     let progress = by_round(reports, |count| match has_challenges {
         true => count.challenges,
-        false => count.all,
+        false => count.solved,
     });
     let most = progress.last().map_or(1.0, |last| last[1]).max(1.0);
     let (name, title, series, note) = if has_challenges {
@@ -73,7 +73,8 @@ fn rises(tree: &StairsTree) -> impl Iterator<Item = f64> {
     tree.nodes.iter().map(|node| f64::from(node.stairs.rise_m))
 }
 
-fn series(tree: &StairsTree) -> Vec<Series> {
+/// The stairs of a tree by their state: solved or not, or, where all are, whether they are still in their queue.
+fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
     let node = |index: u32| tree.nodes.get(index as usize);
     let descents =
         tree.nodes.iter().filter_map(|child| Some([place(node(child.parent?)?), place(child)]));
@@ -86,18 +87,22 @@ fn series(tree: &StairsTree) -> Vec<Series> {
     let mut series = vec![
         Series::new("descent", Role::Others, Shape::Arrows(descents.collect())),
         Series::new("transfers of snakes", Role::Second, Shape::Arrows(transfers.collect())),
-        Series::new(
-            "archived unsolved",
-            Role::Others,
-            points(&|node| node.solved.is_none() && node.archived.is_some()),
-        ),
-        Series::new(
-            "active",
-            Role::Third,
-            points(&|node| node.solved.is_none() && node.archived.is_none()),
-        ),
-        Series::new("solved", Role::First, points(&|node| node.solved.is_some())),
     ];
+    let states: &[(&str, Role, &dyn Fn(&StairsNode) -> bool)] = if has_unsolved {
+        &[
+            ("archived unsolved", Role::Others, &|node| {
+                node.solved.is_none() && node.archived.is_some()
+            }),
+            ("active", Role::Third, &|node| node.solved.is_none() && node.archived.is_none()),
+            ("solved", Role::First, &|node| node.solved.is_some()),
+        ]
+    } else {
+        &[
+            ("removed from the queue", Role::Others, &|node| node.archived.is_some()),
+            ("in the queue", Role::First, &|node| node.archived.is_none()),
+        ]
+    };
+    series.extend(states.iter().map(|(name, role, is_in)| Series::new(name, *role, points(is_in))));
     // Empty series need no legend entry.
     series.retain(|series| match &series.shape {
         Shape::Points(points) => !points.is_empty(),
@@ -241,5 +246,8 @@ mod tests {
         let second = |strategy| view(strategy, &[], &tree()).figure.charts[1].name.clone();
         let names = [StrategyKind::Poet, StrategyKind::Mcc].map(second);
         assert_eq!(names, ["New challenges", "Number of stairs"]);
+        let queue = view(StrategyKind::Mcc, &[], &tree());
+        let names: Vec<&str> = queue.figure.listed().iter().map(|of| of.name.as_str()).collect();
+        assert!(names.contains(&"in the queue") && !names.contains(&"solved"), "{names:?}");
     }
 }

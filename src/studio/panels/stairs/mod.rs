@@ -1,9 +1,9 @@
-//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, dice, and what building codes say.
+//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, random stairs, and what building codes say.
 
 mod choice;
 mod codes;
-mod dice;
 mod profile;
+mod random;
 mod table;
 
 use bevy_egui::egui;
@@ -23,21 +23,25 @@ use crate::world::Stairs;
 pub(super) use choice::stairs_choice;
 use choice::{name_of, replacement};
 use codes::codes;
-use dice::Dice;
-use profile::Profile;
+use profile::{Grab, Profile};
+use random::RandomStairs;
 use table::table;
 
 /// The panel with what is being changed.
 #[derive(Debug, Default)]
 pub(super) struct StairsPanel {
-    /// The stairs while they are changed.
+    /// The stairs during a drag.
     draft: Option<Stairs>,
+    /// The edge that is dragged.
+    grab: Option<Grab>,
     /// Why the latest change is not allowed, in a sentence.
     problem: Option<String>,
+    /// The stairs of the next run in the last frame.
+    before: Option<Stairs>,
     /// The step that is pointed at, in the drawing or in the table; the lowest is 0.
     pointed: Option<u32>,
     name: OwnName,
-    dice: Dice,
+    random: RandomStairs,
 }
 
 /// A change of the stairs by one of the panel's parts.
@@ -67,22 +71,29 @@ impl StairsPanel {
         commands: &mut Vec<Command>,
     ) {
         let next = &run.next_settings().trial;
+        self.forget_what_is_over(ui, &next.stairs);
         let stairs = self.draft.clone().unwrap_or_else(|| next.stairs.clone());
         title_and(ui, "Stairs", |ui| undo_buttons(ui, history, commands));
         explain(ui, "The stairs of the next run. The stage shows each change beside the original.");
         self.files(ui, run, lane, commands);
-        let profile = Profile { stairs: &stairs, agent: &next.agent, pointed: self.pointed };
-        let drawn = profile.ui(ui);
+        let profile = Profile {
+            stairs: &stairs,
+            next: &next.stairs,
+            agent: &next.agent,
+            pointed: self.pointed,
+        };
+        let drawn = profile.ui(ui, self.grab);
+        self.grab = drawn.grab;
         let mut pointed = drawn.pointed;
         let mut edit = drawn.edit;
         codes(ui, &stairs);
         if let Some(problem) = &self.problem {
             ui.label(egui::RichText::new(problem).color(theme::of(ui).problem));
         }
-        if let Some(genome) = self.dice.ui(ui) {
+        if let Some(genome) = self.random.ui(ui) {
             let (first_riser_y_m, landing_m) = (stairs.first_riser_y_m, stairs.landing_m);
-            let rolled = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
-            edit = Some(Edit::complete(rolled));
+            let drawn = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
+            edit = Some(Edit::complete(drawn));
         }
         ui.add_space(theme::GAP / 2.0);
         let listed = table(ui, &stairs, self.pointed);
@@ -97,7 +108,8 @@ impl StairsPanel {
             self.pointed = pointed;
             ui.ctx().request_repaint();
         }
-        if let Some(edit) = edit {
+        let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
+        if let Some(edit) = edit.filter(|_| !is_cancelled) {
             self.take(edit, run, commands);
         }
     }
@@ -119,23 +131,37 @@ impl StairsPanel {
                 run.known_stairs().name_for_copy(copied)
             };
             self.name.button(ui, ("Save as…", hint), suggestion);
-            let has_own = !run.known_stairs().own().is_empty();
+            let folder = run.stairs_folder();
             let hint = "Show the files of your stairs. File > Import adds the stairs of others";
             let refusal = "Save stairs first";
-            let button = ui.add_enabled(has_own, egui::Button::new("Show files"));
+            let button = ui.add_enabled(folder.is_dir(), egui::Button::new("Show files"));
             if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
-                commands.push(Command::File(FileCommand::OpenFolder(run.stairs_folder())));
+                commands.push(Command::File(FileCommand::OpenFolder(folder)));
             }
             let staged = lane.map(|lane| &lane.trial().stairs).filter(|staged| *staged != stairs);
             if let Some(staged) = staged {
-                let hint = "Take over the stairs of the selected snake on the stage";
-                if ui.button("Stairs of the stage").on_hover_text(hint).clicked() {
+                let hint = "The next run gets the stairs of the selected snake on the stage";
+                if ui.button("Use those on the stage").on_hover_text(hint).clicked() {
                     commands.extend(replacement(run.next_settings(), staged));
                 }
             }
         });
         if let Some(name) = self.name.field(ui, run.known_stairs()) {
             commands.push(Command::Plan(PlanCommand::StoreStairs(name)));
+        }
+    }
+
+    /// Drops the changes of a drag that ended by Escape or while the panel was hidden, and the message about a change once the
+    /// stairs are others.
+    fn forget_what_is_over(&mut self, ui: &egui::Ui, next: &Stairs) {
+        let context = ui.ctx();
+        let is_dragging = context.dragged_id().is_some() || context.drag_stopped_id().is_some();
+        if !is_dragging || ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+            (self.draft, self.grab) = (None, None);
+        }
+        if self.before.as_ref() != Some(next) {
+            self.problem = None;
+            self.before = Some(next.clone());
         }
     }
 

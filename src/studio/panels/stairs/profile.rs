@@ -6,7 +6,7 @@ use super::Edit;
 use crate::plot::Role;
 use crate::score::AgentSettings;
 use crate::studio::ui::theme;
-use crate::world::{BUILDING_CODES, Stairs};
+use crate::world::{BUILDING_CODES, BuildingCode, Stairs};
 
 /// Greatest height of the drawing, in points.
 const MOST_HEIGHT: f32 = 220.0;
@@ -29,8 +29,10 @@ const BEFORE_M: f32 = 0.3;
 
 /// The drawing.
 pub(super) struct Profile<'a> {
-    /// The stairs.
+    /// The stairs as they are drawn: with the changes of a drag that is not over.
     pub stairs: &'a Stairs,
+    /// The stairs of the next run. They give the scale, which must not change under the pointer during a drag.
+    pub next: &'a Stairs,
     /// The snake, one block of which shows the scale.
     pub agent: &'a AgentSettings,
     /// The step to highlight; the lowest is 0.
@@ -42,8 +44,19 @@ pub(super) struct Profile<'a> {
 pub(super) struct Drawn {
     /// The step whose edge it points at; the lowest is 0.
     pub pointed: Option<u32>,
+    /// The edge that is dragged.
+    pub grab: Option<Grab>,
     /// A moved edge.
     pub edit: Option<Edit>,
+}
+
+/// An edge that is dragged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Grab {
+    /// The step; the lowest is 0.
+    step: u32,
+    /// Where the pointer took it: y and z, in metres.
+    from_m: [f32; 2],
 }
 
 /// From metres to points.
@@ -69,13 +82,13 @@ impl Scale {
 }
 
 impl Profile<'_> {
-    /// Draws the stairs. An edge that is dragged gives the changed stairs, snapped.
-    pub fn ui(&self, ui: &mut egui::Ui) -> Drawn {
-        let stairs = self.stairs;
+    /// Draws the stairs. An edge that is dragged gives the changed stairs, snapped. `grab` is the edge that was dragged before.
+    pub fn ui(&self, ui: &mut egui::Ui, grab: Option<Grab>) -> Drawn {
+        let stairs = self.next;
         let [block_m, block_high_m] =
             [self.agent.limb_length_m.at(0), self.agent.limb_height_m.at(0)];
         let from_y_m = stairs.first_riser_y_m - BEFORE_M - block_m;
-        let to_y_m = stairs.riser_y_m(stairs.steps) + stairs.landing_m.min(LANDING_M);
+        let to_y_m = end_y_m(stairs);
         let (long_m, high_m) = (to_y_m - from_y_m, stairs.highest_m().max(block_high_m) + ABOVE_M);
         let width = ui.available_width();
         let room = egui::vec2(width, MOST_HEIGHT) - egui::Vec2::splat(2.0 * SPACE);
@@ -96,16 +109,17 @@ impl Profile<'_> {
         let hint =
             format!("A block of the snake, to scale: {block_m} m long, {block_high_m} m high");
         ui.interact(block, ui.id().with("block"), egui::Sense::hover()).on_hover_text(hint);
-        self.solids(&painter, scale, to_y_m, palette);
+        self.solids(&painter, scale, palette);
         let ground = egui::Stroke::new(1.0, palette.text_weak);
         painter.hline(area.x_range(), origin.y, ground);
         self.code_line(ui, &painter, scale, area);
-        self.handles(ui, scale)
+        self.handles(ui, scale, grab)
     }
 
     /// The solids of the stairs, and their outline.
-    fn solids(&self, painter: &egui::Painter, scale: Scale, to_y_m: f32, palette: &theme::Palette) {
+    fn solids(&self, painter: &egui::Painter, scale: Scale, palette: &theme::Palette) {
         let stairs = self.stairs;
+        let to_y_m = end_y_m(stairs);
         let stone = theme::flat(palette.stair);
         let lit = palette.accent_soft;
         let color = |step| if self.pointed == Some(step) { lit } else { stone };
@@ -130,8 +144,10 @@ impl Profile<'_> {
 
     /// The steepest stairs that a home may have, as a dashed line over the first edges.
     fn code_line(&self, ui: &egui::Ui, painter: &egui::Painter, scale: Scale, area: egui::Rect) {
-        let Some(code) = BUILDING_CODES.first() else { return };
-        let Some(steepest) = code.steepest().filter(|_| self.stairs.steps > 0) else { return };
+        let steepest = BUILDING_CODES.iter().map(BuildingCode::steepest).fold(0.0, f32::max);
+        if self.stairs.steps == 0 {
+            return;
+        }
         let from_m = self.stairs.handle_m(0);
         let most_z_m = scale.back_m(area.left_top())[1];
         let along_m = (most_z_m - from_m[1]) / steepest;
@@ -140,18 +156,19 @@ impl Profile<'_> {
         let stroke = egui::Stroke::new(1.5, palette.second);
         let line = [scale.at(from_m), scale.at(to_m)];
         painter.extend(egui::Shape::dashed_line(&line, stroke, 6.0, 4.0));
-        // Beside the upper end of the line, where that is in sight.
+        // On the left of the upper end of the line.
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         let text = "steepest in a home";
         let layout = painter.layout_no_wrap(text.to_owned(), font, palette.second);
         let top = area.top() + SPACE / 2.0;
-        let x_at = scale.at([to_m[0], 0.0]).x - SPACE;
+        let height = layout.size().y + SPACE / 2.0;
+        let x_at = scale.at(to_m).x - height / steepest - SPACE / 2.0;
         let place = egui::pos2((x_at - layout.size().x).max(area.left() + SPACE / 2.0), top);
         painter.galley(place, layout, palette.second);
     }
 
     /// The handles of all steps.
-    fn handles(&self, ui: &mut egui::Ui, scale: Scale) -> Drawn {
+    fn handles(&self, ui: &mut egui::Ui, scale: Scale, grab: Option<Grab>) -> Drawn {
         let palette = theme::of(ui);
         let mut drawn = Drawn::default();
         for step in 0..self.stairs.steps {
@@ -174,9 +191,17 @@ impl Profile<'_> {
                 if is_lit { (HANDLE + 2.0, palette.accent) } else { (HANDLE, palette.text) };
             ui.painter().circle(at, radius, color, egui::Stroke::new(1.0, palette.field));
             if is_taken && let Some(pointer) = response.interact_pointer_pos() {
+                let pointer_m = scale.back_m(pointer);
+                let grab = grab.filter(|grab| grab.step == step);
+                let grab = grab.unwrap_or(Grab { step, from_m: pointer_m });
+                drawn.grab = Some(grab).filter(|_| response.dragged());
                 let snap_m = if ui.input(|input| input.modifiers.shift) { FINE_M } else { SNAP_M };
-                let to_m = scale.back_m(pointer).map(|at_m| (at_m / snap_m).round() * snap_m);
-                let stairs = self.stairs.with_handle_at(step, to_m);
+                // The movement is snapped, not the place: a coordinate that is not moved stays as it is.
+                let moved_m =
+                    |axis: usize| ((pointer_m[axis] - grab.from_m[axis]) / snap_m).round() * snap_m;
+                let [y_m, z_m] = self.next.handle_m(step);
+                let to_m = [y_m + moved_m(0), z_m + moved_m(1)];
+                let stairs = self.next.with_handle_at(step, to_m);
                 let is_complete = response.drag_stopped();
                 drawn.edit = Some(Edit { stairs, is_complete });
             } else {
@@ -190,4 +215,9 @@ impl Profile<'_> {
         }
         drawn
     }
+}
+
+/// Position at which the drawing ends on the y axis, in metres.
+fn end_y_m(stairs: &Stairs) -> f32 {
+    stairs.riser_y_m(stairs.steps) + stairs.landing_m.min(LANDING_M)
 }

@@ -96,6 +96,52 @@ fn a_dragged_edge_moves_one_step_and_is_one_change() {
 }
 
 #[test]
+fn the_first_and_the_last_edge_follow_a_pointer_that_rests() {
+    for (edge, step, by_m) in
+        [("Edge of step 1", 0, [-0.5, 0.0]), ("Edge of step 10", 9, [0.0, 0.3])]
+    {
+        let mut window = editing(&house(), theme::PANEL_WIDTH);
+        let [a, b] = ["Edge of step 2", "Edge of step 3"].map(|name| centre(&window, name));
+        let points_per_m = (b.x - a.x) / 0.8;
+        let from = centre(&window, edge);
+        let to = from + egui::vec2(by_m[0], -by_m[1]) * points_per_m;
+        window.drag_at(from);
+        window.run_steps(2);
+        for _ in 0..20 {
+            window.hover_at(to);
+            window.run_steps(1);
+        }
+        window.drop_at(to);
+        window.run_steps(3);
+        let [y_m, z_m] = house().handle_m(step);
+        let expected = house().with_handle_at(step, [y_m + by_m[0], z_m + by_m[1]]);
+        assert_eq!(stairs(&window), expected, "{edge}");
+    }
+}
+
+#[test]
+fn a_click_on_an_edge_changes_nothing_and_escape_drops_a_drag() {
+    let irregular = StairsClass::Irregular.of_seed(3).stairs();
+    let mut window = editing(&irregular, theme::PANEL_WIDTH);
+    let at = centre(&window, "Edge of step 3") + egui::vec2(3.0, 3.0);
+    window.drag_at(at);
+    window.run_steps(2);
+    window.drop_at(at);
+    window.run_steps(3);
+    window.drag_at(at);
+    window.run_steps(2);
+    window.hover_at(at + egui::vec2(0.0, -10.0));
+    window.run_steps(2);
+    assert!(window.state().panel.draft.is_some(), "it is dragged");
+    window.key_press(egui::Key::Escape);
+    window.run_steps(2);
+    window.drop_at(at + egui::vec2(0.0, -10.0));
+    window.run_steps(3);
+    assert_eq!(stairs(&window), irregular);
+    assert_eq!(window.state().commands, []);
+}
+
+#[test]
 fn an_edge_stays_where_a_further_move_is_not_allowed_and_the_panel_says_why() {
     let mut window = editing(&house(), theme::PANEL_WIDTH);
     let [from, next] = ["Edge of step 3", "Edge of step 4"].map(|name| centre(&window, name));
@@ -140,11 +186,11 @@ fn the_last_step_can_be_removed_and_put_back() {
 }
 
 #[test]
-fn a_roll_gives_the_stairs_of_the_next_seed_where_the_others_were() {
+fn random_stairs_are_those_of_the_next_seed_where_the_others_were() {
     let before = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..house() };
     let mut window = editing(&before, theme::PANEL_WIDTH);
     for seed in [1, 2] {
-        window.get_by_label("Roll").click();
+        window.get_by_label("Next").click();
         window.run();
         let drawn = StairsClass::Irregular.of_seed(seed).stairs();
         let expected = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..drawn };
@@ -167,10 +213,10 @@ fn stairs_are_saved_under_a_suggested_name() {
 fn building_codes_are_compared_in_words() {
     let window = editing(&house(), theme::PANEL_WIDTH);
     assert!(window.query_by_label_contains("32°, 175 × 280 mm").is_some());
-    assert_eq!(window.query_all_by_label("allowed").count(), 3);
+    assert_eq!(window.query_all_by_label("rises and treads allowed").count(), 3);
     let steep = Stairs { rise_m: 0.7.into(), ..house() };
     let window = editing(&steep, theme::PANEL_WIDTH);
-    assert!(window.query_all_by_label_contains("step 1 rises 245 mm, over 196").count() > 0);
+    assert!(window.query_all_by_label_contains("rise 1 is 245 mm, over 196").count() > 0);
 }
 
 #[test]

@@ -12,8 +12,8 @@ pub(super) const LADDER: Lesson = Lesson {
              the other by way of lower stairs, which grow whenever most snakes of a generation succeed.",
     look_for: "How far the same snake gets on low and on high steps. In the runs, when each line rises, and whether it gets \
                stuck.",
-    conclusion: "Stairs that some snakes climb and others do not tell good from bad. A ladder always offers such stairs. It is \
-                 no must: with ten seeds, the direct way landed 8 times, and the ladder 10 times.",
+    conclusion: "Stairs that some snakes climb and others do not tell good from bad. A ladder looks for such stairs. It is \
+                 not always needed: with ten seeds, the direct way landed 8 times, and the ladder 10 times.",
     scenes: &[
         LessonScene::Lanes {
             label: "One snake, three flights",

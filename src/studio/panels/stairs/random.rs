@@ -1,4 +1,4 @@
-//! Stairs by chance: of a class, and of a seed that gives the same stairs again.
+//! Random stairs: of a class, and of a seed that gives the same stairs again.
 
 use bevy_egui::egui;
 
@@ -8,7 +8,7 @@ use crate::studio::ui::theme;
 
 /// The class and the seed that were chosen.
 #[derive(Debug)]
-pub(super) struct Dice {
+pub(super) struct RandomStairs {
     class: StairsClass,
     seed: u32,
 }
@@ -16,18 +16,18 @@ pub(super) struct Dice {
 /// The greatest seed.
 const MOST: u32 = 999_999;
 
-impl Default for Dice {
+impl Default for RandomStairs {
     fn default() -> Self {
         Self { class: StairsClass::Irregular, seed: 0 }
     }
 }
 
-impl Dice {
+impl RandomStairs {
     /// Draws the row. Returns other stairs.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Option<StairsGenome> {
-        let mut is_rolled = false;
+        let mut is_other = false;
         ui.horizontal_wrapped(|ui| {
-            ui.label("By chance");
+            ui.label("Random");
             let list = egui::ComboBox::from_id_salt("class of stairs")
                 .selected_text(self.class.choice().title)
                 .width(theme::COMBO_WIDTH * 0.75)
@@ -37,7 +37,7 @@ impl Dice {
                         let button = ui.selectable_label(class == self.class, title);
                         if button.on_hover_text(sentence).clicked() {
                             self.class = class;
-                            is_rolled = true;
+                            is_other = true;
                         }
                     }
                 });
@@ -50,12 +50,12 @@ impl Dice {
                 .prefix("seed ")
                 .update_while_editing(false);
             let seed = ui.add(field).on_hover_text("The same seed gives the same stairs again");
-            is_rolled |= (seed.changed() && !seed.dragged()) || seed.drag_stopped();
-            if ui.button("Roll").on_hover_text("Stairs of the next seed").clicked() {
+            is_other |= (seed.changed() && !seed.dragged()) || seed.drag_stopped();
+            if ui.button("Next").on_hover_text("The stairs of the next seed").clicked() {
                 self.seed = if self.seed < MOST { self.seed + 1 } else { 0 };
-                is_rolled = true;
+                is_other = true;
             }
         });
-        is_rolled.then(|| self.class.of_seed(self.seed))
+        is_other.then(|| self.class.of_seed(self.seed))
     }
 }

@@ -1,0 +1,40 @@
+//! Searches within a strategy: each as a run of its own, that is never over.
+
+use std::sync::Arc;
+
+use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::settings::{RestartKind, StrategyKind};
+use crate::genome::Genome;
+
+/// Random genomes with which a search begins that is not around a genome; in a short run a quarter of its evaluations.
+const NEWBORNS: u32 = 100;
+
+/// A search by CMA-ES or, where bodies evolve, by the genetic algorithm over bodies.
+pub struct InnerSearch<'a> {
+    /// Candidates of a generation.
+    pub population: u32,
+    /// First step of CMA-ES, as a share of each gene's range.
+    pub step: f32,
+    pub seed: u64,
+    /// The genome around which it begins; none for random ones.
+    pub around: Option<&'a Genome>,
+}
+
+impl InnerSearch<'_> {
+    /// Its plan, in the world and with the genomes of a run.
+    pub fn plan(&self, run: &RunPlan) -> RunPlan {
+        let mut settings = run.settings.clone();
+        let most = u32::try_from(run.settings.evolution.budget() / 4).unwrap_or(u32::MAX);
+        let evolution = &mut settings.evolution;
+        evolution.strategy =
+            if settings.genome.bodies.vary { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
+        evolution.population = self.population;
+        // It is never over.
+        evolution.generations = 10_000;
+        evolution.cma_es.step = self.step;
+        evolution.cma_es.newborns = NEWBORNS.min(most);
+        evolution.cma_es.restarts = RestartKind::None;
+        let founder = self.around.map(|genome| Arc::new(Founder::new("agent", genome.clone())));
+        RunPlan { founder, ..RunPlan::new(&run.preset, self.seed, settings) }
+    }
+}
