@@ -95,15 +95,14 @@ impl StairsPanel {
             let drawn = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
             edit = Some(Edit::complete(drawn));
         }
-        ui.add_space(theme::GAP / 2.0);
-        let listed = table(ui, &stairs, self.pointed);
-        pointed = pointed.or(listed.pointed);
-        edit = listed.edit.or(edit);
         let hint =
             "Width, landing, nosing and the other settings of the stairs, in the World panel";
         if ui.button("More settings").on_hover_text(hint).clicked() {
             commands.push(Command::Window(WindowCommand::FindSetting("Stairs")));
         }
+        let listed = table(ui, &stairs, self.pointed);
+        pointed = pointed.or(listed.pointed);
+        edit = listed.edit.or(edit);
         if pointed != self.pointed {
             self.pointed = pointed;
             ui.ctx().request_repaint();
@@ -176,8 +175,11 @@ impl StairsPanel {
             Err(error) => self.problem = Some(format!("Not possible: {error}.")),
         }
         if edit.is_complete {
-            let draft = self.draft.take();
-            commands.extend(draft.and_then(|stairs| replacement(run.next_settings(), &stairs)));
+            if let Some(stairs) = self.draft.take() {
+                commands.extend(replacement(run.next_settings(), &stairs));
+                // The reason why it went no further stays.
+                self.before = Some(stairs);
+            }
         }
     }
 }

@@ -7,8 +7,6 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
 
-/// Greatest height of the table, in points; more rows are scrolled.
-const MOST_HEIGHT: f32 = 320.0;
 /// Change of a value for each point that its field is dragged, in metres.
 const SPEED_M: f32 = 0.01;
 
@@ -31,46 +29,44 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
         }
         return listed;
     }
-    egui::ScrollArea::vertical().id_salt("steps").max_height(MOST_HEIGHT).show(ui, |ui| {
-        egui::Grid::new("steps").num_columns(5).spacing([theme::GAP, 2.0]).show(ui, |ui| {
-            for heading in ["Step", "Rise", "Tread", "Top"] {
-                explain(ui, heading);
+    egui::Grid::new("steps").num_columns(5).spacing([theme::GAP, 2.0]).show(ui, |ui| {
+        for heading in ["Step", "Rise", "Tread", "Top"] {
+            explain(ui, heading);
+        }
+        ui.end_row();
+        for step in 0..stairs.steps {
+            let number = step + 1;
+            let is_lit = pointed == Some(step);
+            let mut text = egui::RichText::new(number.to_string());
+            if is_lit {
+                text = text.color(theme::of(ui).accent).strong();
+            }
+            let row = ui.label(text);
+            let (rise_m, tread_m) = (stairs.step_rise_m(step), stairs.step_tread_m(step));
+            let rise = length(ui, rise_m, &format!("Rise of step {number}"), -5.0..=5.0);
+            let tread = length(ui, tread_m, &format!("Tread of step {number}"), 0.1..=20.0);
+            let edit = |changed: Changed, of: fn(&Stairs, u32, f32) -> Stairs| {
+                let stairs = of(stairs, step, changed.length_m);
+                Edit { stairs, is_complete: changed.is_complete }
+            };
+            let changed = rise.map(|rise| edit(rise, Stairs::with_step_rise));
+            let changed =
+                changed.or_else(|| tread.map(|tread| edit(tread, Stairs::with_step_tread)));
+            listed.edit = changed.or(listed.edit.take());
+            explain(ui, &format!("{:.2} m", stairs.height_m(number)));
+            let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
+            if copied {
+                listed.edit = Some(Edit::complete(stairs.with_step_copied(step)));
+            }
+            if removed {
+                listed.edit = Some(Edit::complete(stairs.without_step(step)));
+            }
+            let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), row.rect.y_range());
+            if ui.rect_contains_pointer(line) {
+                listed.pointed = Some(step);
             }
             ui.end_row();
-            for step in 0..stairs.steps {
-                let number = step + 1;
-                let is_lit = pointed == Some(step);
-                let mut text = egui::RichText::new(number.to_string());
-                if is_lit {
-                    text = text.color(theme::of(ui).accent).strong();
-                }
-                let row = ui.label(text);
-                let (rise_m, tread_m) = (stairs.step_rise_m(step), stairs.step_tread_m(step));
-                let rise = length(ui, rise_m, &format!("Rise of step {number}"), -5.0..=5.0);
-                let tread = length(ui, tread_m, &format!("Tread of step {number}"), 0.1..=20.0);
-                let edit = |changed: Changed, of: fn(&Stairs, u32, f32) -> Stairs| {
-                    let stairs = of(stairs, step, changed.length_m);
-                    Edit { stairs, is_complete: changed.is_complete }
-                };
-                let changed = rise.map(|rise| edit(rise, Stairs::with_step_rise));
-                let changed =
-                    changed.or_else(|| tread.map(|tread| edit(tread, Stairs::with_step_tread)));
-                listed.edit = changed.or(listed.edit.take());
-                explain(ui, &format!("{:.2} m", stairs.height_m(number)));
-                let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
-                if copied {
-                    listed.edit = Some(Edit::complete(stairs.with_step_copied(step)));
-                }
-                if removed {
-                    listed.edit = Some(Edit::complete(stairs.without_step(step)));
-                }
-                let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), row.rect.y_range());
-                if ui.rect_contains_pointer(line) {
-                    listed.pointed = Some(step);
-                }
-                ui.end_row();
-            }
-        });
+        }
     });
     listed
 }
@@ -106,7 +102,7 @@ fn length(
     let field = egui::DragValue::new(&mut changed_m)
         .speed(SPEED_M)
         .range(range)
-        .max_decimals(3)
+        .custom_formatter(|length_m, _| short(length_m))
         .suffix(" m")
         .update_while_editing(false);
     let response = ui.add(field);
@@ -115,4 +111,10 @@ fn length(
     let is_complete = !response.dragged();
     let is_new = response.changed() || response.drag_stopped();
     is_new.then_some(Changed { length_m: changed_m, is_complete })
+}
+
+/// A length in metres, without zeros at its end.
+fn short(length_m: f64) -> String {
+    let text = format!("{length_m:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
