@@ -81,6 +81,7 @@ impl ChampionsPanel {
         commands: &mut Vec<Command>,
     ) {
         let ReportSummary { champions, best, better } = self.summary(reports);
+        let has_better_only = reports.first().is_some_and(|report| report.stairs.is_some());
         self.climbs.poll();
         ui.horizontal_wrapped(|ui| {
             for (name, hint, is_on, needed, command) in [
@@ -126,15 +127,24 @@ impl ChampionsPanel {
             if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
                 commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
             }
-            let hint =
-                "List only the generations whose best snake beat those of all generations before";
-            check_box(ui, &mut self.lists_better_only, "Better ones only").on_hover_text(hint);
+            let name = "Better ones only";
+            if has_better_only {
+                let hint = "A run whose stairs evolve keeps only the snakes that beat those of all generations before";
+                ui.add_enabled_ui(false, |ui| check_box(ui, &mut true, name))
+                    .inner
+                    .on_disabled_hover_text(hint);
+            } else {
+                let hint =
+                    "List only the generations whose best snake beat those of all generations before";
+                check_box(ui, &mut self.lists_better_only, name).on_hover_text(hint);
+            }
         });
+        let lists_better_only = self.lists_better_only || has_better_only;
         if reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }
         let height = theme::CHAMPION_ROW_HEIGHT;
-        let listed = if self.lists_better_only { better.len() } else { reports.len() };
+        let listed = if lists_better_only { better.len() } else { reports.len() };
         let rows = opening.len() + listed;
         let width = rows_width(ui);
         heads(ui, width);
@@ -158,7 +168,7 @@ impl ChampionsPanel {
                 }
                 // The newest generation is listed first.
                 let from_end = listed - 1 - (index - opening.len());
-                let place = if self.lists_better_only { better[from_end] } else { from_end };
+                let place = if lists_better_only { better[from_end] } else { from_end };
                 let Some(report) = reports.get(place) else { continue };
                 let generation = report.generation;
                 let name = format!("Generation {generation}");
@@ -376,5 +386,39 @@ mod tests {
         harness.run();
         let command = Command::Stage(StageCommand::Show(Pick::Generation(3)));
         assert_eq!(*harness.state(), [command]);
+    }
+    #[test]
+    fn of_a_run_whose_stairs_evolve_only_generations_with_a_champion_are_listed() {
+        let mut settings = Settings::default();
+        settings.evolution.population = 4;
+        settings.trial.duration_s = 0.5;
+        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
+        let pool = LocalPool::new(1).expect("threads");
+        let first = experiment.run_generation(&pool, &RunControl::default()).expect("done");
+        let stairs =
+            crate::save::StairsCount { rounds: 1, all: 1, active: 1, solved: 0, challenges: 0 };
+        let report = |generation: u32| {
+            let mut report = GenerationReport { generation, stairs: Some(stairs), ..first.clone() };
+            report.champion = report.champion.filter(|_| generation != 2).map(|mut champion| {
+                champion.origin.generation = generation;
+                champion
+            });
+            report
+        };
+        let reports = [1, 2, 3].map(report);
+        let mut panel = ChampionsPanel::default();
+        let mut harness = Harness::builder().with_size(egui::vec2(360.0, 400.0)).build_ui_state(
+            |ui, commands: &mut Vec<Command>| {
+                panel.ui(ui, &[], &reports, &[], |_| 2, false, commands);
+            },
+            Vec::new(),
+        );
+        harness.run();
+        for (name, is_listed) in
+            [("Generation 1", true), ("Generation 2", false), ("Generation 3", true)]
+        {
+            assert_eq!(harness.query_by_label_contains(name).is_some(), is_listed, "{name}");
+        }
+        assert!(harness.query_by_label_contains("disqualified").is_none());
     }
 }
