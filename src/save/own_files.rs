@@ -63,8 +63,8 @@ impl SavesFolder {
         self.path().join(T::FOLDER)
     }
 
-    /// The user's own files of a kind by name, damaged ones included; none if their folder does not exist.
-    pub fn own_files<T: OwnKind>(&self) -> Vec<OwnFile<T>> {
+    /// The names of all of the user's own files of a kind, sorted; none if their folder does not exist.
+    fn own_names<T: OwnKind>(&self) -> Vec<String> {
         let Ok(entries) = fs::read_dir(self.own_folder::<T>()) else { return Vec::new() };
         let mut names: Vec<String> = entries
             .flatten()
@@ -73,12 +73,17 @@ impl SavesFolder {
             .filter(|name| !name.starts_with('.'))
             .collect();
         names.sort();
-        names.truncate(MAX_OWN_FILES);
+        names
+    }
+
+    /// The first of the user's own files of a kind by name, damaged ones included.
+    pub fn own_files<T: OwnKind>(&self) -> Vec<OwnFile<T>> {
+        let names = self.own_names::<T>().into_iter().take(MAX_OWN_FILES);
         let read = |name: String| {
             let content = read_own(&self.own_path::<T>(&name), &name);
             OwnFile { name, content: content.map_err(|error| error.to_string()) }
         };
-        names.into_iter().map(read).collect()
+        names.map(read).collect()
     }
 
     /// Adds a file to the user's own; never overwrites one.
@@ -133,19 +138,19 @@ fn read_own<T: OwnKind>(path: &Path, name: &str) -> Result<T, SaveError> {
 pub struct KnownFiles<T> {
     built_in: Vec<T>,
     own: Vec<OwnFile<T>>,
-}
-
-impl<T> Default for KnownFiles<T> {
-    fn default() -> Self {
-        Self { built_in: Vec::new(), own: Vec::new() }
-    }
+    /// The names of all own ones, also of those that are too many to be listed.
+    own_names: Vec<String>,
 }
 
 impl<T: OwnKind> KnownFiles<T> {
     /// Reads all of them; damaged own ones are included with their errors.
     pub fn read(saves: &SavesFolder) -> Self {
         // The built-in ones are well-formed; tests check this.
-        Self { built_in: T::built_in().unwrap_or_default(), own: saves.own_files() }
+        Self {
+            built_in: T::built_in().unwrap_or_default(),
+            own: saves.own_files(),
+            own_names: saves.own_names::<T>(),
+        }
     }
 
     /// The built-in ones, in their order.
@@ -172,7 +177,7 @@ impl<T: OwnKind> KnownFiles<T> {
 
     /// Whether one, damaged or not, has this name.
     pub fn has(&self, name: &str) -> bool {
-        !matches!(self.find(name), Ok(None))
+        !matches!(self.find(name), Ok(None)) || self.own_names.iter().any(|own| own == name)
     }
 
     /// The problem with a name for a new one, in a sentence; `None` if it is allowed and free.
@@ -322,6 +327,20 @@ mod tests {
         let error = known.find("torn").expect_err("damaged");
         assert!(error.contains("damaged or incomplete"), "{error}");
         assert_eq!(known.find("missing"), Ok(None));
+    }
+
+    #[test]
+    fn files_beyond_those_that_are_listed_keep_their_names() {
+        let (_folder, saves) = saves();
+        let folder = saves.own_folder::<NamedStairs>();
+        fs::create_dir_all(&folder).expect("created");
+        for number in 0..MAX_OWN_FILES {
+            fs::write(folder.join(format!("a{number}.ron")), "").expect("written");
+        }
+        saves.store_own(&stairs("z")).expect("written");
+        let known = KnownFiles::<NamedStairs>::read(&saves);
+        assert_eq!((known.own().len(), known.find("z")), (MAX_OWN_FILES, Ok(None)));
+        assert_eq!(known.allowed_name("z"), "z-2");
     }
 
     #[test]

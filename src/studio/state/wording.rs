@@ -1,11 +1,13 @@
 //! Short descriptions of changed settings, for titles and labels.
 
 use crate::evolve::Settings;
-use crate::schema::list;
+use crate::schema::{ListedSetting, SettingKind, SettingValue, list};
 use crate::score::Trial;
 
 /// Maximum number of settings named in a description; more are counted.
 const MOST_NAMED: usize = 2;
+/// Maximum number of values of a setting for single parts that are named.
+const MOST_VALUES: usize = 5;
 
 /// Description of the differences between two worlds: "friction 0.5, rise 0.7".
 pub(crate) fn world_in_words(original: &Trial, changed: &Trial) -> String {
@@ -17,14 +19,29 @@ pub(crate) fn world_in_words(original: &Trial, changed: &Trial) -> String {
 pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> String {
     let (before, mut after) = (list(original), list(changed));
     after.sort_by(|a, b| a.path.cmp(&b.path));
+    let is_of_stairs = |listed: &ListedSetting| listed.path.starts_with("trial.stairs.");
+    let differs = |listed: &ListedSetting| {
+        !before.iter().any(|before| before.path == listed.path && before.value == listed.value)
+    };
+    let stairs = after.iter().filter(|listed| is_of_stairs(listed) && differs(listed)).count();
     let mut other: Vec<String> = after
         .into_iter()
         .filter_map(|listed| {
+            if stairs > 1 && is_of_stairs(&listed) {
+                return differs(&listed).then(|| "other stairs".to_owned());
+            }
             let was = before.iter().find(|before| before.path == listed.path);
             let name = listed.setting.short_name();
             match was {
                 Some(was) if was.value == listed.value => None,
-                Some(_) => Some(format!("{name} {}", listed.setting.value_in_words(&listed.value))),
+                Some(_) => Some(match (&listed.value, listed.setting.kind) {
+                    (SettingValue::List(values), SettingKind::Number(range))
+                        if values.len() > MOST_VALUES =>
+                    {
+                        format!("{name} of each {}", range.parts.word())
+                    }
+                    _ => format!("{name} {}", listed.setting.value_in_words(&listed.value)),
+                }),
                 // A new group is named as a whole.
                 None => {
                     Some(format!("separate {}", listed.path.rsplit('.').nth(1).unwrap_or(&name)))
@@ -52,5 +69,21 @@ mod tests {
         assert_eq!(changes_in_words(&original, &limits), "bend limit 57.3°");
         let rise = with_field(&original, "rise_m", "0.7").expect("allowed");
         assert_eq!(changes_in_words(&original, &rise), "rise 0.7");
+    }
+
+    #[test]
+    fn long_lists_and_other_stairs_are_not_spelled_out() {
+        let original = Settings::default();
+        let list = format!("[{}0.7]", "0.5, ".repeat(9));
+        let uneven = with_field(&original, "rise_m", &list).expect("allowed");
+        assert_eq!(changes_in_words(&original, &uneven), "rise of each step");
+        let damping = with_field(&original, "joint_damping_nms_per_rad", "[30, 30, 20, 10]");
+        let damping = damping.expect("allowed");
+        let words = changes_in_words(&original, &damping);
+        assert!(words.starts_with("joint damping [30, 30, 20, 10]"), "{words}");
+        let nosing = with_field(&uneven, "nosing_m", "0.1").expect("allowed");
+        assert_eq!(changes_in_words(&original, &nosing), "other stairs");
+        let friction = with_field(&nosing, "surface.friction", "0.5").expect("allowed");
+        assert_eq!(changes_in_words(&original, &friction), "other stairs, friction 0.5");
     }
 }

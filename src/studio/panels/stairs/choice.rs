@@ -80,18 +80,16 @@ pub(super) fn name_of<'r>(run: &'r CurrentRun, stairs: &Stairs) -> Option<&'r st
 
 /// The command that puts other stairs into the next run; none if it has them already.
 pub(super) fn replacement(settings: &Settings, stairs: &Stairs) -> Option<Command> {
-    let changes = changes(settings, stairs);
-    (!changes.is_empty()).then_some(Command::Plan(PlanCommand::SetFields(changes)))
+    let is_new = settings.trial.stairs != *stairs;
+    is_new.then(|| Command::Plan(PlanCommand::SetFields(changes(settings, stairs))))
 }
 
-/// The changes of settings that lead to these stairs.
+/// The settings of these stairs, all of them: the snake on the stage may stand on others than those of the next run.
 fn changes(settings: &Settings, stairs: &Stairs) -> Vec<(String, String)> {
     let mut changed = settings.clone();
     changed.trial.stairs = stairs.clone();
-    let now = fields(settings);
-    let differs =
-        |field: &(String, String)| field.0.starts_with("trial.stairs.") && !now.contains(field);
-    fields(&changed).into_iter().filter(differs).collect()
+    let is_of_stairs = |field: &(String, String)| field.0.starts_with("trial.stairs.");
+    fields(&changed).into_iter().filter(is_of_stairs).collect()
 }
 
 #[cfg(test)]

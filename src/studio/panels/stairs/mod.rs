@@ -74,7 +74,21 @@ impl StairsPanel {
         self.forget_what_is_over(ui, &next.stairs);
         let stairs = self.draft.clone().unwrap_or_else(|| next.stairs.clone());
         title_and(ui, "Stairs", |ui| undo_buttons(ui, history, commands));
-        explain(ui, "The stairs of the next run. The stage shows each change beside the original.");
+        let strategy = run.next_settings().evolution.strategy.info();
+        if strategy.evolves_stairs {
+            let title = strategy.title;
+            explain(
+                ui,
+                &format!(
+                    "{title} makes its own stairs. It begins with the number of steps, the mean tread and the width of these."
+                ),
+            );
+        } else {
+            explain(
+                ui,
+                "The stairs of the next run. The stage shows each change beside the original.",
+            );
+        }
         self.files(ui, run, lane, commands);
         let profile = Profile {
             stairs: &stairs,
