@@ -1,6 +1,6 @@
 //! Settings of POET.
 
-use super::size::{GenomeSize, LARGEST_SAMPLE, LARGEST_STATE_GENES};
+use super::size::{GenomeSize, LARGEST_GENERATION_GENES, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 use crate::check::Invalid;
 use crate::schema::{number, setting_group, switch, whole};
 
@@ -115,6 +115,10 @@ impl PoetSettings {
         let at_once = self.pairs * self.pair_candidates.max(self.pairs);
         let field = "evolution.poet.pairs";
         size.check_count(field, at_once, size.genes(), LARGEST_SAMPLE)?;
+        // Mutants are compared on all agents, and on a copy of the first one of each staircase.
+        let compared = self.children * (self.pairs + Self::MOST_STAIRS as u32);
+        let children = "evolution.poet.children";
+        size.check_count(children, compared, size.genes(), LARGEST_GENERATION_GENES)?;
         // Each staircase has an agent and a copy of its first one.
         let kept = 2 * Self::MOST_STAIRS as u32 + self.pairs * self.pair_candidates;
         size.check_count(field, kept, size.genes(), LARGEST_STATE_GENES)

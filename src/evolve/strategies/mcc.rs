@@ -27,7 +27,7 @@ use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
 use crate::genome::{Genome, StairsChange, StairsGenome};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
-use state::{Beginning, MccProgress};
+use state::{FirstSearch, MccProgress};
 
 /// Candidates of a generation of the search for the first snakes.
 const CANDIDATES: u32 = 30;
@@ -43,21 +43,21 @@ pub struct Mcc<S> {
     /// The next generation; the first is 1.
     generation: u32,
     progress: MccProgress<S>,
-    /// The candidates of the next generation, which follow from the progress.
-    batch: Vec<Candidate>,
+    /// The attempts of the next generation, which follow from the progress.
+    batch: Vec<Attempt>,
 }
 
 /// A genome to evaluate, and its stairs.
 #[derive(Debug, Clone)]
-struct Candidate {
+struct Attempt {
     genome: Genome,
     stairs: StairsGenome,
-    role: Role,
+    kind: AttemptKind,
 }
 
-/// What is tried with a candidate. Children are numbered within the generation.
+/// What is tried with a attempt. Children are numbered within the generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum AttemptKind {
     /// Whether it is one of the first snakes.
     First,
     /// Whether a child of a snake climbs stairs of the queue.
@@ -78,11 +78,11 @@ impl<S: Strategy> Mcc<S> {
         &self.plan.settings.evolution.mcc
     }
 
-    /// The candidates of the next generation.
-    fn next_batch(&self) -> Vec<Candidate> {
+    /// The attempts of the next generation.
+    fn next_batch(&self) -> Vec<Attempt> {
         if let Some(beginning) = &self.progress.beginning {
             let stairs = self.progress.nodes[0].stairs;
-            let first = |genome| Candidate { genome, stairs, role: Role::First };
+            let first = |genome| Attempt { genome, stairs, kind: AttemptKind::First };
             return beginning.search.ask().into_iter().map(first).collect();
         }
         let mut all = self.children_of_snakes();
@@ -91,7 +91,7 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Each child of the snakes whose turn it is on all stairs that may still be used.
-    fn children_of_snakes(&self) -> Vec<Candidate> {
+    fn children_of_snakes(&self) -> Vec<Attempt> {
         let MccProgress { snakes, snake_turn, .. } = &self.progress;
         let open: Vec<u32> = self.progress.active().filter(|node| self.has_uses(*node)).collect();
         let mut all = Vec::new();
@@ -102,10 +102,10 @@ impl<S: Strategy> Mcc<S> {
             let parent = &snakes[(snake_turn + child) as usize % snakes.len()];
             let individual = all.len() as u32;
             let genome = self.child_of(&parent.genome, individual);
-            all.extend(open.iter().map(|&node| Candidate {
+            all.extend(open.iter().map(|&node| Attempt {
                 genome: genome.clone(),
                 stairs: self.progress.nodes[node as usize].stairs,
-                role: Role::Snake { child, node },
+                kind: AttemptKind::Snake { child, node },
             }));
         }
         all
@@ -137,7 +137,7 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Each mutant of the stairs whose turn it is with all snakes.
-    fn mutants_of_stairs(&self) -> Vec<Candidate> {
+    fn mutants_of_stairs(&self) -> Vec<Attempt> {
         let MccProgress { snakes, nodes, stairs_turn, .. } = &self.progress;
         let active: Vec<u32> = self.progress.active().collect();
         let longest_m = self.plan.settings.trial.stairs.treads_m().max(nodes[0].stairs.length_m());
@@ -153,10 +153,10 @@ impl<S: Strategy> Mcc<S> {
             if nodes.iter().any(|node| node.stairs == stairs) {
                 continue;
             }
-            all.extend((0..).zip(snakes).map(|(snake, of)| Candidate {
+            all.extend((0..).zip(snakes).map(|(snake, of)| Attempt {
                 genome: of.genome.clone(),
                 stairs,
-                role: Role::Stairs { child, parent, snake },
+                kind: AttemptKind::Stairs { child, parent, snake },
             }));
         }
         all
@@ -170,7 +170,7 @@ impl<S: Strategy> Mcc<S> {
     /// Takes the evaluations of the search for the first snakes.
     fn after_first(&mut self, evaluations: &[Evaluation]) {
         let genomes: Vec<Genome> =
-            self.batch.iter().map(|candidate| candidate.genome.clone()).collect();
+            self.batch.iter().map(|attempt| attempt.genome.clone()).collect();
         let climbing: Vec<bool> = evaluations.iter().map(|of| self.climbs(of)).collect();
         let wanted = self.settings().first_snakes as usize;
         let (generation, mut found) = (self.generation, 0);
@@ -198,7 +198,7 @@ impl<S: Strategy> Mcc<S> {
         beginning.finished += 1;
         beginning.idle = if found > 0 { 0 } else { beginning.idle + 1 };
         if beginning.idle >= PATIENCE {
-            *beginning = Beginning::new(&self.plan, beginning.restarts.saturating_add(1));
+            *beginning = FirstSearch::new(&self.plan, beginning.restarts.saturating_add(1));
         }
     }
 
@@ -207,15 +207,15 @@ impl<S: Strategy> Mcc<S> {
         self.progress.rounds += 1;
         self.progress.pass_turns(self.settings().snake_children, self.settings().stairs_children);
         let batch = std::mem::take(&mut self.batch);
-        let tried: Vec<(u32, &Candidate, &Evaluation)> = (0..)
+        let tried: Vec<(u32, &Attempt, &Evaluation)> = (0..)
             .zip(batch.iter().zip(evaluations))
-            .map(|(individual, (candidate, evaluation))| (individual, candidate, evaluation))
+            .map(|(individual, (attempt, evaluation))| (individual, attempt, evaluation))
             .collect();
-        for of_child in tried.chunk_by(|(_, a, _), (_, b, _)| a.role.is_of_child_of(b.role)) {
-            match of_child.first().map(|(_, candidate, _)| candidate.role) {
-                Some(Role::Snake { .. }) => self.take_snake(of_child),
-                Some(Role::Stairs { parent, .. }) => self.take_stairs(parent, of_child),
-                Some(Role::First) | None => {}
+        for of_child in tried.chunk_by(|(_, a, _), (_, b, _)| a.kind.is_of_child_of(b.kind)) {
+            match of_child.first().map(|(_, attempt, _)| attempt.kind) {
+                Some(AttemptKind::Snake { .. }) => self.take_snake(of_child),
+                Some(AttemptKind::Stairs { parent, .. }) => self.take_stairs(parent, of_child),
+                Some(AttemptKind::First) | None => {}
             }
         }
         self.shorten_queues();
@@ -229,10 +229,10 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Lets a child of a snake enter the queue, if it climbs stairs that may still be used: the least used of those.
-    fn take_snake(&mut self, tried: &[(u32, &Candidate, &Evaluation)]) {
+    fn take_snake(&mut self, tried: &[(u32, &Attempt, &Evaluation)]) {
         let mut least: Option<(u32, u32, f32, u32)> = None;
-        for (individual, candidate, evaluation) in tried {
-            let Role::Snake { node, .. } = candidate.role else { continue };
+        for (individual, attempt, evaluation) in tried {
+            let AttemptKind::Snake { node, .. } = attempt.kind else { continue };
             let trials = &mut self.progress.nodes[node as usize].trials;
             *trials = trials.saturating_add(1);
             let uses = self.progress.uses[node as usize];
@@ -256,15 +256,15 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Lets a mutant of stairs enter the queue, if a snake climbs it.
-    fn take_stairs(&mut self, parent: u32, tried: &[(u32, &Candidate, &Evaluation)]) {
+    fn take_stairs(&mut self, parent: u32, tried: &[(u32, &Attempt, &Evaluation)]) {
         let climbed = tried.iter().filter(|(.., evaluation)| self.climbs(evaluation));
         // Of equals the first.
         let best = climbed.reduce(|a, b| if b.2.fitness > a.2.fitness { b } else { a });
-        let Some((_, candidate, evaluation)) = best else { return };
-        let Role::Stairs { snake, .. } = candidate.role else { return };
+        let Some((_, attempt, evaluation)) = best else { return };
+        let AttemptKind::Stairs { snake, .. } = attempt.kind else { return };
         let MccProgress { nodes, uses, snakes, rounds, .. } = &mut self.progress;
         nodes.push(StairsNode {
-            stairs: candidate.stairs,
+            stairs: attempt.stairs,
             parent: Some(parent),
             born: *rounds,
             archived: None,
@@ -278,8 +278,8 @@ impl<S: Strategy> Mcc<S> {
     }
 }
 
-impl Role {
-    /// Whether two candidates belong to one child.
+impl AttemptKind {
+    /// Whether two attempts belong to one child.
     fn is_of_child_of(self, other: Self) -> bool {
         match (self, other) {
             (Self::Snake { child: a, .. }, Self::Snake { child: b, .. })
@@ -303,7 +303,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
             score: 0.0,
             trials: 0,
         };
-        Self::with(plan, 0, MccProgress::begin(root, Beginning::new(plan, 0)))
+        Self::with(plan, 0, MccProgress::begin(root, FirstSearch::new(plan, 0)))
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
@@ -315,7 +315,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
     }
 
     fn ask(&self) -> Vec<Genome> {
-        self.batch.iter().map(|candidate| candidate.genome.clone()).collect()
+        self.batch.iter().map(|attempt| attempt.genome.clone()).collect()
     }
 
     fn population(&self) -> usize {
@@ -323,15 +323,15 @@ impl<S: Strategy> Strategy for Mcc<S> {
     }
 
     fn stairs(&self) -> Vec<OwnStairs> {
-        let own = |candidate: &Candidate| (candidate.stairs, Arc::new(candidate.stairs.stairs()));
+        let own = |attempt: &Attempt| (attempt.stairs, Arc::new(attempt.stairs.stairs()));
         let mut known: Vec<(StairsGenome, Arc<_>)> = Vec::new();
         let mut all = Vec::with_capacity(self.batch.len());
-        for candidate in &self.batch {
-            let found = known.iter().find(|(genome, _)| *genome == candidate.stairs);
+        for attempt in &self.batch {
+            let found = known.iter().find(|(genome, _)| *genome == attempt.stairs);
             let stairs = match found {
                 Some((_, stairs)) => Arc::clone(stairs),
                 None => {
-                    let (genome, stairs) = own(candidate);
+                    let (genome, stairs) = own(attempt);
                     known.push((genome, Arc::clone(&stairs)));
                     stairs
                 }
@@ -358,16 +358,16 @@ impl<S: Strategy> Strategy for Mcc<S> {
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.plan = plan.clone();
         if let Some(beginning) = &mut self.progress.beginning {
-            beginning.search.apply_settings(&Beginning::<S>::plan(plan, beginning.restarts));
+            beginning.search.apply_settings(&FirstSearch::<S>::plan(plan, beginning.restarts));
         }
         self.shorten_queues();
         self.batch = self.next_batch();
     }
 
     fn parents(&self) -> Vec<Parents> {
-        let of = |candidate: &Candidate| match candidate.role {
-            Role::First => Parents::Distribution,
-            Role::Snake { .. } | Role::Stairs { .. } => Parents::Unknown,
+        let of = |attempt: &Attempt| match attempt.kind {
+            AttemptKind::First => Parents::Distribution,
+            AttemptKind::Snake { .. } | AttemptKind::Stairs { .. } => Parents::Unknown,
         };
         self.batch.iter().map(of).collect()
     }

@@ -13,7 +13,7 @@ use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::rng::{Purpose, stream};
 
 /// The search for the first snakes.
-pub struct Beginning<S> {
+pub struct FirstSearch<S> {
     pub search: S,
     /// Generations that it has finished.
     pub finished: u32,
@@ -23,7 +23,7 @@ pub struct Beginning<S> {
     pub idle: u32,
 }
 
-impl<S: Strategy> Beginning<S> {
+impl<S: Strategy> FirstSearch<S> {
     /// A search that has not begun.
     pub fn new(plan: &RunPlan, restarts: u32) -> Self {
         let search = S::begin(&Self::plan(plan, restarts));
@@ -45,7 +45,7 @@ impl<S: Strategy> Beginning<S> {
 /// Everything that the run has found.
 pub struct MccProgress<S> {
     /// The search for the first snakes; none once they are found.
-    pub beginning: Option<Beginning<S>>,
+    pub beginning: Option<FirstSearch<S>>,
     /// Generations of coevolution.
     pub rounds: u32,
     /// All stairs that ever entered their queue; those that left it are archived.
@@ -73,7 +73,7 @@ struct SavedQueues {
     stairs_turn: u32,
 }
 
-/// [`Beginning`] in a file.
+/// [`FirstSearch`] in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SavedBeginning {
@@ -85,7 +85,7 @@ struct SavedBeginning {
 
 impl<S: Strategy> MccProgress<S> {
     /// The beginning of a run, with its first stairs.
-    pub fn begin(root: StairsNode, beginning: Beginning<S>) -> Self {
+    pub fn begin(root: StairsNode, beginning: FirstSearch<S>) -> Self {
         Self {
             beginning: Some(beginning),
             rounds: 0,
@@ -155,7 +155,7 @@ impl<S: Strategy> MccProgress<S> {
             let SavedBeginning { search, finished, restarts, idle } = beginning;
             let inside = |error: Invalid| error.inside("beginning");
             within("idle", idle, 0..=PATIENCE).map_err(inside)?;
-            let plan = Beginning::<S>::plan(plan, restarts);
+            let plan = FirstSearch::<S>::plan(plan, restarts);
             let search = match finished {
                 0 => S::begin(&plan),
                 _ => S::resume(&plan, finished, &search).map_err(inside)?,
@@ -163,7 +163,7 @@ impl<S: Strategy> MccProgress<S> {
             let evolution = &plan.settings.evolution;
             let most = evolution.population.max(evolution.cma_es.newborns) as usize;
             within("population", search.population(), 1..=most).map_err(inside)?;
-            Ok(Beginning { search, finished, restarts, idle })
+            Ok(FirstSearch { search, finished, restarts, idle })
         });
         Ok(Self {
             beginning: beginning.transpose()?,

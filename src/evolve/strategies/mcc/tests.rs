@@ -20,9 +20,9 @@ fn plan() -> RunPlan {
 }
 
 /// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
-fn evaluate(mcc: &Mcc<CmaEs>, candidate: &Candidate) -> Evaluation {
-    let point = mcc.plan.settings.genome.point_of(&candidate.genome);
-    let target = 0.5 + f64::from(candidate.stairs.rise_m) / 2.4;
+fn evaluate(mcc: &Mcc<CmaEs>, attempt: &Attempt) -> Evaluation {
+    let point = mcc.plan.settings.genome.point_of(&attempt.genome);
+    let target = 0.5 + f64::from(attempt.stairs.rise_m) / 2.4;
     let off = 1.5 * (point[point.len() - 1] - target).abs();
     Evaluation::of_fitness((1.05 - off).clamp(0.0, 1.05) as f32)
 }
@@ -32,7 +32,7 @@ fn advance(mcc: &mut Mcc<CmaEs>) {
     assert!(!genomes.is_empty());
     assert_eq!([mcc.population(), mcc.stairs().len()], [genomes.len(); 2]);
     let evaluations: Vec<Evaluation> =
-        mcc.batch.iter().map(|candidate| evaluate(mcc, candidate)).collect();
+        mcc.batch.iter().map(|attempt| evaluate(mcc, attempt)).collect();
     mcc.tell(&genomes, &evaluations);
 }
 
@@ -61,8 +61,8 @@ fn queues_are_filled_and_shortened_and_every_member_meets_the_criterion() {
         assert_eq!(node.parent.is_none(), index == 0);
         assert!(node.solved.is_some() && node.score >= mcc.settings().criterion);
         let genome = node.agent.as_ref().expect("a snake climbs it").genome.clone();
-        let candidate = Candidate { genome, stairs: node.stairs, role: Role::First };
-        assert_eq!(evaluate(&mcc, &candidate).fitness, node.score);
+        let attempt = Attempt { genome, stairs: node.stairs, kind: AttemptKind::First };
+        assert_eq!(evaluate(&mcc, &attempt).fitness, node.score);
     }
     assert!(uses.iter().all(|uses| *uses <= mcc.settings().uses_of_stairs), "{uses:?}");
     assert!(mcc.progress.snake_turn < 20 && mcc.progress.stairs_turn < 6);
@@ -78,7 +78,7 @@ fn used_up_stairs_let_no_more_snakes_in() {
         .iter_mut()
         .for_each(|uses| *uses = mcc.plan.settings.evolution.mcc.uses_of_stairs);
     mcc.batch = mcc.next_batch();
-    let is_of_snake = |candidate: &Candidate| matches!(candidate.role, Role::Snake { .. });
+    let is_of_snake = |attempt: &Attempt| matches!(attempt.kind, AttemptKind::Snake { .. });
     assert!(!mcc.batch.iter().any(is_of_snake), "no child can enter");
     assert!(!mcc.batch.is_empty(), "mutants of stairs are tried");
     let before = mcc.progress.snakes.clone();
@@ -96,11 +96,11 @@ fn a_child_enters_by_the_least_used_of_the_stairs_that_it_climbs() {
     mcc.progress.uses[least as usize] = 1;
     mcc.batch = mcc.next_batch();
     let genomes = mcc.ask();
-    let is_first = |candidate: &Candidate| matches!(candidate.role, Role::Snake { child: 0, .. });
+    let is_first = |attempt: &Attempt| matches!(attempt.kind, AttemptKind::Snake { child: 0, .. });
     let evaluations: Vec<Evaluation> = mcc
         .batch
         .iter()
-        .map(|candidate| Evaluation::of_fitness(if is_first(candidate) { 1.0 } else { 0.0 }))
+        .map(|attempt| Evaluation::of_fitness(if is_first(attempt) { 1.0 } else { 0.0 }))
         .collect();
     mcc.tell(&genomes, &evaluations);
     assert_eq!(mcc.progress.uses[least as usize], 2);

@@ -46,14 +46,14 @@ pub(super) struct StairsPanel {
 
 /// A change of the stairs by one of the panel's parts.
 #[derive(Debug, Clone, PartialEq)]
-struct Edit {
+struct StairsEdit {
     /// The stairs after it.
     stairs: Stairs,
     /// Whether it is complete, or a drag is still going on.
     is_complete: bool,
 }
 
-impl Edit {
+impl StairsEdit {
     /// A change that is complete.
     fn complete(stairs: Stairs) -> Self {
         Self { stairs, is_complete: true }
@@ -107,7 +107,7 @@ impl StairsPanel {
         if let Some(genome) = self.random.ui(ui) {
             let (first_riser_y_m, landing_m) = (stairs.first_riser_y_m, stairs.landing_m);
             let drawn = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
-            edit = Some(Edit::complete(drawn));
+            edit = Some(StairsEdit::complete(drawn));
         }
         let hint =
             "Width, landing, nosing and the other settings of the stairs, in the World panel";
@@ -180,7 +180,7 @@ impl StairsPanel {
 
     /// Takes a change over: into the draft, and into the next run once it is complete. One that is not allowed leaves
     /// the stairs as they were.
-    fn take(&mut self, edit: Edit, run: &CurrentRun, commands: &mut Vec<Command>) {
+    fn take(&mut self, edit: StairsEdit, run: &CurrentRun, commands: &mut Vec<Command>) {
         match check(&edit.stairs) {
             Ok(()) => {
                 self.problem = None;

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::Edit;
+use super::StairsEdit;
 use crate::plot::Role;
 use crate::score::AgentSettings;
 use crate::studio::ui::theme;
@@ -41,13 +41,13 @@ pub(super) struct Profile<'a> {
 
 /// What the pointer did in the drawing.
 #[derive(Debug, Default)]
-pub(super) struct Drawn {
+pub(super) struct ProfileResponse {
     /// The step whose edge it points at; the lowest is 0.
     pub pointed: Option<u32>,
     /// The edge that is dragged.
     pub grab: Option<Grab>,
     /// A moved edge.
-    pub edit: Option<Edit>,
+    pub edit: Option<StairsEdit>,
 }
 
 /// An edge that is dragged.
@@ -61,12 +61,12 @@ pub(super) struct Grab {
 
 /// From metres to points.
 #[derive(Debug, Clone, Copy)]
-struct Scale {
+struct ProfileScale {
     origin: egui::Pos2,
     points_per_m: f32,
 }
 
-impl Scale {
+impl ProfileScale {
     fn at(self, [y_m, z_m]: [f32; 2]) -> egui::Pos2 {
         self.origin + egui::vec2(y_m, -z_m) * self.points_per_m
     }
@@ -83,7 +83,7 @@ impl Scale {
 
 impl Profile<'_> {
     /// Draws the stairs. An edge that is dragged gives the changed stairs, snapped. `grab` is the edge that was dragged before.
-    pub fn ui(&self, ui: &mut egui::Ui, grab: Option<Grab>) -> Drawn {
+    pub fn ui(&self, ui: &mut egui::Ui, grab: Option<Grab>) -> ProfileResponse {
         let stairs = self.next;
         let [block_m, block_high_m] =
             [self.agent.limb_length_m.at(0), self.agent.limb_height_m.at(0)];
@@ -97,7 +97,7 @@ impl Profile<'_> {
         let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
         let left = area.center().x - long_m * points_per_m / 2.0;
         let origin = egui::pos2(left - from_y_m * points_per_m, area.bottom() - SPACE);
-        let scale = Scale { origin, points_per_m };
+        let scale = ProfileScale { origin, points_per_m };
         let painter = ui.painter().with_clip_rect(area);
         let palette = theme::of(ui);
         painter.rect_filled(area, 4.0, palette.field);
@@ -117,7 +117,7 @@ impl Profile<'_> {
     }
 
     /// The solids of the stairs, and their outline.
-    fn solids(&self, painter: &egui::Painter, scale: Scale, palette: &theme::Palette) {
+    fn solids(&self, painter: &egui::Painter, scale: ProfileScale, palette: &theme::Palette) {
         let stairs = self.stairs;
         let to_y_m = end_y_m(stairs);
         let stone = theme::flat(palette.stair);
@@ -143,7 +143,13 @@ impl Profile<'_> {
     }
 
     /// The steepest stairs that a home may have, as a dashed line over the first edges.
-    fn code_line(&self, ui: &egui::Ui, painter: &egui::Painter, scale: Scale, area: egui::Rect) {
+    fn code_line(
+        &self,
+        ui: &egui::Ui,
+        painter: &egui::Painter,
+        scale: ProfileScale,
+        area: egui::Rect,
+    ) {
         let steepest = BUILDING_CODES.iter().map(BuildingCode::steepest).fold(0.0, f32::max);
         if self.stairs.steps == 0 {
             return;
@@ -168,9 +174,14 @@ impl Profile<'_> {
     }
 
     /// The handles of all steps.
-    fn handles(&self, ui: &mut egui::Ui, scale: Scale, grab: Option<Grab>) -> Drawn {
+    fn handles(
+        &self,
+        ui: &mut egui::Ui,
+        scale: ProfileScale,
+        grab: Option<Grab>,
+    ) -> ProfileResponse {
         let palette = theme::of(ui);
-        let mut drawn = Drawn::default();
+        let mut drawn = ProfileResponse::default();
         for step in 0..self.stairs.steps {
             let handle_m = self.stairs.handle_m(step);
             let at = scale.at(handle_m);
@@ -203,7 +214,7 @@ impl Profile<'_> {
                 let to_m = [y_m + moved_m(0), z_m + moved_m(1)];
                 let stairs = self.next.with_handle_at(step, to_m);
                 let is_complete = response.drag_stopped();
-                drawn.edit = Some(Edit { stairs, is_complete });
+                drawn.edit = Some(StairsEdit { stairs, is_complete });
             } else {
                 let (rise_m, tread_m) =
                     (self.stairs.step_rise_m(step), self.stairs.step_tread_m(step));

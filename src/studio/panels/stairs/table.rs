@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::Edit;
+use super::StairsEdit;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
@@ -16,7 +16,7 @@ pub(super) struct Listed {
     /// The step whose row the pointer is on; the lowest is 0.
     pub pointed: Option<u32>,
     /// A changed, copied or removed step.
-    pub edit: Option<Edit>,
+    pub edit: Option<StairsEdit>,
 }
 
 /// Draws a row for each step, the lowest first.
@@ -25,7 +25,7 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
     if stairs.steps == 0 {
         explain(ui, "Flat ground: there are no steps.");
         if ui.button("Add a step").clicked() {
-            listed.edit = Some(Edit::complete(Stairs { steps: 1, ..stairs.clone() }));
+            listed.edit = Some(StairsEdit::complete(Stairs { steps: 1, ..stairs.clone() }));
         }
         return listed;
     }
@@ -47,7 +47,7 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
             let tread = length(ui, tread_m, &format!("Tread of step {number}"), 0.1..=20.0);
             let edit = |changed: Changed, of: fn(&Stairs, u32, f32) -> Stairs| {
                 let stairs = of(stairs, step, changed.length_m);
-                Edit { stairs, is_complete: changed.is_complete }
+                StairsEdit { stairs, is_complete: changed.is_complete }
             };
             let changed = rise.map(|rise| edit(rise, Stairs::with_step_rise));
             let changed =
@@ -56,10 +56,10 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
             explain(ui, &format!("{:.2} m", stairs.height_m(number)));
             let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
             if copied {
-                listed.edit = Some(Edit::complete(stairs.with_step_copied(step)));
+                listed.edit = Some(StairsEdit::complete(stairs.with_step_copied(step)));
             }
             if removed {
-                listed.edit = Some(Edit::complete(stairs.without_step(step)));
+                listed.edit = Some(StairsEdit::complete(stairs.without_step(step)));
             }
             let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), row.rect.y_range());
             if ui.rect_contains_pointer(line) {
