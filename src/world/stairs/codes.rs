@@ -153,7 +153,8 @@ impl BuildingCode {
             if problem.is_some() {
                 return problem;
             }
-            (rises_mm.clear(), treads_mm.clear());
+            rises_mm.clear();
+            treads_mm.clear();
         }
         None
     }

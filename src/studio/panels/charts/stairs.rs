@@ -88,21 +88,20 @@ fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
         Series::new("descent", Role::Others, Shape::Arrows(descents.collect())),
         Series::new("transfers of snakes", Role::Second, Shape::Arrows(transfers.collect())),
     ];
-    let states: &[(&str, Role, &dyn Fn(&StairsNode) -> bool)] = if has_unsolved {
-        &[
-            ("archived unsolved", Role::Others, &|node| {
-                node.solved.is_none() && node.archived.is_some()
-            }),
-            ("active", Role::Third, &|node| node.solved.is_none() && node.archived.is_none()),
-            ("solved", Role::First, &|node| node.solved.is_some()),
-        ]
-    } else {
-        &[
-            ("removed from the queue", Role::Others, &|node| node.archived.is_some()),
-            ("in the queue", Role::First, &|node| node.archived.is_none()),
-        ]
+    let mut state = |name: &str, role: Role, is_in: &dyn Fn(&StairsNode) -> bool| {
+        series.push(Series::new(name, role, points(is_in)));
     };
-    series.extend(states.iter().map(|(name, role, is_in)| Series::new(name, *role, points(is_in))));
+    if has_unsolved {
+        let is_unsolved = |node: &StairsNode| node.solved.is_none();
+        let is_left = |node: &StairsNode| is_unsolved(node) && node.archived.is_some();
+        state("archived unsolved", Role::Others, &is_left);
+        let is_active = |node: &StairsNode| is_unsolved(node) && node.archived.is_none();
+        state("active", Role::Third, &is_active);
+        state("solved", Role::First, &|node| node.solved.is_some());
+    } else {
+        state("removed from the queue", Role::Others, &|node| node.archived.is_some());
+        state("in the queue", Role::First, &|node| node.archived.is_none());
+    }
     // Empty series need no legend entry.
     series.retain(|series| match &series.shape {
         Shape::Points(points) => !points.is_empty(),

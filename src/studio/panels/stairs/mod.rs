@@ -188,12 +188,12 @@ impl StairsPanel {
             }
             Err(error) => self.problem = Some(format!("Not possible: {error}.")),
         }
-        if edit.is_complete {
-            if let Some(stairs) = self.draft.take() {
-                commands.extend(replacement(run.next_settings(), &stairs));
-                // The reason why it went no further stays.
-                self.before = Some(stairs);
-            }
+        if edit.is_complete
+            && let Some(stairs) = self.draft.take()
+        {
+            commands.extend(replacement(run.next_settings(), &stairs));
+            // The reason why it went no further stays.
+            self.before = Some(stairs);
         }
     }
 }
