@@ -120,7 +120,7 @@ const SHEETS: [Sheet; LESSONS.len()] = [
         steps: &[
             "Begin lesson 9, guess, and watch the race to its end. Fill in the first table.",
             "Choose \"Direct and by a ladder\", guess, and watch both lines. Fill in the second table.",
-            "Open the Stairs panel, build stairs that the snake on the stage just fails to climb, and save them.",
+            "Open the Stairs panel and build stairs that the snake on the stage just fails to climb.",
         ],
         questions: [
             "Why does a search learn nothing from a task that all candidates fail alike?",
