@@ -55,7 +55,7 @@ struct Attempt {
     kind: AttemptKind,
 }
 
-/// What is tried with a attempt. Children are numbered within the generation.
+/// The purpose of an attempt. Children are numbered within the generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum AttemptKind {
     /// Whether it is one of the first snakes.

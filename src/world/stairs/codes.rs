@@ -1,4 +1,4 @@
-//! What building codes say about stairs, in the proportions of the real ones.
+//! Rules of building codes for stairs, in the proportions of real ones.
 //!
 //! The snake is a toy of another size than a person, so only proportions can be compared: a rise of 0.5 m stands for one of
 //! 175 mm, where the snake of five blocks would be 3.5 m long.

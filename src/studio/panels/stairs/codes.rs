@@ -1,4 +1,4 @@
-//! The steepness of the stairs, and what building codes say about it.
+//! The steepness of the stairs, and a comparison with building codes.
 
 use bevy_egui::egui;
 

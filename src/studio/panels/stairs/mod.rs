@@ -1,4 +1,4 @@
-//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, random stairs, and what building codes say.
+//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, random stairs, and a comparison with building codes.
 
 mod choice;
 mod codes;

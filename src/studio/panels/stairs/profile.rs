@@ -39,7 +39,7 @@ pub(super) struct Profile<'a> {
     pub pointed: Option<u32>,
 }
 
-/// What the pointer did in the drawing.
+/// The response of the drawing to the pointer.
 #[derive(Debug, Default)]
 pub(super) struct ProfileResponse {
     /// The step whose edge it points at; the lowest is 0.

@@ -10,7 +10,7 @@ use crate::world::Stairs;
 /// Change of a value for each point that its field is dragged, in metres.
 const SPEED_M: f32 = 0.01;
 
-/// What was done in the table.
+/// The response of the table to the user.
 #[derive(Debug, Default)]
 pub(super) struct Listed {
     /// The step whose row the pointer is on; the lowest is 0.
