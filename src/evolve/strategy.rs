@@ -12,7 +12,7 @@ use super::parents::{IndividualId, Parents};
 use super::plan::RunPlan;
 use super::stairs_tree::StairsTree;
 use crate::check::Invalid;
-use crate::genome::Genome;
+use crate::genome::{Genome, StairsGenome};
 use crate::learn::Episode;
 use crate::score::{Evaluation, Trial};
 use crate::world::Stairs;
@@ -117,6 +117,22 @@ pub struct OwnStairs {
 }
 
 impl OwnStairs {
+    /// The stairs of a batch: of each individual its staircase, and its number of perturbed trials. Equal stairs are built once.
+    pub fn of_batch(batch: impl IntoIterator<Item = (StairsGenome, u32)>) -> Vec<Self> {
+        let mut built: Vec<(StairsGenome, Arc<Stairs>)> = Vec::new();
+        let own = |(genome, perturbed): (StairsGenome, u32)| {
+            // Those of a batch mostly follow one another.
+            let known = built.iter().rev().find(|(of, _)| *of == genome);
+            let stairs = known.map(|(_, stairs)| Arc::clone(stairs)).unwrap_or_else(|| {
+                let stairs = Arc::new(genome.stairs());
+                built.push((genome, Arc::clone(&stairs)));
+                stairs
+            });
+            Self { stairs, perturbed }
+        };
+        batch.into_iter().map(own).collect()
+    }
+
     /// A trial on these stairs.
     pub fn on(&self, trial: &Trial) -> Trial {
         let mut trial = trial.on_stairs((*self.stairs).clone());

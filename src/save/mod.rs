@@ -63,7 +63,7 @@ pub use files::{SaveError, hash_of, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
-pub use own_files::{KnownFiles, OwnFile, OwnKind, check_own_name};
+pub use own_files::{KnownFiles, OwnFile, OwnKind};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{load_plan, parse_plan};
 pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
@@ -82,7 +82,6 @@ pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
     NamedStairs, built_in_stairs, built_in_stairs_names, is_stairs_file, load_stairs, parse_stairs,
-    store_stairs,
 };
 pub use stairs_study::StairsStudyRun;
 pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};

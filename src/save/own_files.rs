@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::files::{read_bytes, refuse_link, text_of};
+use super::files::{embedded_names, read_bytes, refuse_link, text_of};
 use super::whole_file::{prepare_folder, write_new};
 use super::{Preset, SaveError, SavesFolder};
 use crate::check::{self, Invalid};
@@ -18,13 +18,22 @@ pub trait OwnKind: Clone {
     /// One of them, in messages: "preset".
     const WORD: &'static str;
 
+    /// The built-in files: each with its name and text.
+    const EMBEDDED: &'static [(&'static str, &'static str)];
+
     /// The built-in ones.
     ///
     /// # Errors
     /// An embedded file is broken; a test prevents this.
-    fn built_in() -> Result<Vec<Self>, SaveError>;
+    fn built_in() -> Result<Vec<Self>, SaveError> {
+        Self::EMBEDDED.iter().map(|(file, text)| Self::parse(Path::new(file), text)).collect()
+    }
+
     /// The names of the built-in ones.
-    fn built_in_names() -> Vec<&'static str>;
+    fn built_in_names() -> Vec<&'static str> {
+        embedded_names(Self::EMBEDDED)
+    }
+
     /// Its name.
     fn name(&self) -> &str;
     /// The same under another name.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-use super::files::{check_format, embedded, embedded_names, parse, pretty, read_text, store_ron};
+use super::files::{check_format, embedded, parse, pretty, read_text, store_ron};
 use super::own_files::OwnKind;
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
@@ -70,12 +70,12 @@ const SHIPPED: &[(&str, &str)] = embedded!["presets";
 /// # Errors
 /// An embedded preset is broken; a test prevents this.
 pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
-    SHIPPED.iter().map(|(file, text)| parse_preset(Path::new(file), text)).collect()
+    Preset::built_in()
 }
 
 /// The names of the shipped presets, the default first.
 pub fn shipped_preset_names() -> Vec<&'static str> {
-    embedded_names(SHIPPED)
+    Preset::built_in_names()
 }
 
 /// Loads a preset by the name of a shipped one, or by the path of a file.
@@ -107,14 +107,7 @@ pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
 impl OwnKind for Preset {
     const FOLDER: &'static str = "presets";
     const WORD: &'static str = "preset";
-
-    fn built_in() -> Result<Vec<Self>, SaveError> {
-        shipped_presets()
-    }
-
-    fn built_in_names() -> Vec<&'static str> {
-        shipped_preset_names()
-    }
+    const EMBEDDED: &'static [(&'static str, &'static str)] = SHIPPED;
 
     fn name(&self) -> &str {
         &self.name

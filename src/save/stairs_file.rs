@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::files::{Header, embedded, embedded_names, parse, pretty, read_text};
+use super::files::{Header, embedded, parse, pretty, read_text};
 use super::own_files::OwnKind;
-use super::whole_file::write_new;
 use crate::check::{self, Invalid, quoted, within};
 use crate::schema;
 use crate::world::Stairs;
@@ -56,12 +55,12 @@ const BUILT_IN: &[(&str, &str)] = embedded!["stairs";
 /// # Errors
 /// An embedded file is broken; a test prevents this.
 pub fn built_in_stairs() -> Result<Vec<NamedStairs>, SaveError> {
-    BUILT_IN.iter().map(|(file, text)| parse_stairs(Path::new(file), text)).collect()
+    NamedStairs::built_in()
 }
 
 /// The names of the built-in stairs.
 pub fn built_in_stairs_names() -> Vec<&'static str> {
-    embedded_names(BUILT_IN)
+    NamedStairs::built_in_names()
 }
 
 /// Loads stairs by the name of built-in ones, or by the path of a file.
@@ -86,25 +85,10 @@ pub fn is_stairs_file(text: &str) -> bool {
     Header::kind_of(text).is_some_and(|kind| kind == KIND)
 }
 
-/// Writes stairs to a new file; never overwrites one.
-///
-/// # Errors
-/// The file exists, or cannot be written.
-pub fn store_stairs(path: &Path, stairs: &NamedStairs) -> Result<(), SaveError> {
-    write_new(path, stairs.text(path)?.as_bytes())
-}
-
 impl OwnKind for NamedStairs {
     const FOLDER: &'static str = "stairs";
     const WORD: &'static str = "staircase";
-
-    fn built_in() -> Result<Vec<Self>, SaveError> {
-        built_in_stairs()
-    }
-
-    fn built_in_names() -> Vec<&'static str> {
-        built_in_stairs_names()
-    }
+    const EMBEDDED: &'static [(&'static str, &'static str)] = BUILT_IN;
 
     fn name(&self) -> &str {
         &self.name

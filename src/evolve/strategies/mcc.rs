@@ -13,8 +13,6 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use rand::Rng;
 
 use super::inner_search::InnerSearch;
@@ -323,22 +321,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
     }
 
     fn stairs(&self) -> Vec<OwnStairs> {
-        let own = |attempt: &Attempt| (attempt.stairs, Arc::new(attempt.stairs.stairs()));
-        let mut known: Vec<(StairsGenome, Arc<_>)> = Vec::new();
-        let mut all = Vec::with_capacity(self.batch.len());
-        for attempt in &self.batch {
-            let found = known.iter().find(|(genome, _)| *genome == attempt.stairs);
-            let stairs = match found {
-                Some((_, stairs)) => Arc::clone(stairs),
-                None => {
-                    let (genome, stairs) = own(attempt);
-                    known.push((genome, Arc::clone(&stairs)));
-                    stairs
-                }
-            };
-            all.push(OwnStairs { stairs, perturbed: 0 });
-        }
-        all
+        OwnStairs::of_batch(self.batch.iter().map(|attempt| (attempt.stairs, 0)))
     }
 
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {

@@ -14,8 +14,6 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use rand::Rng;
 
 use super::inner_search::InnerSearch;
@@ -28,7 +26,6 @@ use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
 use crate::genome::{Genome, StairsGenome};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
-use crate::world::Stairs;
 use batch::Candidate;
 use state::{FineTuned, Pair, Phase, PoetProgress, Proposal};
 
@@ -351,18 +348,8 @@ impl<S: Strategy> Strategy for Poet<S> {
     }
 
     fn stairs(&self) -> Vec<OwnStairs> {
-        let candidates = self.batch();
-        let mut all: Vec<OwnStairs> = Vec::with_capacity(candidates.len());
-        let mut last: Option<(StairsGenome, Arc<Stairs>)> = None;
-        for candidate in &candidates {
-            let stairs = match &last {
-                Some((genome, stairs)) if *genome == candidate.stairs => Arc::clone(stairs),
-                _ => Arc::new(candidate.stairs.stairs()),
-            };
-            last = Some((candidate.stairs, Arc::clone(&stairs)));
-            all.push(OwnStairs { stairs, perturbed: candidate.perturbed });
-        }
-        all
+        let batch = self.batch();
+        OwnStairs::of_batch(batch.iter().map(|candidate| (candidate.stairs, candidate.perturbed)))
     }
 
     fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {

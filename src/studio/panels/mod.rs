@@ -12,7 +12,7 @@ mod lessons;
 mod library;
 mod machines;
 mod on_stage;
-mod own_name;
+mod own_files;
 mod own_stairs_button;
 mod player;
 mod run;

@@ -1,5 +1,7 @@
 //! Tests of minimal criterion coevolution with made-up evaluations.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::evolve::plan::Founder;
 use crate::evolve::settings::{Settings, StrategyKind};

@@ -5,8 +5,8 @@ use bevy_egui::egui;
 use crate::evolve::{Settings, fields};
 use crate::save::NamedStairs;
 use crate::studio::commands::{Command, PlanCommand};
+use crate::studio::panels::own_files::known_files;
 use crate::studio::state::current_run::CurrentRun;
-use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use crate::world::Stairs;
 
@@ -28,23 +28,8 @@ pub(in crate::studio::panels) fn stairs_choice(
         .width(theme::COMBO_WIDTH)
         .height(theme::list_height(ui))
         .show_ui(ui, |ui| {
-            for named in run.known_stairs().built_in() {
-                chosen = choice(ui, named, &named.name, present).or(chosen);
-            }
-            if run.known_stairs().own().is_empty() {
-                return;
-            }
-            ui.separator();
-            explain(ui, "Your stairs");
-            for own in run.known_stairs().own() {
-                match &own.content {
-                    Ok(named) => chosen = choice(ui, named, &own.name, present).or(chosen),
-                    Err(reason) => {
-                        let button = egui::Button::selectable(false, &own.name);
-                        ui.add_enabled(false, button).on_disabled_hover_text(reason);
-                    }
-                }
-            }
+            let known = run.known_stairs();
+            chosen = known_files(ui, known, "Your stairs", present, |named| &named.about);
         });
     let is_on = ui.is_enabled();
     list.response.widget_info(|| {
@@ -58,16 +43,6 @@ pub(in crate::studio::panels) fn stairs_choice(
     if let Some(named) = chosen {
         commands.extend(replacement(settings, &named.stairs));
     }
-}
-
-fn choice<'s>(
-    ui: &mut egui::Ui,
-    named: &'s NamedStairs,
-    name: &str,
-    present: Option<&str>,
-) -> Option<&'s NamedStairs> {
-    let button = ui.selectable_label(present == Some(name), name).on_hover_text(&named.about);
-    button.clicked().then_some(named)
 }
 
 /// The name of known stairs.

@@ -8,7 +8,7 @@ mod table;
 
 use bevy_egui::egui;
 
-use super::own_name::OwnName;
+use super::own_files::OwnName;
 use super::undo_buttons::undo_buttons;
 use crate::schema::check;
 use crate::studio::commands::files::FileCommand;

@@ -4,9 +4,8 @@ use bevy_egui::egui;
 
 use crate::save::{KnownFiles, Preset};
 use crate::studio::commands::{Command, PlanCommand};
-use crate::studio::panels::own_name::OwnName;
+use crate::studio::panels::own_files::{OwnName, known_files};
 use crate::studio::state::current_run::CurrentRun;
-use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
 /// The selection with its text field.
@@ -52,31 +51,12 @@ fn presets(
     chosen: &str,
     commands: &mut Vec<Command>,
 ) {
-    let mut choice = |ui: &mut egui::Ui, name: &str, about: &str| {
-        if ui.selectable_label(name == chosen, name).on_hover_text(about).clicked() {
-            commands.push(Command::Plan(PlanCommand::SetPreset(name.to_owned())));
-        }
-    };
     // Close together, so that all fit into a small window.
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
-    for preset in presets.built_in() {
-        choice(ui, &preset.name, &preset.about);
-    }
-    if presets.own().is_empty() {
-        return;
-    }
-    ui.separator();
-    explain(ui, "Your presets");
-    for own in presets.own() {
-        match &own.content {
-            Ok(preset) => choice(ui, &own.name, &preset.about),
-            Err(reason) => {
-                let button = egui::Button::selectable(false, &own.name);
-                ui.add_enabled(false, button).on_disabled_hover_text(reason);
-            }
-        }
-    }
+    let preset = known_files(ui, presets, "Your presets", Some(chosen), |preset| &preset.about);
+    commands
+        .extend(preset.map(|preset| Command::Plan(PlanCommand::SetPreset(preset.name.clone()))));
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
-//! The name under which settings are saved as a file of the user's own: a preset, or stairs.
+//! Files of a kind that is built in and that users make, too, presets and stairs: their list, and the name of a new one.
 
 use bevy_egui::egui;
 
 use crate::save::{KnownFiles, OwnKind};
 use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
 /// A button that opens a field for a name.
@@ -76,4 +77,39 @@ impl OwnName {
         self.prompt = (!is_cancelled).then_some(prompt);
         None
     }
+}
+
+/// Draws the list of all files of a kind: the built-in ones, then the user's own, with the reason why one cannot be used. Returns
+/// the one that was clicked.
+pub(super) fn known_files<'k, T: OwnKind>(
+    ui: &mut egui::Ui,
+    known: &'k KnownFiles<T>,
+    heading: &str,
+    selected: Option<&str>,
+    about: impl Fn(&T) -> &str,
+) -> Option<&'k T> {
+    let mut clicked = None;
+    let mut choice = |ui: &mut egui::Ui, name: &str, file: &'k T| {
+        let button = ui.selectable_label(selected == Some(name), name);
+        if button.on_hover_text(about(file)).clicked() {
+            clicked = Some(file);
+        }
+    };
+    for file in known.built_in() {
+        choice(ui, file.name(), file);
+    }
+    if !known.own().is_empty() {
+        ui.separator();
+        explain(ui, heading);
+    }
+    for own in known.own() {
+        match &own.content {
+            Ok(file) => choice(ui, &own.name, file),
+            Err(reason) => {
+                let button = egui::Button::selectable(false, &own.name);
+                ui.add_enabled(false, button).on_disabled_hover_text(reason);
+            }
+        }
+    }
+    clicked
 }
