@@ -2,7 +2,7 @@
 
 use super::args::{Args, BodyStudyArgs};
 use super::error::CliError;
-use super::study::Study;
+use super::study::{FIRST_SEED, Study};
 use crate::run::body_study::{Arm, claims, study_records};
 use crate::run::creature_study::{CreatureArm, creature_claims, creature_records};
 use crate::save::load_preset;
@@ -17,7 +17,9 @@ pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
     }
     let BodyStudyArgs { seeds, evaluations, .. } = *wanted;
     let command = "body-study";
-    let study = Study { args, command, seeds, evaluations, name, settings: &settings, preset };
+    let first_seed = FIRST_SEED;
+    let study =
+        Study { args, command, first_seed, seeds, evaluations, name, settings: &settings, preset };
     if wanted.creatures { of_creatures(&study) } else { of_chains(&study) }
 }
 

@@ -90,10 +90,10 @@ pub fn exam(
     print(&table(&suites, &rows))
 }
 
-/// The suites that the user names, all of this program's own if none; and whether the one in MuJoCo is among them.
+/// The suites that the user names, the usual ones if none; and whether the one in MuJoCo is among them.
 fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
     let own: Vec<String> = names.iter().filter(|name| *name != MUJOCO).cloned().collect();
-    let default: &[ExamSuite] = if names.is_empty() { ExamSuite::OPTIONS } else { &[] };
+    let default: &[ExamSuite] = if names.is_empty() { &ExamSuite::USUAL } else { &[] };
     let with_mujoco = |mut invalid: Invalid| {
         invalid.allowed += &format!(", {MUJOCO}");
         invalid
@@ -199,7 +199,7 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
 }
 
 /// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
-/// share of the way that it keeps in each. The held-out stairs have 95 % intervals, and their
+/// share of the way that it keeps in each. In the other engine it has both. The held-out stairs have 95 % intervals, and their
 /// classes have columns if there is no other suite.
 fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     let mut head = vec!["champion".to_owned()];
@@ -218,6 +218,9 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
                     head.extend(StairsClass::names().into_iter().map(str::to_owned));
                 }
             }
+            (ExamSuite::Engine, _) => {
+                head.extend(["landed in the other engine", "kept there"].map(str::to_owned));
+            }
             _ => head.push(suite.choice().name.to_owned()),
         }
     }
@@ -232,11 +235,20 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
         for suite in suites {
             match results.iter().find(|result| result.suite == *suite) {
                 // The suite has no conditions for this champion.
-                None => cells.push("–".to_owned()),
+                None => {
+                    cells.push("–".to_owned());
+                    if *suite == ExamSuite::Engine {
+                        cells.push("–".to_owned());
+                    }
+                }
                 Some(result) if *suite == ExamSuite::HeldOut => {
                     cells.push(with_interval(result.landed, result.trials));
                     let classes = result.classes().into_iter().filter(|_| shows_classes);
                     cells.extend(classes.map(|(_, landed, of)| with_interval(landed, of)));
+                }
+                Some(result) if *suite == ExamSuite::Engine => {
+                    cells.push(format!("{} of {}", result.landed, result.trials));
+                    cells.push(format!("{:.2}", result.kept));
                 }
                 Some(result) if result.each.is_empty() => {
                     cells.push(format!("{} of {}", result.landed, result.trials));
@@ -330,7 +342,7 @@ mod tests {
     fn mujoco_is_examined_only_if_it_is_named() {
         let names =
             |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-        assert_eq!(asked(&[]), Ok((ExamSuite::OPTIONS.to_vec(), false)));
+        assert_eq!(asked(&[]), Ok((ExamSuite::USUAL.to_vec(), false)));
         assert_eq!(asked(&names(&["mujoco"])), Ok((Vec::new(), true)));
         assert_eq!(asked(&names(&["mujoco", "shove"])), Ok((vec![ExamSuite::Shove], true)));
         let error = asked(&names(&["stars"])).expect_err("unknown").to_string();

@@ -9,6 +9,7 @@ mod body_study;
 #[cfg(feature = "cluster")]
 mod cluster;
 mod compare;
+mod engine_study;
 mod error;
 mod evaluators;
 mod exam;
@@ -86,6 +87,7 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::BodyStudy(wanted)) => body_study::body_study(args, wanted),
         Some(Subcommand::PoetStudy(wanted)) => poet_study::poet_study(args, wanted),
         Some(Subcommand::StairsStudy(wanted)) => stairs_study::stairs_study(args, wanted),
+        Some(Subcommand::EngineStudy(wanted)) => engine_study::engine_study(args, wanted),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {
             robust::robust(args, file, *trials, &range.into())

@@ -2,7 +2,7 @@
 
 use super::args::{Args, StairsStudyArgs};
 use super::error::CliError;
-use super::study::Study;
+use super::study::{FIRST_SEED, Study};
 use crate::run::stairs_study::{StairsArm, stairs_claims, stairs_records};
 use crate::save::load_preset;
 
@@ -14,8 +14,17 @@ pub fn stairs_study(args: &Args, wanted: &StairsStudyArgs) -> Result<(), CliErro
         settings.trial.duration_s = duration_s;
     }
     let StairsStudyArgs { seeds, evaluations } = *wanted;
-    let study =
-        Study { args, command: name, seeds, evaluations, name, settings: &settings, preset };
+    let first_seed = FIRST_SEED;
+    let study = Study {
+        args,
+        command: name,
+        first_seed,
+        seeds,
+        evaluations,
+        name,
+        settings: &settings,
+        preset,
+    };
     let (files, runs) = study
         .continued::<StairsArm>(|run| format!("{} of 60 held-out stairs", run.climbed_in_all()))?;
     study.report(files, &stairs_records(&runs), || stairs_claims(&runs))

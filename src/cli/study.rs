@@ -17,14 +17,16 @@ use crate::save::{
     store_study,
 };
 
-/// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
-const FIRST_SEED: u64 = 101;
+/// Seed of the first run of most studies unless one is given: no setting was chosen by it or by those after it.
+pub const FIRST_SEED: u64 = 101;
 
 /// The arguments, the files and the settings of a study.
 pub struct Study<'a> {
     pub args: &'a Args,
     /// The name of its command.
     pub command: &'static str,
+    /// Seed of the first run unless one is given.
+    pub first_seed: u64,
     /// Number of seeds.
     pub seeds: u64,
     /// Evaluations that each run may spend.
@@ -42,7 +44,7 @@ impl Study<'_> {
     /// The runs of all arms, seed by seed, so that an interrupted study has about as many of each.
     fn plans<A: StudyArm>(&self) -> Result<Vec<PlannedArm<A>>, CliError> {
         let mut planned = Vec::new();
-        for seed in seeds_from(self.args.seed_or(FIRST_SEED)?, self.seeds)? {
+        for seed in seeds_from(self.args.seed_or(self.first_seed)?, self.seeds)? {
             for &arm in A::OPTIONS {
                 let plan = arm.plan(self.settings, seed, self.evaluations);
                 planned.push(PlannedArm { arm, plan: plan.map_err(of_size_flag)? });

@@ -49,6 +49,11 @@ impl BodyGenes {
         !self.nodes.is_empty()
     }
 
+    /// Whether these genes make blocks soft.
+    pub fn is_soft(&self) -> bool {
+        self.segments.iter().any(|segment| segment.youngs_modulus_pa.is_some())
+    }
+
     /// Number of blocks of a body of its own; 0 without.
     pub fn block_count(&self) -> usize {
         if self.is_branching() { grow(&self.nodes).len() } else { self.segments.len() }

@@ -57,6 +57,7 @@ fn role(suite: ExamSuite) -> Role {
         ExamSuite::StepRate => Role::Share(0.0),
         ExamSuite::Trials => Role::Share(0.8),
         ExamSuite::HeldOut => Role::Share(0.4),
+        ExamSuite::Engine => Role::Share(0.6),
     }
 }
 

@@ -92,7 +92,7 @@ fn best_of<'a>(experiment: &'a Experiment, plan: &RunPlan) -> Option<&'a Champio
     experiment.best().filter(|best| best.trial.stairs == *goal)
 }
 
-fn run_one(
+pub(super) fn run_one(
     experiment: &mut Experiment,
     plan: &RunPlan,
     mut generation: impl FnMut(&mut Experiment) -> Result<GenerationReport, Cancelled>,

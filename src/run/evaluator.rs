@@ -16,7 +16,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use super::panics::caught;
 use super::run_control::{Cancelled, RunControl};
 use crate::genome::Genome;
-use crate::score::{ExamCondition, ExamEnd, Scored, Trial, score};
+use crate::score::{ExamCondition, ExamEnd, Scored, Trial, score, score_together};
+use crate::world::PhysicsEngine;
 
 /// The result of evaluating one genome; an error is the message of the panic in it.
 pub type EvaluationResult = Result<Scored, String>;
@@ -123,6 +124,34 @@ pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
     caught(|| score(genome, trial))
 }
 
+/// Evaluates genomes on this thread, side by side where their engine does that. After a panic each is evaluated on its own, so that
+/// only the one that caused it fails.
+pub fn evaluate_together(
+    trials: &[Trial],
+    jobs: &[Job<'_>],
+    mut report: impl FnMut(usize, EvaluationResult),
+) {
+    if let [job] = jobs {
+        return report(0, evaluate_caught(job.genome, &trials[job.trial]));
+    }
+    let pairs: Vec<_> = jobs.iter().map(|job| (job.genome, &trials[job.trial])).collect();
+    let mut results: Vec<Option<Scored>> = vec![None; jobs.len()];
+    let _ = caught(|| {
+        score_together(&pairs, |index, scored| results[index] = Some(scored));
+    });
+    for (index, (result, job)) in results.into_iter().zip(jobs).enumerate() {
+        let alone = || evaluate_caught(job.genome, &trials[job.trial]);
+        report(index, result.map_or_else(alone, Ok));
+    }
+}
+
+/// Number of jobs that a thread takes at once where their engine steps several snakes side by side: the share of each thread, or a
+/// part of a large one, so that lanes which end early are filled again, and threads end at about the same time.
+fn jobs_together(jobs: usize, workers: usize) -> usize {
+    let share = jobs.div_ceil(workers.max(1)).max(1);
+    if share <= 32 { share } else { (share / 4).clamp(16, 64) }
+}
+
 /// Evaluates each genome in its trial of `trials`, and returns the results in the order of the jobs. What the evaluator does
 /// not report is evaluated here.
 ///
@@ -190,10 +219,18 @@ impl Evaluator for LocalPool {
         control: &RunControl,
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled> {
+        let side_by_side = trials.iter().all(|trial| trial.physics.engine == PhysicsEngine::Lanes);
+        let many = if side_by_side { jobs_together(jobs.len(), self.workers()) } else { 1 };
+        let mut order: Vec<usize> = (0..jobs.len()).collect();
+        if side_by_side {
+            // Snakes with as many limbs advance together.
+            order.sort_by_key(|&index| jobs[index].genome.body.segments.len());
+        }
         self.0.install(|| {
-            jobs.par_iter().enumerate().try_for_each(|(index, job)| {
+            order.par_chunks(many).try_for_each(|order| {
                 control.wait_while_paused()?;
-                report(index, evaluate_caught(job.genome, &trials[job.trial]));
+                let jobs: Vec<Job<'_>> = order.iter().map(|&index| jobs[index]).collect();
+                evaluate_together(trials, &jobs, |index, result| report(order[index], result));
                 Ok(())
             })
         })

@@ -6,6 +6,7 @@ pub mod bench;
 pub mod body_study;
 pub mod compare;
 pub mod creature_study;
+pub mod engine_study;
 mod evaluator;
 pub mod evaluators;
 pub mod exam;

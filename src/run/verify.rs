@@ -222,6 +222,18 @@ mod tests {
     }
 
     #[test]
+    fn lanes_has_the_same_bits_on_every_processor() {
+        let of_lanes = |processors| -> Vec<Trajectory> {
+            let reference = Trajectories::reference_of(processors).expect("well formed");
+            let all = reference.trajectories.into_iter();
+            all.filter(|trajectory| trajectory.what.starts_with("lanes: ")).collect()
+        };
+        let first = of_lanes(Processors::X86_64);
+        assert!(first.len() >= 10);
+        assert_eq!(of_lanes(Processors::Arm64), first);
+    }
+
+    #[test]
     fn a_changed_hash_changes_the_fingerprint() {
         let reference = Trajectories::reference().expect("well formed");
         let mut other = reference.clone();

@@ -14,6 +14,7 @@ mod checkpoint;
 mod comparison;
 mod copies;
 mod engine_2;
+mod engine_study;
 mod families;
 mod file_structs;
 mod files;
@@ -53,6 +54,7 @@ pub use comparison::{
     store_comparison,
 };
 pub use copies::ChampionCopies;
+pub use engine_study::EngineStudyRun;
 pub use families::{
     FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
     load_families, store_families,

@@ -32,7 +32,7 @@ pub use perturbation::{Perturbation, PerturbationRange, StairsVariation};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::{Evaluation, Rollout};
-pub use scored::{Scored, evaluate, score};
+pub use scored::{Scored, evaluate, score, score_together};
 pub use trial::Trial;
 
 pub use crate::schema::PerPart;

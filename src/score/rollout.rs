@@ -18,8 +18,8 @@ use crate::control::{ActiveSenses, Activity, ControlLoop, Perception};
 use crate::genome::Genome;
 use crate::learn::Episode;
 use crate::world::{
-    BodyPlan, Disqualification, Effort, JointTorque, Pose, Pull, Shove, Simulation, Stairs, Vector,
-    WorldPlan,
+    BodyPlan, Disqualification, Effort, JointTorque, LanesCommon, LockStep, Pose, Pull, Shove,
+    Simulation, Stairs, Vector, WorldPlan,
 };
 use continued::{Conditions, TrialChange};
 
@@ -166,6 +166,28 @@ impl Rollout {
         self.take_step()
     }
 
+    /// Takes one step of each rollout, side by side, with the bits that each has alone. None of them is over, and all their worlds
+    /// have the same [`Simulation::common`].
+    pub(crate) fn advance_together(rollouts: &mut [&mut Self], lock_step: &mut LockStep) {
+        for rollout in rollouts.iter_mut() {
+            rollout.enter_step();
+            rollout.control.act(rollout.step, &rollout.simulation, &mut rollout.torques);
+        }
+        let mut worlds: Vec<_> = rollouts
+            .iter_mut()
+            .map(|rollout| (&mut rollout.simulation, rollout.torques.as_slice()))
+            .collect();
+        let ends = lock_step.step(&mut worlds);
+        for (rollout, end) in rollouts.iter_mut().zip(ends) {
+            rollout.take_in_step(end);
+        }
+    }
+
+    /// What its world must have in common with those beside which it advances; none if its engine takes each step alone.
+    pub(crate) fn common(&self) -> Option<LanesCommon> {
+        self.simulation.common()
+    }
+
     /// The same with torques from outside instead of the genome's controller, one per joint from the head; a joint without
     /// one is not driven. The evaluation then describes the controller outside.
     pub fn advance_with(&mut self, torques: &[JointTorque]) -> bool {
@@ -189,9 +211,15 @@ impl Rollout {
         }
     }
 
-    /// Steps the world with the torques of this step, and takes in the result.
+    /// Steps the world with the torques of this step.
     fn take_step(&mut self) -> bool {
-        if let Err(reason) = self.simulation.step(&self.torques) {
+        let end = self.simulation.step(&self.torques);
+        self.take_in_step(end)
+    }
+
+    /// Takes in the result of a step.
+    fn take_in_step(&mut self, end: Result<(), Disqualification>) -> bool {
+        if let Err(reason) = end {
             self.disqualified = Some(reason);
             return false;
         }

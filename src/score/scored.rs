@@ -1,8 +1,11 @@
 //! Scoring a genome: its evaluation, and the experience of its episode.
 
+use std::collections::VecDeque;
+
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
 use crate::learn::Episode;
+use crate::world::{LANES, LockStep};
 
 /// The outcome of scoring a genome.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,44 +16,226 @@ pub struct Scored {
     pub episode: Option<Episode>,
 }
 
+/// A genome that is being scored: what its trials gave so far.
+struct Scoring<'a> {
+    genome: &'a Genome,
+    trial: &'a Trial,
+    /// The result of the nominal trial, after its end.
+    nominal: Option<Scored>,
+    /// The fitness of each trial that has ended; the nominal one is the first.
+    fitnesses: Vec<Option<f32>>,
+}
+
+/// One of its trials.
+struct TrialRun {
+    /// Its number; the nominal one is 0.
+    number: u32,
+    rollout: Rollout,
+    /// Fitness at its start.
+    at_start: f32,
+}
+
+impl<'a> Scoring<'a> {
+    fn of(genome: &'a Genome, trial: &'a Trial) -> Self {
+        Self { genome, trial, nominal: None, fitnesses: Vec::new() }
+    }
+
+    /// Begins trial number `number`.
+    fn begin(&self, number: u32) -> TrialRun {
+        let (genome, trial) = (self.genome, self.trial);
+        if number == 0 {
+            return TrialRun { number, rollout: Rollout::new(genome, trial), at_start: 0.0 };
+        }
+        let repeats = &trial.repeats;
+        let mut rng = repeats.stream(genome.hash(), number);
+        let perturbation = repeats.off.draw(trial.duration_s, trial.agent.limbs, &mut rng);
+        let rollout = Rollout::perturbed(genome, trial, &perturbation);
+        let at_start = rollout.evaluation().fitness;
+        TrialRun { number, rollout, at_start }
+    }
+
+    /// Takes in the end of a trial.
+    fn take_in(&mut self, run: &mut TrialRun) {
+        let evaluation = run.rollout.evaluation();
+        if run.number == 0 {
+            self.nominal = Some(Scored { evaluation, episode: run.rollout.finish() });
+            let has_others = evaluation.disqualified.is_none();
+            let trials = if has_others { self.trial.repeats.trials.max(1) } else { 1 };
+            self.fitnesses = vec![None; trials as usize];
+        }
+        // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
+        let fitness = if run.number > 0 && evaluation.disqualified.is_some() {
+            run.at_start.min(evaluation.fitness)
+        } else {
+            evaluation.fitness
+        };
+        if let Some(slot) = self.fitnesses.get_mut(run.number as usize) {
+            *slot = Some(fitness);
+        }
+    }
+
+    /// The perturbed trials, which are made if the nominal one ended well; to be asked for after its end.
+    fn perturbed(&self) -> std::ops::Range<u32> {
+        1..self.fitnesses.len() as u32
+    }
+
+    /// The outcome, after the end of all trials.
+    fn outcome(&self) -> Option<Scored> {
+        let fitnesses: Vec<f32> = self.fitnesses.iter().copied().collect::<Option<_>>()?;
+        let nominal = self.nominal.as_ref()?;
+        if fitnesses.len() == 1 {
+            return Some(nominal.clone());
+        }
+        let fitness = self.trial.repeats.counts.of(&fitnesses);
+        let evaluation = Evaluation { fitness, ..nominal.evaluation };
+        Some(Scored { evaluation, episode: nominal.episode.clone() })
+    }
+}
+
 /// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
 /// Of these only the fitness counts: see [`super::Repeats`].
 ///
 /// The perturbations are derived from the genome's own bits, from a fixed seed, or from the number of a generation's list,
 /// which its trial holds. A champion's file is therefore enough to score it again.
 pub fn score(genome: &Genome, trial: &Trial) -> Scored {
-    let mut rollout = Rollout::new(genome, trial);
-    while rollout.advance() {}
-    let nominal = rollout.evaluation();
-    let episode = rollout.finish();
-    let repeats = &trial.repeats;
-    if repeats.trials <= 1 || nominal.disqualified.is_some() {
-        return Scored { evaluation: nominal, episode };
-    }
-    let mut fitnesses = vec![nominal.fitness];
-    let hash = genome.hash();
-    fitnesses.extend((1..repeats.trials).map(|number| {
-        let perturbation = repeats.off.draw(
-            trial.duration_s,
-            trial.agent.limbs,
-            &mut repeats.stream(hash, number),
-        );
-        let mut rollout = Rollout::perturbed(genome, trial, &perturbation);
-        let at_start = rollout.evaluation().fitness;
-        while rollout.advance() {}
-        let evaluation = rollout.evaluation();
-        // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
-        if evaluation.disqualified.is_some() {
-            at_start.min(evaluation.fitness)
-        } else {
-            evaluation.fitness
+    let mut scored = Vec::with_capacity(1);
+    score_together(&[(genome, trial)], |_, found| scored.push(found));
+    // Each job is reported once.
+    scored.remove(0)
+}
+
+/// Scores several genomes, each in its trial, with the results of [`score`]; `report` gets each with its index, in the order in
+/// which they end. Where the physics engine takes steps of several snakes side by side, their trials run so.
+pub fn score_together(jobs: &[(&Genome, &Trial)], mut report: impl FnMut(usize, Scored)) {
+    let mut scorings: Vec<_> =
+        jobs.iter().map(|(genome, trial)| Scoring::of(genome, trial)).collect();
+    // Trials that are still to be made: job, and number of the trial. Those of a genome follow its nominal one.
+    let mut waiting: VecDeque<(usize, u32)> = (0..jobs.len()).map(|job| (job, 0)).collect();
+    let mut lock_step = LockStep::default();
+    let mut together: Vec<(usize, TrialRun)> = Vec::with_capacity(LANES);
+    // One that does not fit beside the others, for whose end it waits.
+    let mut misfit: Option<(usize, TrialRun)> = None;
+    loop {
+        while together.len() < LANES {
+            let common = together.first().map(|(_, run)| run.rollout.common());
+            if common == Some(None) {
+                // This engine takes each step alone.
+                break;
+            }
+            let mut begun = || {
+                let (job, number) = waiting.pop_front()?;
+                Some((job, scorings[job].begin(number)))
+            };
+            let Some(next) = misfit.take().or_else(&mut begun) else { break };
+            if common.is_some_and(|common| common != next.1.rollout.common()) {
+                misfit = Some(next);
+                break;
+            }
+            together.push(next);
         }
-    }));
-    let evaluation = Evaluation { fitness: repeats.counts.of(&fitnesses), ..nominal };
-    Scored { evaluation, episode }
+        if together.is_empty() {
+            return;
+        }
+        advance(&mut together, &mut lock_step);
+        let mut index = 0;
+        while index < together.len() {
+            if !together[index].1.rollout.is_over() {
+                index += 1;
+                continue;
+            }
+            let (job, mut run) = together.swap_remove(index);
+            let scoring = &mut scorings[job];
+            scoring.take_in(&mut run);
+            if run.number == 0 {
+                // Before other genomes, so that results come in about the order of the jobs.
+                scoring.perturbed().rev().for_each(|number| waiting.push_front((job, number)));
+            }
+            if let Some(scored) = scoring.outcome() {
+                report(job, scored);
+            }
+        }
+    }
+}
+
+/// Number of trials from which on a step of all lanes takes less time than a step of each alone.
+const WORTH_A_LOCK_STEP: usize = 3;
+
+/// Advances trials by one step, or, in an engine that takes each step alone, to their ends.
+fn advance(together: &mut [(usize, TrialRun)], lock_step: &mut LockStep) {
+    let rollouts = together.iter_mut().map(|(_, run)| &mut run.rollout);
+    let mut running: Vec<&mut Rollout> = rollouts.filter(|rollout| !rollout.is_over()).collect();
+    if running.first().is_some_and(|rollout| rollout.common().is_none()) {
+        for rollout in running {
+            while rollout.advance() {}
+        }
+    } else if running.len() < WORTH_A_LOCK_STEP {
+        for rollout in running {
+            rollout.advance();
+        }
+    } else {
+        Rollout::advance_together(&mut running, lock_step);
+    }
 }
 
 /// The evaluation of a genome: see [`score`].
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     score(genome, trial).evaluation
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::GenomeSpace;
+    use crate::rng::{Purpose, stream};
+    use crate::score::PerturbationList;
+    use crate::world::PhysicsEngine;
+
+    /// Snakes of three and five limbs in lanes, on stairs in front of them; some are disqualified before their trials end.
+    fn jobs() -> Vec<(Genome, Trial)> {
+        let job = |individual: u32| {
+            let mut trial = Trial { duration_s: 2.0, ..Trial::default() };
+            trial.physics.engine = PhysicsEngine::Lanes;
+            trial.stairs.first_riser_y_m = -2.0;
+            trial.agent.limbs = if individual % 5 == 4 { 3 } else { 5 };
+            if individual % 7 == 3 {
+                (trial.repeats.trials, trial.repeats.list) = (3, PerturbationList::Fixed);
+            }
+            let mut rng = stream(1, 1, individual, Purpose::Birth);
+            (GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng), trial)
+        };
+        (0..30).map(job).collect()
+    }
+
+    fn together(jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
+        let pairs: Vec<_> = jobs.iter().map(|(genome, trial)| (genome, trial)).collect();
+        let mut found = vec![None; jobs.len()];
+        score_together(&pairs, |index, scored| found[index] = Some(scored));
+        found
+    }
+
+    #[test]
+    fn in_lanes_a_snake_has_the_same_bits_alone_and_beside_any_others() {
+        let jobs = jobs();
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        let is_over_early = |scored: &Option<Scored>| {
+            scored.as_ref().is_some_and(|scored| scored.evaluation.disqualified.is_some())
+        };
+        let early = alone.iter().filter(|scored| is_over_early(scored)).count();
+        assert!(early > 3 && early < 27, "{early} of 30 are disqualified");
+        assert_eq!(together(&jobs.iter().collect::<Vec<_>>()), alone);
+        let reversed = together(&jobs.iter().rev().collect::<Vec<_>>());
+        assert_eq!(reversed.into_iter().rev().collect::<Vec<_>>(), alone);
+        for (job, alone) in jobs.iter().zip(&alone).take(3) {
+            assert_eq!(together(&[job]), [alone.clone()]);
+        }
+    }
+
+    #[test]
+    fn rapier_scores_together_what_it_scores_alone() {
+        let mut jobs = jobs();
+        jobs.truncate(6);
+        jobs.iter_mut().for_each(|(_, trial)| trial.physics.engine = PhysicsEngine::Rapier);
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        assert_eq!(together(&jobs.iter().collect::<Vec<_>>()), alone);
+    }
 }

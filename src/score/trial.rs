@@ -4,9 +4,9 @@ use super::{AgentSettings, Behaviour, Evaluation, Fitness, PerturbationList, Rep
 use crate::check::Invalid;
 use crate::genome::{Genome, GenomeShape};
 use crate::schema::{
-    self, Section, SettingGroup, Walk, absent, choice, number, setting_group, settings,
+    self, Choices, Section, SettingGroup, Walk, absent, choice, number, setting_group, settings,
 };
-use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
+use crate::world::{HealthLimits, PhysicsEngine, PhysicsSettings, Stairs, Surface, WorldPlan};
 
 setting_group! {
     /// Place, duration, surfaces, body, and measure of fitness.
@@ -155,6 +155,12 @@ impl Trial {
         if joints != expected {
             let allowed = format!("{expected}, one per joint of {} limbs", body.limbs());
             return Err(Invalid::new("controller joints", format!("{joints} joints"), allowed));
+        }
+        if self.physics.engine == PhysicsEngine::Lanes
+            && let Some(obstacle) = body.obstacle_in_lanes()
+        {
+            let allowed = format!("rapier for this snake, because {obstacle}");
+            return Err(Invalid::new("physics.engine", self.physics.engine.choice().name, allowed));
         }
         if !genome.body.has_own_blocks() {
             self.agent

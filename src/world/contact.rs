@@ -7,7 +7,7 @@ use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
 
 use super::surface::{ContactLaw, ERP_TIME_S, Softness, Spring, spring};
-use super::{PartPlan, PhysicsSettings};
+use super::{PartPlan, PhysicsSettings, WorldPlan};
 
 /// The collider of a contact pair that is not `collider`.
 pub(super) fn other_collider(pair: &ContactPair, collider: ColliderHandle) -> ColliderHandle {
@@ -43,33 +43,56 @@ impl ContactLaws {
     }
 }
 
-/// Sets up the solver for these laws. The springs are computed for the weight of the limb `reference`.
-pub(super) fn soften(
-    parameters: &mut IntegrationParameters,
-    laws: &ContactLaws,
-    physics: &PhysicsSettings,
-    reference: &PartPlan,
-) {
-    let (corner_kg, quarter_kg) = (corner_mass_kg(reference), reference.mass_kg() / 4.0);
-    let soft = |softness| soft_coefficients(softness, physics.substep_s(), corner_kg, quarter_kg);
-    let coefficients = |softness: Softness| {
+/// How a solver makes contacts as soft as these laws say. The springs are computed for the weight of one limb, the reference.
+pub(super) struct ContactSoftness {
+    /// The laws.
+    pub laws: ContactLaws,
+    corner_kg: f32,
+    quarter_kg: f32,
+}
+
+/// The softness of all contacts of a plan, whose middle part is the reference.
+pub(super) fn soft_contacts(plan: &WorldPlan) -> ContactSoftness {
+    let laws = ContactLaws {
+        stairs: ContactLaw::between(&plan.surface, &plan.skin),
+        ground: ContactLaw::between(&plan.ground, &plan.skin),
+        limbs: ContactLaw::within(&plan.skin),
+        joints_are_soft: plan.body.joints.iter().any(|joint| joint.cfm_m_s_per_n > 0.0),
+    };
+    let reference = plan.body.parts.get(plan.body.middle_part);
+    let [corner_kg, quarter_kg] =
+        reference.map_or([1.0; 2], |part| [corner_mass_kg(part), part.mass_kg() / 4.0]);
+    ContactSoftness { laws, corner_kg, quarter_kg }
+}
+
+impl ContactSoftness {
+    /// Rapier's coefficients for contacts of this softness.
+    pub fn of(&self, softness: Softness, physics: &PhysicsSettings) -> SpringCoefficients<Real> {
+        let soft = |softness| {
+            soft_coefficients(softness, physics.substep_s(), self.corner_kg, self.quarter_kg)
+        };
         if softness.is_soft() {
             soft(softness)
-        } else if laws.has_springs() {
+        } else if self.laws.has_springs() {
             // A rigid contact beside soft ones must be a very stiff spring: the solver has one mode for all.
-            let softness = Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness };
-            soft(softness)
+            soft(Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness })
         } else {
             hard_coefficients(softness.erp, physics)
         }
-    };
-    parameters.static_contact_softness = coefficients(laws.stairs.softness);
-    let others = if laws.ground_is_apart() { laws.ground.softness } else { laws.limbs.softness };
-    parameters.contact_softness = coefficients(others);
-    if laws.has_springs() {
-        parameters.num_internal_stabilization_iterations = 0;
-        // A cap on the speed at which a spring pushes back would make it weaker the deeper it is.
-        parameters.normalized_max_corrective_velocity = Real::MAX;
+    }
+
+    /// Sets up rapier's solver.
+    pub fn set_up(&self, parameters: &mut IntegrationParameters, physics: &PhysicsSettings) {
+        let laws = &self.laws;
+        parameters.static_contact_softness = self.of(laws.stairs.softness, physics);
+        let others =
+            if laws.ground_is_apart() { laws.ground.softness } else { laws.limbs.softness };
+        parameters.contact_softness = self.of(others, physics);
+        if laws.has_springs() {
+            parameters.num_internal_stabilization_iterations = 0;
+            // A cap on the speed at which a spring pushes back would make it weaker the deeper it is.
+            parameters.normalized_max_corrective_velocity = Real::MAX;
+        }
     }
 }
 
@@ -212,16 +235,7 @@ fn incoming_m_s(context: &ContactModificationContext) -> f32 {
 }
 
 impl ContactHooks<'_> {
-    /// Lets a contact patch creep at slip times its tangential force, by lowering the friction.
-    ///
-    /// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
-    /// stop a contact or let it slide, so it is told to stop it with no more than the viscous force
-    /// that the end of this step will call for: with u = h / mass and the sliding velocity that the
-    /// patch would have without friction, v + u F (from the last step's F),
-    /// `F' = |v + u F| / (slip + u)`. A steady push P then creeps at slip · P; the roots of
-    /// `x² - x + u / (slip + u)`, the deviations' growth per step, lie within the unit circle for every
-    /// slip. Friction never does more than stop a motion, so it cannot add energy, even where the
-    /// estimates are poor, as in a fall.
+    /// Lets a contact patch creep: see [`SlippingPatch`].
     fn let_slip(&self, slip_m_s_per_n: f32, context: &mut ContactModificationContext) {
         let count = context.solver_contacts.len() as f32;
         if count == 0.0 {
@@ -233,30 +247,27 @@ impl ContactHooks<'_> {
         });
         // The engine keeps the impulses of the last substep: the pressure of each point, but the friction
         // of the whole patch. (Its sum over a step counts a persistent contact once too often.)
-        let per_s = self.substeps as f32 / self.step_s;
         let (mut friction_ns, mut pressed_ns) = (Vector::ZERO, 0.0);
         for point in touching {
             friction_ns += point.data.warmstart_tangent_world;
             pressed_ns += point.data.warmstart_impulse;
         }
-        let (force_n, pressed_n) = (friction_ns * (per_s / count), pressed_ns * per_s);
-
         let anchors = context.solver_contacts.iter().map(|contact| contact.anchor2);
         let centre = anchors.sum::<Vector>() / count;
         let velocity = relative_velocity(context, centre);
         let along_normal = velocity.dot(*context.normal);
-        let sliding = velocity - *context.normal * along_normal;
-
-        let mass_kg = self.limb_mass_kg(context);
-        let per_mass = self.step_s / (mass_kg * PATCH_SHARE_OF_MASS);
-        // Friction opposes the sliding, so that without it the patch slides faster.
-        let free_m_s = (sliding - force_n * per_mass).length();
-        let viscous_n = free_m_s / (slip_m_s_per_n + per_mass);
-        // The impact of a landing patch adds to the pressure.
-        let impact_n = mass_kg * along_normal.max(0.0) / self.step_s;
-        let pressed_n = pressed_n + impact_n;
-        if pressed_n > 0.0 {
-            *context.friction = context.friction.min(viscous_n / pressed_n);
+        let patch = SlippingPatch {
+            friction_ns,
+            points: count,
+            pressed_ns,
+            sliding_m_s: velocity - *context.normal * along_normal,
+            approach_m_s: along_normal,
+            mass_kg: self.limb_mass_kg(context),
+            step_s: self.step_s,
+            substeps: self.substeps,
+        };
+        if let Some(friction) = patch.friction(slip_m_s_per_n) {
+            *context.friction = context.friction.min(friction);
         }
     }
 
@@ -265,6 +276,51 @@ impl ContactHooks<'_> {
         let bodies = [context.rigid_body1, context.rigid_body2];
         let masses = bodies.iter().flatten().map(|body| context.bodies[*body].mass());
         masses.filter(|mass| *mass > 0.0).fold(self.snake_kg, f32::min)
+    }
+}
+
+/// A contact patch that creeps at slip times its tangential force, by a lower friction.
+///
+/// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
+/// stop a contact or let it slide, so it is told to stop it with no more than the viscous force
+/// that the end of this step will call for: with u = h / mass and the sliding velocity that the
+/// patch would have without friction, v + u F (from the last step's F),
+/// `F' = |v + u F| / (slip + u)`. A steady push P then creeps at slip · P; the roots of
+/// `x² - x + u / (slip + u)`, the deviations' growth per step, lie within the unit circle for every
+/// slip. Friction never does more than stop a motion, so it cannot add energy, even where the
+/// estimates are poor, as in a fall.
+pub(super) struct SlippingPatch {
+    /// Sum over its points of the friction that each had in the last substep on the body whose sliding is given, in N·s; each
+    /// point has that of the whole patch.
+    pub friction_ns: Vector,
+    /// Number of its points.
+    pub points: f32,
+    /// Sum of the normal impulses of the points in the last substep, in N·s.
+    pub pressed_ns: f32,
+    /// Velocity along the surface, in m/s.
+    pub sliding_m_s: Vector,
+    /// Speed along the normal towards the surface, in m/s.
+    pub approach_m_s: f32,
+    /// Mass of the limb, in kg.
+    pub mass_kg: f32,
+    pub step_s: f32,
+    pub substeps: u32,
+}
+
+impl SlippingPatch {
+    /// The coefficient of friction that lets it creep; none while nothing presses.
+    pub fn friction(&self, slip_m_s_per_n: f32) -> Option<f32> {
+        let per_s = self.substeps as f32 / self.step_s;
+        let (force_n, pressed_n) =
+            (self.friction_ns * (per_s / self.points), self.pressed_ns * per_s);
+        let per_mass = self.step_s / (self.mass_kg * PATCH_SHARE_OF_MASS);
+        // Friction opposes the sliding, so that without it the patch slides faster.
+        let free_m_s = (self.sliding_m_s - force_n * per_mass).length();
+        let viscous_n = free_m_s / (slip_m_s_per_n + per_mass);
+        // The impact of a landing patch adds to the pressure.
+        let impact_n = self.mass_kg * self.approach_m_s.max(0.0) / self.step_s;
+        let pressed_n = pressed_n + impact_n;
+        (pressed_n > 0.0).then(|| viscous_n / pressed_n)
     }
 }
 

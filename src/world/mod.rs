@@ -11,6 +11,7 @@ mod damping;
 mod effort;
 mod energy;
 mod health;
+mod lanes;
 mod mount;
 mod physics;
 mod pull;
@@ -20,15 +21,17 @@ mod stair_profile;
 mod stairs;
 mod surface;
 mod torque;
+mod turning;
 
 pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan, neighbours_pass};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
+pub(crate) use lanes::Common as LanesCommon;
 pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;
-pub use physics::{PhysicsSettings, STEP_RATES_HZ};
+pub use physics::{PhysicsEngine, PhysicsSettings, STEP_RATES_HZ};
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
@@ -36,7 +39,8 @@ pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{Discontinuity, Shove, Simulation, WorldPlan};
+pub use simulation::{Discontinuity, SeenContact, Shove, Simulation, WorldPlan};
+pub(crate) use simulation::{LANES, LockStep};
 pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
 };

@@ -2,14 +2,33 @@
 
 use std::ops::RangeInclusive;
 
-use crate::schema::{Section, SettingGroup, Walk, number, setting_group, settings, whole};
+use crate::schema::{
+    Section, SettingGroup, Walk, choice, choices, is_default, number, setting_group, settings,
+    whole,
+};
 
 /// Allowed numbers of physics steps per second. Below 20 bodies pass through each other; above 1000 nothing changes.
 pub const STEP_RATES_HZ: RangeInclusive<u32> = 20..=1000;
 
+choices! {
+    /// The program that computes the motion.
+    #[derive(Default)]
+    pub enum PhysicsEngine {
+        #[default]
+        Rapier = "rapier", "rapier",
+            "The general engine rapier, for every kind of body. Its bits differ between processors of different kinds.";
+        Lanes = "lanes", "lanes",
+            "Many snakes side by side, one per lane of the processor's vectors: several times as fast, and with the same \
+             bits on every processor. For snakes of 2 to 12 rigid limbs in a row.";
+    }
+}
+
 setting_group! {
     /// Settings of the physics engine. They belong to the trial, because they change the bits.
     pub struct PhysicsSettings {
+        /// The engine.
+        #[serde(default, skip_serializing_if = "is_default")]
+        engine: PhysicsEngine = PhysicsEngine::Rapier;
         /// Physics steps per simulated second, in Hz. Every step has the same length.
         steps_per_s: u32 = 60;
         /// Solver substeps within one step.
@@ -24,7 +43,7 @@ setting_group! {
 
 impl SettingGroup for PhysicsSettings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { steps_per_s, substeps, iterations, gravity_m_s2 } = self;
+        let Self { engine, steps_per_s, substeps, iterations, gravity_m_s2 } = self;
         walk.section(Section { title: "Physics", about: "Gravity and time step." });
         settings! { walk,
             // From weightlessness to four times Jupiter.
@@ -32,6 +51,8 @@ impl SettingGroup for PhysicsSettings {
                 .unit("m/s²")
                 .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
                 .slider(0.0, 20.0);
+            engine: choice("Physics engine").advanced()
+                .hint("The program that computes the motion. Another one changes all motions a little");
             steps_per_s: whole("Physics steps per second", STEP_RATES_HZ).advanced()
                 .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0);

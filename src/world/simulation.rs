@@ -10,6 +10,7 @@ mod climb;
 mod continued;
 mod damping;
 mod health_check;
+mod lanes;
 pub(super) mod mirror;
 pub(super) mod observe;
 pub(super) mod patches;
@@ -19,11 +20,10 @@ mod shove;
 mod torques;
 
 use super::bounce::{LimbVelocity, finish_bounce};
-use super::contact::{ContactHooks, ContactLaws, soften};
+use super::contact::{ContactHooks, ContactLaws, soft_contacts};
 use super::damping::HalfStepDamping;
-use super::energy::EnergyBalance;
+use super::energy::{EnergyBalance, LimbTurn};
 use super::stair_profile::StairProfile;
-use super::surface::ContactLaw;
 use super::torque::{AppliedTorque, JointTorque};
 use super::{
     BodyPlan, Disqualification, Effort, HealthLimits, PhysicsSettings, PhysicsWorld, Pull, Skin,
@@ -31,6 +31,9 @@ use super::{
 };
 use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
 pub use continued::Discontinuity;
+use lanes::LanesWorld;
+pub use lanes::SeenContact;
+pub(crate) use lanes::{LANES, LockStep};
 pub use shove::Shove;
 
 /// Everything that determines a world: two worlds built from it and stepped with the same torques agree
@@ -102,6 +105,10 @@ pub struct Simulation {
     was_pulled: bool,
     /// Forces on the parts in another engine, if this world mirrors one; empty if not.
     mirrored: Vec<Option<Vector>>,
+    /// The snake in the engine *lanes*, if that computes the motion. Rapier's bodies then hold the state, and take no steps.
+    lanes: Option<Box<LanesWorld>>,
+    /// Rotations and rates of the limbs before the step, in memory that is used again.
+    turns_before: Vec<LimbTurn>,
 }
 
 /// Settings of the contacts, needed in each step.
@@ -120,12 +127,8 @@ impl Simulation {
     ///
     /// The order of insertion is part of the bits of every run.
     pub fn new(plan: &WorldPlan) -> Self {
-        let laws = ContactLaws {
-            stairs: ContactLaw::between(&plan.surface, &plan.skin),
-            ground: ContactLaw::between(&plan.ground, &plan.skin),
-            limbs: ContactLaw::within(&plan.skin),
-            joints_are_soft: plan.body.joints.iter().any(|joint| joint.cfm_m_s_per_n > 0.0),
-        };
+        let softness = soft_contacts(plan);
+        let laws = softness.laws;
         let mut physics = PhysicsWorld {
             gravity: Vector::new(0.0, 0.0, -plan.physics.gravity_m_s2),
             integration_parameters: IntegrationParameters {
@@ -136,9 +139,7 @@ impl Simulation {
             },
             ..Default::default()
         };
-        if let Some(middle) = plan.body.parts.get(plan.body.middle_part) {
-            soften(&mut physics.integration_parameters, &laws, &plan.physics, middle);
-        }
+        softness.set_up(&mut physics.integration_parameters, &plan.physics);
         let bounces = [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
             .iter()
             .any(|&bounce| bounce > 0.0);
@@ -177,6 +178,8 @@ impl Simulation {
             pull: None,
             was_pulled: false,
             mirrored: Vec::new(),
+            lanes: LanesWorld::of(plan),
+            turns_before: Vec::with_capacity(parts.len()),
             parts,
             body: plan.body.clone(),
             health: plan.health.clone(),
@@ -194,6 +197,11 @@ impl Simulation {
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
         self.advance();
+        self.take_in_step()
+    }
+
+    /// Checks the state after a step, and adds its effort.
+    fn take_in_step(&mut self) -> Result<(), Disqualification> {
         let mut effort = self.check_health()?;
         let motion_j = self.motion_energy_j();
         self.balance.motion_j += motion_j;
@@ -220,6 +228,16 @@ impl Simulation {
 
     /// Lets the engine take one step, and then air and surfaces slow the limbs.
     pub(crate) fn advance(&mut self) {
+        self.read_turns();
+        if self.lanes.is_some() {
+            self.advance_alone();
+        } else {
+            self.advance_rapier();
+        }
+        self.dampen_half_step();
+    }
+
+    fn advance_rapier(&mut self) {
         let ContactSettings { laws, ground, substeps, snake_kg, .. } = &self.contacts;
         let hooks = ContactHooks {
             laws,
@@ -234,10 +252,9 @@ impl Simulation {
             unmark_all_bodies(&mut self.physics.bodies);
         }
         self.is_changed = false;
-        let turns_before = self.limb_turns();
         if !self.contacts.bounces {
             self.physics.step_with_events(&hooks, &());
-            self.add_to_balance(&turns_before);
+            self.add_to_balance();
         } else {
             let velocity = |&limb: &RigidBodyHandle| {
                 let body = &self.physics.bodies[limb];
@@ -245,12 +262,11 @@ impl Simulation {
             };
             let before: Vec<LimbVelocity> = self.parts.iter().map(velocity).collect();
             self.physics.step_with_events(&hooks, &());
-            self.add_to_balance(&turns_before);
+            self.add_to_balance();
             for (&limb, before) in self.parts.iter().zip(before) {
                 finish_bounce(&mut self.physics, limb, before);
             }
         }
-        self.dampen_half_step();
     }
 
     /// The engine's state, for reading: debug drawing, picking, the bench.
@@ -333,6 +349,8 @@ impl Clone for Simulation {
             pull: self.pull,
             was_pulled: self.was_pulled,
             mirrored: self.mirrored.clone(),
+            lanes: self.lanes.clone(),
+            turns_before: Vec::with_capacity(self.parts.len()),
         }
     }
 }

@@ -20,6 +20,7 @@ enum Task {
     BodyStudy,
     PoetStudy,
     StairsStudy,
+    EngineStudy,
     Verify,
     Exam,
     Export,
@@ -39,14 +40,14 @@ enum Task {
 }
 
 use Task::{
-    Bench, BenchChampion, Body, BodyStudy, CheckReplay, Compare, Completions, Exam, Export,
-    Families, Figures, Machines, Manual, PoetStudy, Presets, Render, ReplayInWindow, Robust, Run,
-    Settings, SettingsAsMarkdown, StairsStudy, Table1, Verify, Window, Worker,
+    Bench, BenchChampion, Body, BodyStudy, CheckReplay, Compare, Completions, EngineStudy, Exam,
+    Export, Families, Figures, Machines, Manual, PoetStudy, Presets, Render, ReplayInWindow,
+    Robust, Run, Settings, SettingsAsMarkdown, StairsStudy, Table1, Verify, Window, Worker,
 };
 
 /// The tasks that compute on other machines.
 const SPREAD: &[Task] =
-    &[Run, Exam, Robust, BodyStudy, PoetStudy, StairsStudy, Compare, Families, Table1];
+    &[Run, Exam, Robust, BodyStudy, PoetStudy, StairsStudy, EngineStudy, Compare, Families, Table1];
 /// These, and the tasks that need a server.
 const WITH_SERVER: &[Task] = &[
     Run,
@@ -55,6 +56,7 @@ const WITH_SERVER: &[Task] = &[
     BodyStudy,
     PoetStudy,
     StairsStudy,
+    EngineStudy,
     Compare,
     Families,
     Table1,
@@ -101,6 +103,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             BodyStudy,
             PoetStudy,
             StairsStudy,
+            EngineStudy,
             Compare,
             Families,
             Table1,
@@ -123,6 +126,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             BodyStudy,
             PoetStudy,
             StairsStudy,
+            EngineStudy,
             Compare,
             Families,
         ],
@@ -138,6 +142,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             Bench,
             BodyStudy,
             StairsStudy,
+            EngineStudy,
             Compare,
             Families,
             Table1,
@@ -155,7 +160,17 @@ const FLAGS: [(&str, &[Task]); 30] = [
     ("from", &[Window, Run]),
     (
         "restart",
-        &[Window, Run, ReplayInWindow, BodyStudy, PoetStudy, StairsStudy, Compare, Families],
+        &[
+            Window,
+            Run,
+            ReplayInWindow,
+            BodyStudy,
+            PoetStudy,
+            StairsStudy,
+            EngineStudy,
+            Compare,
+            Families,
+        ],
     ),
     (
         "threads",
@@ -171,6 +186,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             BodyStudy,
             PoetStudy,
             StairsStudy,
+            EngineStudy,
             Compare,
             Families,
             Table1,
@@ -192,6 +208,7 @@ const FLAGS: [(&str, &[Task]); 30] = [
             BodyStudy,
             PoetStudy,
             StairsStudy,
+            EngineStudy,
             Compare,
             Families,
             Table1,
@@ -223,6 +240,7 @@ impl Task {
             Some(Subcommand::BodyStudy(_)) => BodyStudy,
             Some(Subcommand::PoetStudy(_)) => PoetStudy,
             Some(Subcommand::StairsStudy(_)) => StairsStudy,
+            Some(Subcommand::EngineStudy(_)) => EngineStudy,
             Some(Subcommand::Verify) => Verify,
             Some(Subcommand::Exam { .. }) => Exam,
             Some(Subcommand::Export(_)) => Export,
@@ -255,6 +273,7 @@ impl Task {
             BodyStudy => "snakes body-study",
             PoetStudy => "snakes poet-study",
             StairsStudy => "snakes stairs-study",
+            EngineStudy => "snakes engine-study",
             Verify => "snakes verify",
             Exam => "snakes exam",
             Export => "snakes export",

@@ -7,6 +7,7 @@ use clap_complete::Shell;
 
 use super::body_study::BodyStudyArgs;
 use super::compare::CompareArgs;
+use super::engine_study::EngineStudyArgs;
 use super::export::ExportArgs;
 use super::families::FamiliesArgs;
 use super::poet_study::PoetStudyArgs;
@@ -34,7 +35,7 @@ pub struct Args {
     /// Name of a preset (see `snakes presets`), or path of your own preset file
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
     pub(super) preset: Option<String>,
-    /// Seed of the run; the same seed gives the same bits [default: 1, of families 201, of body-study and stairs-study 101, of poet-study 401; in the window, the first seed without a run]
+    /// Seed of the run; the same seed gives the same bits [default: 1, of families and engine-study 201, of body-study and stairs-study 101, of poet-study 401; in the window, the first seed without a run]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
     /// Snakes per generation
@@ -191,6 +192,8 @@ pub enum Subcommand {
     PoetStudy(PoetStudyArgs),
     /// Measure, over several seeds, how many of the held-out stairs snakes climb that learned on many stairs, or on one
     StairsStudy(StairsStudyArgs),
+    /// Measure whether snakes move and learn alike in the physics engines rapier and lanes, and how long that takes
+    EngineStudy(EngineStudyArgs),
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),
     /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands
@@ -261,7 +264,7 @@ pub(super) fn suite_help() -> String {
 fn exam_suite_help() -> String {
     format!(
         "{} {MUJOCO}: {MUJOCO_SENTENCE}",
-        suite_help().replace("[default: all]", "[default: all but mujoco]")
+        suite_help().replace("[default: all]", "[default: all but engine and mujoco]")
     )
 }
 

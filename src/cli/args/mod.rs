@@ -4,6 +4,7 @@ mod applicability;
 mod body_study;
 mod compare;
 mod completions;
+mod engine_study;
 mod export;
 mod families;
 mod film;
@@ -20,6 +21,7 @@ mod values;
 pub use body_study::BodyStudyArgs;
 pub use compare::CompareArgs;
 pub use completions::completions;
+pub use engine_study::EngineStudyArgs;
 pub use export::ExportArgs;
 pub use families::FamiliesArgs;
 #[cfg(feature = "studio")]

@@ -3,8 +3,9 @@
 use super::Settings;
 use crate::check::Invalid;
 use crate::genome::BodySpace;
+use crate::schema::Choices;
 use crate::score::{AgentSettings, Fitness};
-use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
+use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
 
 /// Room on the landing beside the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
@@ -40,6 +41,7 @@ impl Settings {
             let allowed = format!("{} {state}", fitting.join(", "));
             return Err(Invalid::new("evolution.strategy", strategy, allowed));
         }
+        self.check_engine()?;
         if !varies {
             let agent = &self.trial.agent;
             return agent
@@ -71,6 +73,23 @@ impl Settings {
             return Err(Invalid::new(field, found, allowed));
         }
         Ok(())
+    }
+}
+
+impl Settings {
+    /// Checks that the physics engine can simulate the snakes of a run.
+    fn check_engine(&self) -> Result<(), Invalid> {
+        let engine = self.trial.physics.engine;
+        let bodies = &self.genome.bodies;
+        let are_soft =
+            if bodies.vary { bodies.soft } else { self.trial.agent.youngs_modulus_pa.is_some() };
+        let kind = match engine {
+            PhysicsEngine::Lanes if self.genome.has_creatures() => "branching bodies",
+            PhysicsEngine::Lanes if are_soft => "soft limbs",
+            _ => return Ok(()),
+        };
+        let allowed = format!("rapier for {kind}; lanes simulates rigid limbs in a row");
+        Err(Invalid::new("trial.physics.engine", engine.choice().name, allowed))
     }
 }
 

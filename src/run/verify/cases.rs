@@ -320,6 +320,64 @@ const CASES: &[Case] = &[
         "controller=part_neurons; strategy=creature_ga; bodies.vary=true; creatures.neurons=sims; creatures.parts_min=4; \
          network.weight_range=3; volume_m3=8; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
     ),
+    ("lanes: signals", [1, 20, 3], "engine=lanes"),
+    (
+        "lanes: gaits, CMA-ES",
+        [3, 24, 3],
+        "engine=lanes; controller=gait; strategy=cma_es; first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: bouncing ice, soft joints without damping, seven limbs",
+        [1, 20, 2],
+        "engine=lanes; surface.friction=0.05; surface.bounce=0.8; joint_damping_nms_per_rad=0; joint_cfm_m_s_per_n=0.0001; \
+         agent.limbs=7; first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: slipping stairs, a soft damping ground, soft skins, limbs of different lengths and densities",
+        [1, 20, 2],
+        "engine=lanes; surface.slip_m_s_per_n=0.01; surface.bounce=0.4; surface.bounce_velocity_m_s=1; ground.soft_erp=0.5; \
+         ground.soft_cfm_m_s_per_n=0.003; ground.dampen_per_s=0.5; skin.soft_cfm_m_s_per_n=0.001; \
+         limb_length_m=[1, 2, 2, 2, 1.5]; agent.density_kg_m3=[2, 2, 3, 2, 2]; first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: slipping stairs with a bounce velocity, a damping ground",
+        [3, 12, 2],
+        "engine=lanes; surface.slip_m_s_per_n=0.005; surface.bounce=0.6; surface.bounce_velocity_m_s=2; \
+         ground.dampen_per_s=0.6; first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: twelve limbs, one step",
+        [3, 12, 2],
+        "engine=lanes; agent.limbs=12; stairs.steps=1; first_riser_y_m=-9",
+    ),
+    (
+        "lanes: slopes up and down, a step down, nosings, 120 steps a second",
+        [3, 12, 2],
+        "engine=lanes; controller=gait; stairs.steps=5; rise_m=[0.5, 0.3, -0.4, -0.4, 0.4]; tread_m=[1.5, 2, 2, 0.8, 2]; \
+         slope_m=[0.8, 0, 1.2, 0, 0]; nosing_m=0.2; first_riser_y_m=-3; steps_per_s=120; substeps=4; iterations=2",
+    ),
+    (
+        "lanes: reflexes on three varied trials",
+        [3, 12, 2],
+        "engine=lanes; controller=reflex; repeats.trials=3; repeats.list=fixed; champion_trials=2; off.tread=0.2; \
+         first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: modular networks, narrow joint limits",
+        [3, 12, 2],
+        "engine=lanes; controller=modular; bend_limits_rad=[0.2]; twist_limits_rad=[0.1]; first_riser_y_m=-1.5",
+    ),
+    (
+        "lanes: waves chosen by rules",
+        [3, 8, 2],
+        "engine=lanes; controller=rules; strategy=ga; wave_takeover=0.5; library_waves=3; wave_rules=6; start_y_m=-3",
+    ),
+    (
+        "lanes: evolving bodies",
+        [3, 24, 2],
+        "engine=lanes; controller=wave; strategy=body_ga; bodies.vary=true; protection=none; tournament_size=2; \
+         body_ga.two_parents=0.8; trial.fitness=share; start_y_m=-3; trial.duration_s=3",
+    ),
 ];
 
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.

@@ -18,6 +18,7 @@ use crate::save::{
     GenerationRecord, LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion,
 };
 use crate::score::Fitness;
+use crate::world::PhysicsEngine;
 
 /// The contents of an entry.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +48,8 @@ pub struct ChampionDetails {
     pub origin: Origin,
     /// The engine that found it.
     pub engine: Engine,
+    /// The physics engine of its trial.
+    pub physics: PhysicsEngine,
     /// The controller of its joints.
     pub controller: ControllerKind,
     /// The results of its exam in one line, if the file has them.
@@ -165,6 +168,7 @@ fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
         duration_s: champion.trial.duration_s,
         origin: champion.origin.clone(),
         engine: loaded.engine,
+        physics: champion.trial.physics.engine,
         controller: champion.genome.controller.kind(),
         exam: exam_in_words(&loaded.exam),
         note: note(text),

@@ -7,12 +7,14 @@ use crate::rng::{Purpose, stream};
 use crate::schema::Choices;
 use crate::score::perturbation::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
-use crate::world::Stairs;
+use crate::world::{PhysicsEngine, Stairs};
 
 /// How much later than without the shove a shoved snake may land, in s.
 pub(super) const RECOVERY_S: f32 = 5.0;
 /// Number of trials in the suites of random conditions.
 const TRIALS: u32 = 100;
+/// Number of starts in the other engine.
+const STARTS: u32 = 20;
 /// Seed of the random conditions.
 const SEED: u64 = 1;
 /// Duration of the trials on other stairs and with shoves, in s.
@@ -34,7 +36,7 @@ impl ExamSuite {
     /// The undisturbed trial with which the others are compared: the champion's own, for as long as theirs.
     pub fn undisturbed(self, trial: &Trial) -> ExamCondition {
         let trial = match self {
-            Self::Trials | Self::StepRate => trial.clone(),
+            Self::Trials | Self::StepRate | Self::Engine => trial.clone(),
             Self::Stairs | Self::Surprise | Self::Shove | Self::Lesion | Self::HeldOut => {
                 long(trial)
             }
@@ -52,6 +54,7 @@ impl ExamSuite {
             Self::Shove => shoves(trial),
             Self::Lesion => other_stairs(&without_senses(trial)),
             Self::HeldOut => held_out_stairs(trial),
+            Self::Engine => other_engine(trial),
         }
     }
 }
@@ -81,6 +84,24 @@ fn condition(label: &str, trial: Trial) -> ExamCondition {
 fn long(trial: &Trial) -> Trial {
     let stairs = Stairs { landing_m: LANDING_M, ..trial.stairs.clone() };
     Trial { duration_s: DURATION_S, stairs, ..trial.clone() }
+}
+
+/// Other starts in the other engine; none if that cannot simulate the trial's snakes.
+fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
+    if trial.agent.youngs_modulus_pa.is_some() {
+        return Vec::new();
+    }
+    let mut other = trial.clone();
+    other.physics.engine = match trial.physics.engine {
+        PhysicsEngine::Rapier => PhysicsEngine::Lanes,
+        PhysicsEngine::Lanes => PhysicsEngine::Rapier,
+    };
+    varied(
+        &other,
+        &PerturbationRange { friction: 0.0, rise: 0.0, ..Default::default() },
+        STARTS,
+        SEED,
+    )
 }
 
 /// The trial with all outer senses frozen.

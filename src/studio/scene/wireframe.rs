@@ -10,6 +10,7 @@ use super::overlays::Overlays;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
+use crate::world::SeenContact;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, draw.in_set(FrameSet::Draw));
@@ -41,6 +42,18 @@ impl DebugRenderBackend for CollisionLines<'_, '_, '_> {
     }
 }
 
+/// Draws contacts that rapier does not know, as it draws its own: the gap or the overlap of each point, and its normal.
+fn draw_contacts(contacts: &[SeenContact], lines: &mut CollisionLines<'_, '_, '_>) {
+    let style = DebugRenderStyle::default();
+    for contact in contacts {
+        let [from, to] = contact.on_m;
+        let along = from + contact.normal * style.contact_normal_length;
+        for (to, color) in [(to, style.contact_depth_color), (along, style.contact_normal_color)] {
+            lines.gizmos.line(from + lines.offset, to + lines.offset, of_engine(color));
+        }
+    }
+}
+
 fn draw(overlays: Res<Overlays>, lanes: Query<&Lane>, mut gizmos: Gizmos) {
     if !overlays.shows(Overlay::Wireframe) {
         return;
@@ -50,10 +63,12 @@ fn draw(overlays: Res<Overlays>, lanes: Query<&Lane>, mut gizmos: Gizmos) {
     for lane in &lanes {
         let Some(simulation) = lane.simulation() else { continue };
         let physics = simulation.physics();
+        let mut lines = CollisionLines { gizmos: &mut gizmos, offset: lane.offset() };
+        draw_contacts(&simulation.contacts_in_lanes(), &mut lines);
         pipeline.render(
-            &mut CollisionLines { gizmos: &mut gizmos, offset: lane.offset() },
+            &mut lines,
             &physics.bodies,
-            &physics.colliders,
+            &simulation.colliders(),
             &physics.impulse_joints,
             &physics.multibody_joints,
             &physics.narrow_phase,

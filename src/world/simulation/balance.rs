@@ -30,26 +30,32 @@ impl Simulation {
         self.balance.start_j += self.mechanical_energy_j() - earlier.mechanical_energy_j();
     }
 
-    /// Rotations and rates of the limbs, to be read before a step.
-    pub(super) fn limb_turns(&self) -> Vec<LimbTurn> {
-        let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
-        bodies.map(|body| LimbTurn { rotation: *body.rotation(), rate: body.angvel() }).collect()
+    /// Reads the rotations and rates of the limbs before a step.
+    pub(super) fn read_turns(&mut self) {
+        self.turns_before.clear();
+        for &limb in &self.parts {
+            let body = &self.physics.bodies[limb];
+            self.turns_before.push(LimbTurn { rotation: *body.rotation(), rate: body.angvel() });
+        }
     }
 
-    /// Adds a step to the balance, given the limbs' rotations before it. To be called right after the engine's step:
+    /// Adds a step to the balance, given the limbs' rotations before it ([`Self::read_turns`]). To be called right after the engine's step:
     /// bounces, air and damping surfaces change the rates afterwards.
     ///
     /// Rates change a lot within one step where a joint reaches its stop, so the integrals are not taken from the rates
     /// at both ends alone, but also from the angle through which each limb has turned.
-    pub(super) fn add_to_balance(&mut self, before: &[LimbTurn]) {
+    pub(super) fn add_to_balance(&mut self) {
         let step_s = self.physics.integration_parameters.dt;
-        let substep_s = step_s / self.contacts.substeps.max(1) as f32;
+        let substep_s = self.substep_s();
         let mut work_j = 0.0;
         let mut turns = Vec::with_capacity(self.parts.len());
-        for ((&limb, torque), before) in self.parts.iter().zip(&self.torques_in_world).zip(before) {
+        for ((&limb, torque), before) in
+            self.parts.iter().zip(&self.torques_in_world).zip(&self.turns_before)
+        {
             let body = &self.physics.bodies[limb];
             let after = body.angvel();
-            let turned_rad = rotation_vector(*body.rotation() * before.rotation.inverse());
+            let turned_rad =
+                rotation_vector(self.product(*body.rotation(), before.rotation.inverse()));
             // The engine turns a limb by its rate at the end of each substep. The work of a torque counts with the mean
             // of the rates at both ends.
             let mean = turned_rad / step_s - (after - before.rate) * (substep_s / (2.0 * step_s));
@@ -58,9 +64,9 @@ impl Simulation {
         }
         let mut joints_j = 0.0;
         for joint in &self.body.joints {
-            let to_joint = joint.axes(before[joint.parent].rotation).inverse();
+            let to_joint = joint.axes(self.turns_before[joint.parent].rotation).inverse();
             let [first, mean, last] = std::array::from_fn(|moment| {
-                to_joint * (turns[joint.child][moment] - turns[joint.parent][moment])
+                self.turned(to_joint, turns[joint.child][moment] - turns[joint.parent][moment])
             });
             let squares = square_over_step(first.x, mean.x, last.x)
                 + square_over_step(first.y, mean.y, last.y);
@@ -73,8 +79,11 @@ impl Simulation {
     /// Kinetic and potential energy of all parts, with that of the springs of soft limbs, in J. The potential energy is 0 at
     /// z = 0.
     pub(super) fn mechanical_energy_j(&self) -> f64 {
-        let substep_s =
-            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+        let substep_s = self.substep_s();
+        if self.lanes.is_some() {
+            let parts = 0..self.parts.len();
+            return parts.map(|part| self.energy_in_lanes_j(part, substep_s)).sum();
+        }
         let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
         let energies_j = bodies.map(|body| {
             // The engine's positions are half a substep ahead of its velocities.

@@ -84,8 +84,8 @@ impl Simulation {
 
     /// Largest y of any limb, in metres.
     fn front_y_m(&self) -> f32 {
-        let colliders = self.parts.iter().map(|&limb| self.physics.bodies[limb].colliders()[0]);
-        let fronts = colliders.map(|limb| self.physics.colliders[limb].compute_aabb().maxs.y);
+        let parts = self.body.parts.iter().zip(self.poses());
+        let fronts = parts.map(|(part, pose)| pose.translation.y + part.reach_m(pose.rotation).y);
         fronts.fold(f32::MIN, f32::max)
     }
 
@@ -94,7 +94,8 @@ impl Simulation {
     /// plan the world continues with the bits of this one. A pull by the user ends.
     pub fn continued_in(&self, plan: &WorldPlan) -> Self {
         let fresh = Self::new(plan);
-        let mut continued = if self.is_built_like(&fresh) {
+        let both_rapier = self.lanes.is_none() && fresh.lanes.is_none();
+        let mut continued = if both_rapier && self.is_built_like(&fresh) {
             let mut continued = self.clone();
             take_parameters(&mut continued.physics, &fresh.physics);
             continued
@@ -107,6 +108,7 @@ impl Simulation {
                 new.set_linvel(old.linvel(), true);
                 new.set_angvel(old.angvel(), true);
             }
+            continued.take_contacts_of(self);
             continued
         };
         continued.is_changed = true;

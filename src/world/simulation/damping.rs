@@ -16,8 +16,8 @@ impl Simulation {
         for index in 0..self.parts.len() {
             let limb = self.parts[index];
             let surface = if surfaces_damp { self.surface_factor(limb) } else { 1.0 };
+            let turning_j = self.rotation_energy_j(index);
             let body = &mut self.physics.bodies[limb];
-            let turning_j = rotation_energy_j(body);
             self.balance.rotation_damping_j +=
                 f64::from(turning_j * (1.0 - damping.air * damping.air));
             body.set_angvel(body.angvel() * (damping.air * surface), false);
@@ -41,12 +41,16 @@ impl Simulation {
             Some((TouchedSurface::Limb(_), _)) | None => 1.0,
         }
     }
-}
 
-/// Energy of a body's rotation, in J.
-pub(super) fn rotation_energy_j(body: &RigidBody) -> f32 {
-    let rate = body.rotation().inverse() * body.angvel();
-    // The axes of a box are its principal axes.
-    let inertia = body.mass_properties().local_mprops.principal_inertia();
-    (inertia * rate).dot(rate) / 2.0
+    /// Energy of a part's rotation, in J.
+    fn rotation_energy_j(&self, part: usize) -> f32 {
+        let body = &self.physics.bodies[self.parts[part]];
+        let rate = self.turned(body.rotation().inverse(), body.angvel());
+        // The axes of a box are its principal axes.
+        let inertia = match self.inertia_in_lanes_kg_m2(part) {
+            Some(inertia) => inertia,
+            None => body.mass_properties().local_mprops.principal_inertia(),
+        };
+        (inertia * rate).dot(rate) / 2.0
+    }
 }

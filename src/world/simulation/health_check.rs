@@ -10,7 +10,7 @@ impl Simulation {
     /// Half the length of a part, as a vector in the world from its centre to its front face, in metres.
     fn centre_to_front(&self, part: usize) -> Vector {
         let half_length = Vector::new(0.0, self.body.parts[part].length_m / 2.0, 0.0);
-        *self.physics.bodies[self.parts[part]].rotation() * half_length
+        self.turned(*self.physics.bodies[self.parts[part]].rotation(), half_length)
     }
 
     /// Squared distance between the two anchors of a joint or a spring, in m².
@@ -38,7 +38,10 @@ impl Simulation {
         for (index, &part) in self.parts.iter().enumerate() {
             let body = &self.physics.bodies[part];
             let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
-            if !(centre.is_finite() && speed_squared.is_finite()) {
+            // Rapier checks the rest itself.
+            let turns =
+                self.lanes.is_none() || (body.rotation().is_finite() && body.angvel().is_finite());
+            if !(centre.is_finite() && speed_squared.is_finite() && turns) {
                 return Err(Disqualification::NotFinite);
             }
             if speed_squared > speed_limit_squared {

@@ -34,7 +34,7 @@ impl Simulation {
     pub(super) fn sensed_contact(&self, part: usize) -> (bool, Vector) {
         match self.mirrored.get(part) {
             Some(force_n) => (force_n.is_some(), force_n.unwrap_or(Vector::ZERO)),
-            None => self.contact_force(self.physics.bodies[self.parts[part]].colliders()[0]),
+            None => self.contact_force(part),
         }
     }
 }

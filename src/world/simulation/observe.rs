@@ -4,8 +4,9 @@ use rapier3d::prelude::*;
 
 use super::Simulation;
 use super::patches::solved_points;
-use crate::world::JointTorque;
 use crate::world::contact::other_collider;
+use crate::world::lanes::Other;
+use crate::world::{JointTorque, TouchedSurface};
 
 /// Angles and rates of a joint, as the snake senses them: those of the child relative to the parent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -66,8 +67,8 @@ impl Simulation {
             let [parent, child] =
                 [joint.parent, joint.child].map(|limb| &self.physics.bodies[self.parts[limb]]);
             let into_joint = joint.axes(*parent.rotation()).inverse();
-            let turn = into_joint * *child.rotation();
-            let rate = into_joint * (child.angvel() - parent.angvel());
+            let turn = self.product(into_joint, *child.rotation());
+            let rate = self.turned(into_joint, child.angvel() - parent.angvel());
             // A quaternion and its negative are the same rotation; w ≥ 0 gives the smaller angle.
             let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
             let angle_rad = |part: f32| 2.0 * libm::atan2f(sign * part, sign * turn.w);
@@ -82,12 +83,7 @@ impl Simulation {
 
     /// Number of limbs that touch the ground or the stairs.
     pub fn limbs_in_contact(&self) -> usize {
-        let touches = |&&part: &&RigidBodyHandle| {
-            let collider = self.physics.bodies[part].colliders()[0];
-            self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
-                self.is_world(other_collider(pair, collider)) && pair.has_any_active_contact()
-            })
-        };
+        let touches = |&&part: &&RigidBodyHandle| self.world_touched_by(part).next().is_some();
         if self.body.springs.is_empty() {
             return self.parts.iter().filter(touches).count();
         }
@@ -99,13 +95,7 @@ impl Simulation {
     /// Indices of the parts that touch the stairs.
     pub fn parts_on_stairs(&self) -> impl Iterator<Item = usize> + '_ {
         let touches = |part: &RigidBodyHandle| {
-            let collider = self.physics.bodies[*part].colliders()[0];
-            self.physics.narrow_phase.contact_pairs_with(collider).any(|pair| {
-                let other = other_collider(pair, collider);
-                other != self.contacts.ground
-                    && self.is_world(other)
-                    && pair.has_any_active_contact()
-            })
+            self.world_touched_by(*part).any(|touched| touched == TouchedSurface::Stairs)
         };
         let all = self.parts.iter().enumerate();
         all.filter(move |(_, part)| touches(part)).map(|(index, _)| index)
@@ -122,8 +112,10 @@ impl Simulation {
     /// The engine's warm-start impulses are those of the last substep; the sums that it also keeps begin with
     /// the step before. It has one friction impulse for all points of a manifold.
     pub fn contact_forces(&self) -> Vec<ContactForce> {
-        let substep_s =
-            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+        let substep_s = self.substep_s();
+        if self.lanes.is_some() {
+            return self.contact_forces_in_lanes(substep_s);
+        }
         let mut forces = Vec::new();
         for (part, &body) in self.body.parts.iter().zip(&self.parts) {
             let collider = self.physics.bodies[body].colliders()[0];
@@ -153,6 +145,26 @@ impl Simulation {
             }
         }
         forces
+    }
+
+    fn contact_forces_in_lanes(&self, substep_s: f32) -> Vec<ContactForce> {
+        let mut forces = Vec::new();
+        let contacts = self.lanes_contacts().iter();
+        for contact in contacts.filter(|contact| !matches!(contact.other, Other::Part(_))) {
+            let loaded = || contact.points().iter().filter(|point| point.impulse_ns > 0.0);
+            let friction_ns = contact.friction_ns / loaded().count().max(1) as f32;
+            forces.extend(loaded().map(|point| ContactForce {
+                limb: self.body.parts[contact.part].limb,
+                at_m: point.on_other,
+                force_n: (contact.normal * point.impulse_ns + friction_ns) / substep_s,
+            }));
+        }
+        forces
+    }
+
+    /// Length of a solver's substep, in s.
+    pub(super) fn substep_s(&self) -> f32 {
+        self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32
     }
 
     /// Whether a collider is the ground or the stairs.

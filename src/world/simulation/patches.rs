@@ -58,7 +58,7 @@ pub struct SurfaceDamping {
 
 /// Velocity of a limb as the solver left it; of the fixed world, 0.
 #[derive(Debug, Clone, Copy, Default)]
-struct SolvedVelocity {
+pub(super) struct SolvedVelocity {
     centre_m: Vector,
     /// In m/s.
     linear: Vector,
@@ -67,8 +67,13 @@ struct SolvedVelocity {
 }
 
 impl SolvedVelocity {
+    /// Angular velocity, in rad/s.
+    pub(super) fn angular_rad_s(&self) -> Vector {
+        self.angular
+    }
+
     /// Velocity of the point of the limb at a place in the world, in m/s.
-    fn at(&self, at_m: Vector) -> Vector {
+    pub(super) fn at(&self, at_m: Vector) -> Vector {
         self.linear + self.angular.cross(at_m - self.centre_m)
     }
 }
@@ -93,7 +98,7 @@ fn has_new_impulse(manifold: &ContactManifold) -> bool {
 }
 
 /// Part of `whole` that `part` is, at most 1; 0 if there is no whole.
-fn share(part: f32, whole: f32) -> f32 {
+pub(super) fn share(part: f32, whole: f32) -> f32 {
     if whole > 0.0 { (part / whole).min(1.0) } else { 0.0 }
 }
 
@@ -103,6 +108,12 @@ impl Simulation {
     /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those with which the
     /// solver ended that substep, before damping.
     pub fn contact_patches(&self) -> Vec<ContactPatch> {
+        if self.lanes.is_some() {
+            let contacts = self.lanes_contacts().iter();
+            let mut patches: Vec<_> = contacts.filter_map(|of| self.patch_in_lanes(of)).collect();
+            patches.sort_by_key(|patch| patch.limb);
+            return patches;
+        }
         let mut patches = Vec::new();
         for (part, &body) in self.body.parts.iter().zip(&self.parts) {
             let limb = part.limb;
@@ -137,24 +148,37 @@ impl Simulation {
     /// The strongest damping of the surfaces that a limb touches, in 1/s; `None` if none of them damps.
     pub(super) fn strongest_damping(&self, limb: RigidBodyHandle) -> Option<(TouchedSurface, f32)> {
         let laws = &self.contacts.laws;
-        let collider = self.physics.bodies[limb].colliders()[0];
-        let touching = self.physics.narrow_phase.contact_pairs_with(collider);
-        touching
-            .filter(|pair| pair.has_any_active_contact())
-            .filter_map(|pair| match self.touched(other_collider(pair, collider)) {
-                TouchedSurface::Ground => Some((TouchedSurface::Ground, laws.ground.dampen_per_s)),
-                TouchedSurface::Stairs => Some((TouchedSurface::Stairs, laws.stairs.dampen_per_s)),
-                TouchedSurface::Limb(_) => None,
+        self.world_touched_by(limb)
+            .map(|touched| match touched {
+                TouchedSurface::Ground => (TouchedSurface::Ground, laws.ground.dampen_per_s),
+                _ => (TouchedSurface::Stairs, laws.stairs.dampen_per_s),
             })
             .filter(|(_, dampen_per_s)| *dampen_per_s > 0.0)
             .max_by(|(_, a), (_, b)| a.total_cmp(b))
+    }
+
+    /// Ground and stairs, as often as a part touches them.
+    pub(super) fn world_touched_by(
+        &self,
+        limb: RigidBodyHandle,
+    ) -> impl Iterator<Item = TouchedSurface> + '_ {
+        let collider = self.physics.bodies[limb].colliders()[0];
+        let pairs = self.physics.narrow_phase.contact_pairs_with(collider);
+        let in_rapier = pairs
+            .filter(|pair| pair.has_any_active_contact())
+            .map(move |pair| self.touched(other_collider(pair, collider)));
+        let contacts = self.lanes_contacts().iter();
+        let in_lanes = contacts
+            .filter(move |contact| self.parts.get(contact.part) == Some(&limb))
+            .map(|contact| self.touched_in_lanes(contact));
+        in_rapier.chain(in_lanes).filter(|touched| !matches!(touched, TouchedSurface::Limb(_)))
     }
 
     /// Velocity of a limb as the solver left it in the last substep, with which its friction agrees.
     ///
     /// At the end of a step air and surfaces slow the limbs. With these velocities a contact that holds would seem to
     /// slip, and friction to drive it. The bounces that are corrected after the solver stay in it.
-    fn solved_velocity(&self, limb: RigidBodyHandle) -> SolvedVelocity {
+    pub(super) fn solved_velocity(&self, limb: RigidBodyHandle) -> SolvedVelocity {
         let body = &self.physics.bodies[limb];
         let [linear, angular] = self.last_damping(limb);
         SolvedVelocity {
@@ -229,8 +253,7 @@ impl Simulation {
         }
         // The engine's factor may be lower for this step, where a surface creeps; the share is one of the material's.
         let friction = colliders[0].friction() * colliders[1].friction();
-        let substep_s =
-            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+        let substep_s = self.substep_s();
         let spin_rad_s = (first.1.angular - second.1.angular).dot(normal);
         // The twist acts on the first body about the opposite of the normal.
         let friction_j = twist_nms * spin_rad_s - friction_ns.dot(sliding(centre_m));

@@ -7,6 +7,7 @@ use rapier3d::prelude::*;
 use super::Simulation;
 use super::patches::solved_points;
 use crate::world::contact::other_collider;
+use crate::world::lanes::Other;
 
 /// The senses of one limb, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -90,7 +91,7 @@ impl Simulation {
         let body = &self.physics.bodies[self.parts[part]];
         let (centre, turn) = (body.translation(), *body.rotation());
         let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
-        let reach_m = [Vector::X, Vector::Y, Vector::Z].map(|axis| (turn * axis).z);
+        let reach_m = [Vector::X, Vector::Y, Vector::Z].map(|axis| self.turned(turn, axis).z);
         let reach_m = reach_m.into_iter().zip(half_m);
         centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>()
     }
@@ -101,7 +102,7 @@ impl Simulation {
         let middle = &self.physics.bodies[self.parts[self.body.middle_part]];
         let velocity = middle.linvel();
         SnakeReading {
-            yaw: (*head.rotation() * Vector::Y).x,
+            yaw: self.turned(*head.rotation(), Vector::Y).x,
             velocity_m_s: [velocity.y, velocity.z],
             aside: middle.translation().x / self.profile.half_width_m(),
         }
@@ -110,7 +111,7 @@ impl Simulation {
     fn read_part(&self, part: usize) -> LimbReading {
         let body = &self.physics.bodies[self.parts[part]];
         let (centre, turn) = (body.translation(), *body.rotation());
-        let [right, forward] = [Vector::X, Vector::Y].map(|axis| turn * axis);
+        let [right, forward] = [Vector::X, Vector::Y].map(|axis| self.turned(turn, axis));
         let lowest_z_m = self.lowest_z_m(part);
         let front = centre + forward * (self.body.parts[part].length_m / 2.0);
         let next = self.profile.next_step(front.x, front.y);
@@ -126,12 +127,20 @@ impl Simulation {
         }
     }
 
-    /// Whether a limb's collider touches ground or stairs, and the force of these contacts on it in the last substep, in
+    /// Whether a part touches ground or stairs, and the force of these contacts on it in the last substep, in
     /// N: the sum of [`Self::contact_forces`], without their list.
-    pub(super) fn contact_force(&self, collider: ColliderHandle) -> (bool, Vector) {
-        let substep_s =
-            self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32;
+    pub(super) fn contact_force(&self, part: usize) -> (bool, Vector) {
+        let substep_s = self.substep_s();
         let (mut is_touching, mut impulse) = (false, Vector::ZERO);
+        let contacts = self.lanes_contacts().iter().filter(|contact| contact.part == part);
+        for contact in contacts.filter(|contact| !matches!(contact.other, Other::Part(_))) {
+            is_touching = true;
+            let pressed_ns: f32 = contact.points().iter().map(|point| point.impulse_ns).sum();
+            if pressed_ns > 0.0 {
+                impulse += contact.normal * pressed_ns + contact.friction_ns;
+            }
+        }
+        let collider = self.physics.bodies[self.parts[part]].colliders()[0];
         for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
             if !self.is_world(other_collider(pair, collider)) {
                 continue;

@@ -1,9 +1,44 @@
 //! The world compared with the report and with closed forms.
 
+use std::cell::Cell;
+
+use crate::world::PhysicsEngine;
+
+thread_local! {
+    /// The engine in which the plans of this thread's test are built.
+    static ENGINE: Cell<PhysicsEngine> = const { Cell::new(PhysicsEngine::Rapier) };
+}
+
+/// Runs a test in an engine.
+fn run_in(engine: PhysicsEngine, test: fn()) {
+    ENGINE.set(engine);
+    test();
+}
+
+/// Makes two tests of a function, which has the same bounds in both engines.
+macro_rules! in_both_engines {
+    ($test:ident) => {
+        mod $test {
+            use crate::world::PhysicsEngine;
+
+            #[test]
+            fn in_rapier() {
+                crate::world::simulation::tests::run_in(PhysicsEngine::Rapier, super::$test);
+            }
+
+            #[test]
+            fn in_lanes() {
+                crate::world::simulation::tests::run_in(PhysicsEngine::Lanes, super::$test);
+            }
+        }
+    };
+}
+
 mod energy;
 mod marks;
 mod observe;
 mod patches;
+mod random;
 mod rates;
 mod settle;
 mod soft;
@@ -29,7 +64,7 @@ fn plan(limbs: usize) -> WorldPlan {
         cfm_m_s_per_n: 0.0,
     };
     WorldPlan {
-        physics: PhysicsSettings::default(),
+        physics: PhysicsSettings { engine: ENGINE.get(), ..Default::default() },
         stairs: Stairs::default(),
         surface: Surface::default(),
         ground: Surface::default(),
@@ -71,7 +106,7 @@ fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
     [relative.x, relative.y, relative.z].map(|part| 2.0 * libm::atanf(part / relative.w))
 }
 
-#[test]
+in_both_engines!(the_straight_snake_starts_at_the_position_of_table_1);
 fn the_straight_snake_starts_at_the_position_of_table_1() {
     let simulation = Simulation::new(&plan(5));
     let centres: Vec<Vector> = simulation.poses().map(|pose| pose.translation).collect();
@@ -81,14 +116,14 @@ fn the_straight_snake_starts_at_the_position_of_table_1() {
     assert!((centres[0].y - centres[4].y - 8.0).abs() < 1e-5);
 }
 
-#[test]
+in_both_engines!(the_density_gives_the_mass);
 fn the_density_gives_the_mass() {
     let simulation = Simulation::new(&plan(2));
     let mass_kg = simulation.physics.bodies[simulation.parts[0]].mass();
     assert!((mass_kg - 5.0).abs() < 1e-4, "{mass_kg} kg");
 }
 
-#[test]
+in_both_engines!(joint_torques_do_not_accelerate_the_snake_as_a_whole);
 fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     let (_, mut simulation) = weightless(5);
     let torques: Vec<JointTorque> = (0..4)
@@ -104,7 +139,7 @@ fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     assert!(momentum.length() < 0.01, "but not away: {momentum} kg m/s");
 }
 
-#[test]
+in_both_engines!(each_torque_turns_its_joint_about_its_own_axis_only);
 fn each_torque_turns_its_joint_about_its_own_axis_only() {
     for (torque, moved) in [
         (JointTorque { bend_nm: 2.0, twist_nm: 0.0 }, 0),
@@ -125,7 +160,7 @@ fn each_torque_turns_its_joint_about_its_own_axis_only() {
     }
 }
 
-#[test]
+in_both_engines!(a_joint_pushed_into_its_limits_stops_there);
 fn a_joint_pushed_into_its_limits_stops_there() {
     let tolerance_rad = 0.03;
     for sign in [1.0, -1.0] {
@@ -142,7 +177,7 @@ fn a_joint_pushed_into_its_limits_stops_there() {
     }
 }
 
-#[test]
+in_both_engines!(a_torque_beyond_the_joints_limit_is_clamped);
 fn a_torque_beyond_the_joints_limit_is_clamped() {
     let turned_by = |bend_nm| {
         let (mut plan, _) = weightless(2);
@@ -156,7 +191,7 @@ fn a_torque_beyond_the_joints_limit_is_clamped() {
     assert!(turned_by(1.0) < turned_by(2.0));
 }
 
-#[test]
+in_both_engines!(joint_damping_slows_the_joint_as_its_formula_says);
 fn joint_damping_slows_the_joint_as_its_formula_says() {
     let decay = |damping_nms_per_rad: f32| {
         let (mut plan, _) = weightless(2);
@@ -186,7 +221,7 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
     }
 }
 
-#[test]
+in_both_engines!(a_soft_joint_stretches_by_the_pull_over_its_stiffness);
 fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
     let stretch_m = |cfm_m_s_per_n, pull_n: f32| {
         let (mut plan, _) = weightless(2);
@@ -214,7 +249,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
     }
 }
 
-#[test]
+in_both_engines!(the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs);
 fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
     for torque in
         [JointTorque { bend_nm: 1.0, twist_nm: 0.0 }, JointTorque { bend_nm: 0.0, twist_nm: 0.25 }]
@@ -240,7 +275,7 @@ fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
     }
 }
 
-#[test]
+in_both_engines!(a_turned_start_turns_and_moves_the_whole_snake);
 fn a_turned_start_turns_and_moves_the_whole_snake() {
     let turned = WorldPlan { start_x_m: 0.3, start_turn_rad: 0.5, ..plan(5) };
     let mut simulation = Simulation::new(&turned);
@@ -258,7 +293,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
     assert!(simulation.effort().joint_drift_m < 1e-3 && simulation.effort().top_speed_m_s < 0.1);
 }
 
-#[test]
+in_both_engines!(the_effort_of_a_thrown_snake_holds_its_maxima);
 fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
     for limb in simulation.parts.clone() {
@@ -272,7 +307,7 @@ fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     assert!((top_speed_m_s - 5.0).abs() < 0.01 && (sideways_m - 3.0).abs() < 0.01);
 }
 
-#[test]
+in_both_engines!(a_free_limb_swings_with_the_period_of_the_physical_pendulum);
 fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
     let [front, rear] = [simulation.parts[0], simulation.parts[1]];
@@ -344,7 +379,7 @@ fn drift(limbs: usize) -> (f32, f32) {
     (lost, energy_j(&simulation) / energy_before_j - 1.0)
 }
 
-#[test]
+in_both_engines!(a_snake_without_external_forces_keeps_its_momentum_and_energy);
 fn a_snake_without_external_forces_keeps_its_momentum_and_energy() {
     for limbs in [2, 5, 12] {
         let (momentum, energy) = drift(limbs);
@@ -353,7 +388,7 @@ fn a_snake_without_external_forces_keeps_its_momentum_and_energy() {
     }
 }
 
-#[test]
+in_both_engines!(a_fall_follows_the_gravity_of_the_settings);
 fn a_fall_follows_the_gravity_of_the_settings() {
     let fallen_m = |gravity_m_s2| {
         let mut plan = plan(2);
@@ -376,7 +411,7 @@ fn a_fall_follows_the_gravity_of_the_settings() {
     }
 }
 
-#[test]
+in_both_engines!(each_exceeded_health_limit_disqualifies);
 fn each_exceeded_health_limit_disqualifies() {
     let broken_by = |speed_limit_m_s, break_it: fn(&mut RigidBody)| {
         let mut plan = plan(5);

@@ -18,11 +18,11 @@ impl Simulation {
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
             let axes = joint.axes(*self.physics.bodies[self.parts[joint.parent]].rotation());
-            let couple = axes * Vector::new(bend_nm, twist_nm, 0.0);
+            let couple = self.turned(axes, Vector::new(bend_nm, twist_nm, 0.0));
             let rates_rad_s = self.joint_rates(joint, axes);
             let [bend, twist] = rates_rad_s;
             let damping_nms = joint.damping_nms_per_rad * self.damping_as_torque;
-            let damping = axes * (Vector::new(bend, twist, 0.0) * -damping_nms);
+            let damping = self.turned(axes, Vector::new(bend, twist, 0.0) * -damping_nms);
             let torque = JointTorque { bend_nm, twist_nm };
             self.applied[index] = AppliedTorque { axes, torque, rates_rad_s };
             self.torques_in_world[joint.parent] -= couple;
@@ -69,7 +69,7 @@ impl Simulation {
     /// Rates of a joint about the x and y axes of a rotation, in rad/s.
     fn joint_rates(&self, joint: &JointPlan, axes: Rotation) -> [f32; 2] {
         let turn = |limb: usize| self.physics.bodies[self.parts[limb]].angvel();
-        let rate = axes.inverse() * (turn(joint.child) - turn(joint.parent));
+        let rate = self.turned(axes.inverse(), turn(joint.child) - turn(joint.parent));
         [rate.x, rate.y]
     }
 }

@@ -6,7 +6,7 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 26] = [
+const TASKS: [(Task, &str); 27] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
@@ -17,6 +17,7 @@ const TASKS: [(Task, &str); 26] = [
     (BodyStudy, "body-study"),
     (PoetStudy, "poet-study"),
     (StairsStudy, "stairs-study"),
+    (EngineStudy, "engine-study"),
     (Verify, "verify"),
     (Exam, "exam a.ron"),
     (Export, "export a.ron -o a.csv"),
@@ -128,6 +129,7 @@ fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
         ("body-study", &[BodyStudy]),
         ("poet-study", &[PoetStudy]),
         ("stairs-study", &[StairsStudy]),
+        ("engine-study", &[EngineStudy]),
         ("families", &[Families]),
         ("robust", &[Robust]),
         ("bench", &[Bench]),

@@ -6,6 +6,7 @@ use bevy_egui::egui;
 
 use super::actions::{LibraryAction, LibraryActionKind};
 use crate::save::library::{RunDetails, SavePlace};
+use crate::schema::Choices;
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
@@ -74,8 +75,10 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
             origin.individual + 1
         ));
         let (controller, engine) = (champion.controller.name(), champion.engine);
-        let duration_s = champion.duration_s;
-        lines.push(format!("Duration {duration_s} s, controller {controller}, engine {engine}"));
+        let (duration_s, physics) = (champion.duration_s, champion.physics.choice().name);
+        lines.push(format!(
+            "Duration {duration_s} s, controller {controller}, physics {physics}, engine {engine}"
+        ));
         lines.extend(champion.exam.as_ref().map(|exam| format!("Exam: {exam}")));
         lines.extend(champion.note.clone());
     }

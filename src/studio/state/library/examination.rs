@@ -58,7 +58,7 @@ impl Library {
         };
         let champions = paths.into_iter().map(load).collect::<Result<Vec<_>, String>>()?;
         let Some((_, first)) = champions.first() else { return Ok(()) };
-        let trials = exam_trials(&first.champion, ExamSuite::OPTIONS);
+        let trials = exam_trials(&first.champion, &ExamSuite::USUAL);
         let names = champions.iter().map(|(path, _)| name_of(path)).collect();
         let control = Arc::new(RunControl::default());
         let shared = Arc::clone(&control);
@@ -130,7 +130,7 @@ fn examined(
         Err(error) => return vec![Some(Err(format!("The exam could not be started: {error}")))],
     };
     let each = |(index, (path, loaded)): (usize, (PathBuf, LoadedChampion))| {
-        let results = examine(&loaded.champion, ExamSuite::OPTIONS, &pool, control).ok()?;
+        let results = examine(&loaded.champion, &ExamSuite::USUAL, &pool, control).ok()?;
         let stored = store_exam(&path, &loaded, &results).map_err(|error| error.to_string());
         progress.set_done(index + 1);
         Some(stored.map(|()| exam_in_words(&results).unwrap_or_default()))
@@ -176,6 +176,6 @@ mod tests {
         let path = tried.folder.path().join("a.ron");
         let exam = load_champion(&path).expect("read").exam;
         // A gait has no senses that could be taken from it.
-        assert_eq!(exam.len(), ExamSuite::OPTIONS.len() - 1);
+        assert_eq!(exam.len(), ExamSuite::USUAL.len() - 1);
     }
 }

@@ -3,7 +3,7 @@
 use super::surface::{block, body, run};
 use super::*;
 
-#[test]
+in_both_engines!(a_block_that_slides_to_rest_loses_its_kinetic_energy);
 fn a_block_that_slides_to_rest_loses_its_kinetic_energy() {
     let mut simulation = Simulation::new(&block(Surface { friction: 0.5, ..Default::default() }));
     run(&mut simulation, 1.0);
@@ -14,7 +14,7 @@ fn a_block_that_slides_to_rest_loses_its_kinetic_energy() {
     assert!((lost_j - 0.5 * 5.0 * 16.0).abs() < 0.5, "{lost_j} J");
 }
 
-#[test]
+in_both_engines!(a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_leaves);
 fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_leaves() {
     for bounce in [0.0, 0.6] {
         let mut plan = block(Surface { bounce, ..Default::default() });
@@ -34,7 +34,7 @@ fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_le
     }
 }
 
-#[test]
+in_both_engines!(frictionless_joints_lose_nothing_of_the_work_that_drives_them);
 fn frictionless_joints_lose_nothing_of_the_work_that_drives_them() {
     let (_, mut simulation) = weightless(2);
     for _ in 0..20 {
@@ -46,7 +46,7 @@ fn frictionless_joints_lose_nothing_of_the_work_that_drives_them() {
     assert!(lost_j.abs() < 0.02 * work_j, "{lost_j} of {work_j} J");
 }
 
-#[test]
+in_both_engines!(holding_power_counts_the_square_of_each_torque_and_never_as_work);
 fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
     let spent = |power_w: f32, bend_nm: f32, twist_nm: f32| {
         let (_, mut simulation) = weightless(2);
@@ -71,7 +71,7 @@ fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
     }
 }
 
-#[test]
+in_both_engines!(a_joint_stopped_by_its_limits_loses_the_work_that_drove_it);
 fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
     let (_, mut simulation) = weightless(2);
     for _ in 0..240 {
@@ -82,7 +82,9 @@ fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
     assert!((lost.total_j - 4.0).abs() < 0.2 && lost.elsewhere_j() == lost.total_j, "{lost:?}");
 }
 
-#[test]
+in_both_engines!(
+    without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_is_lost
+);
 fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_is_lost() {
     for (damping_nms_per_rad, angular_damping_per_s) in
         [(30.0, 0.0), (5.0, 0.0), (5.0, 2.0), (0.0, 2.0)]
@@ -117,7 +119,7 @@ fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_
     }
 }
 
-#[test]
+in_both_engines!(a_snake_that_gains_energy_without_its_joints_is_disqualified);
 fn a_snake_that_gains_energy_without_its_joints_is_disqualified() {
     let (plan, mut simulation) = weightless(2);
     let still = vec![JointTorque::default(); plan.body.joints.len()];

@@ -7,7 +7,7 @@ fn sum(simulation: &Simulation) -> Vector {
     simulation.contact_forces().iter().map(|contact| contact.force_n).sum()
 }
 
-#[test]
+in_both_engines!(a_snake_at_rest_is_carried_by_its_contacts);
 fn a_snake_at_rest_is_carried_by_its_contacts() {
     let plan = plan(5);
     let mut simulation = Simulation::new(&plan);
@@ -23,7 +23,7 @@ fn a_snake_at_rest_is_carried_by_its_contacts() {
     }
 }
 
-#[test]
+in_both_engines!(friction_opposes_the_motion_with_the_force_of_its_law);
 fn friction_opposes_the_motion_with_the_force_of_its_law() {
     let mut plan = plan(2);
     plan.surface.friction = 0.5;
@@ -41,7 +41,7 @@ fn friction_opposes_the_motion_with_the_force_of_its_law() {
     assert!((sum.y - 0.5 * sum.z).abs() < 0.05 * weight_n, "{sum}: forwards, half the weight");
 }
 
-#[test]
+in_both_engines!(applied_torques_are_the_clamped_torques);
 fn applied_torques_are_the_clamped_torques() {
     let mut simulation = Simulation::new(&plan(3));
     let asked = JointTorque { bend_nm: 5000.0, twist_nm: -30.0 };

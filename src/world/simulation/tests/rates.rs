@@ -7,7 +7,8 @@ use crate::world::TESTED_RATES;
 /// Calls a test with the engine's settings of each of [`TESTED_RATES`].
 fn at_every_rate(test: impl Fn(&PhysicsSettings, &str)) {
     for (steps_per_s, substeps) in TESTED_RATES {
-        let physics = PhysicsSettings { steps_per_s, substeps, ..Default::default() };
+        let engine = ENGINE.get();
+        let physics = PhysicsSettings { engine, steps_per_s, substeps, ..Default::default() };
         test(&physics, &format!("{steps_per_s} steps a second, {substeps} substeps"));
     }
 }
@@ -16,7 +17,7 @@ fn assert_close(found: f32, expected: f32, tolerance: f32, case: &str) {
     assert!((found / expected - 1.0).abs() < tolerance, "{found} for {expected}: {case}");
 }
 
-#[test]
+in_both_engines!(air_takes_a_spin_at_its_rate);
 fn air_takes_a_spin_at_its_rate() {
     at_every_rate(|physics, case| {
         for damping_per_s in [0.5, 2.0, 20.0, 88.0] {
@@ -35,7 +36,7 @@ fn air_takes_a_spin_at_its_rate() {
     });
 }
 
-#[test]
+in_both_engines!(in_air_a_torque_turns_a_limb_at_torque_over_damping);
 fn in_air_a_torque_turns_a_limb_at_torque_over_damping() {
     at_every_rate(|physics, case| {
         // At 88 1/s, in thick air, the bound is (d h)² / 24 = 9 % at 60 steps a second.
@@ -51,7 +52,7 @@ fn in_air_a_torque_turns_a_limb_at_torque_over_damping() {
     });
 }
 
-#[test]
+in_both_engines!(a_damping_surface_slows_a_limb_at_its_rate);
 fn a_damping_surface_slows_a_limb_at_its_rate() {
     at_every_rate(|physics, case| {
         for dampen_per_s in [0.5, 2.0, 20.0] {
@@ -67,7 +68,7 @@ fn a_damping_surface_slows_a_limb_at_its_rate() {
     });
 }
 
-#[test]
+in_both_engines!(on_a_damping_slope_a_limb_slides_at_gravity_over_damping);
 fn on_a_damping_slope_a_limb_slides_at_gravity_over_damping() {
     at_every_rate(|physics, case| {
         for dampen_per_s in [2.0, 20.0] {
@@ -115,7 +116,7 @@ fn twist(simulation: &mut Simulation, rate_rad_s: f32) {
     }
 }
 
-#[test]
+in_both_engines!(joint_damping_slows_a_joint_at_its_rate);
 fn joint_damping_slows_a_joint_at_its_rate() {
     at_every_rate(|physics, case| {
         for damping in [0.5, 2.0, 6.0] {
@@ -130,7 +131,7 @@ fn joint_damping_slows_a_joint_at_its_rate() {
     });
 }
 
-#[test]
+in_both_engines!(a_torque_turns_a_damped_joint_at_torque_over_damping);
 fn a_torque_turns_a_damped_joint_at_torque_over_damping() {
     at_every_rate(|physics, case| {
         let mut simulation = floating_pair(physics, 0.0, 30.0);
@@ -152,7 +153,7 @@ fn on_springs(physics: &PhysicsSettings, surface: Surface, seconds: f32) -> Vec<
     (0..steps).map(step).collect()
 }
 
-#[test]
+in_both_engines!(soft_ground_carries_a_block_at_its_weight_over_the_stiffness);
 fn soft_ground_carries_a_block_at_its_weight_over_the_stiffness() {
     at_every_rate(|physics, case| {
         for (soft_erp, soft_cfm_m_s_per_n) in [(0.2, 0.01), (0.8, 0.01), (0.2, 0.1)] {
@@ -165,7 +166,9 @@ fn soft_ground_carries_a_block_at_its_weight_over_the_stiffness() {
     });
 }
 
-#[test]
+in_both_engines!(
+    a_block_swings_on_soft_ground_with_the_period_and_the_decay_of_its_spring_and_damper
+);
 fn a_block_swings_on_soft_ground_with_the_period_and_the_decay_of_its_spring_and_damper() {
     at_every_rate(|physics, case| {
         // The damping ratios are 0.05, 0.1 and 0.3.
@@ -198,7 +201,7 @@ fn a_block_swings_on_soft_ground_with_the_period_and_the_decay_of_its_spring_and
     });
 }
 
-#[test]
+in_both_engines!(a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second);
 fn a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second() {
     at_every_rate(|physics, case| {
         for soft_erp in [0.1, 0.25, 0.6] {
@@ -217,7 +220,7 @@ fn a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second(
     });
 }
 
-#[test]
+in_both_engines!(a_pushed_block_creeps_at_slip_times_force);
 fn a_pushed_block_creeps_at_slip_times_force() {
     at_every_rate(|physics, case| {
         for slip_m_s_per_n in [0.001, 0.01, 0.05] {
@@ -234,7 +237,7 @@ fn a_pushed_block_creeps_at_slip_times_force() {
     });
 }
 
-#[test]
+in_both_engines!(an_impact_bounces_from_the_bounce_velocity_on);
 fn an_impact_bounces_from_the_bounce_velocity_on() {
     at_every_rate(|physics, case| {
         let rebound_m_s = |bounce_velocity_m_s| {

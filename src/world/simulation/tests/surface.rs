@@ -35,7 +35,7 @@ fn rebound_m(surface: Surface, height_m: f32) -> f32 {
     highest_m
 }
 
-#[test]
+in_both_engines!(a_block_slides_only_past_the_friction_angle);
 fn a_block_slides_only_past_the_friction_angle() {
     for friction in [0.2, 0.5, 1.0] {
         let slid_m = |tangent: f32| {
@@ -59,7 +59,7 @@ fn a_block_slides_only_past_the_friction_angle() {
     }
 }
 
-#[test]
+in_both_engines!(a_dropped_block_rebounds_to_the_square_of_its_bounce);
 fn a_dropped_block_rebounds_to_the_square_of_its_bounce() {
     for bounce in [0.3, 0.6, 0.9] {
         let found_m = rebound_m(Surface { bounce, ..Default::default() }, 1.0);
@@ -68,7 +68,7 @@ fn a_dropped_block_rebounds_to_the_square_of_its_bounce() {
     }
 }
 
-#[test]
+in_both_engines!(an_impact_below_the_bounce_velocity_does_not_rebound);
 fn an_impact_below_the_bounce_velocity_does_not_rebound() {
     // A fall of 1 m ends at sqrt(2 g) = 4.43 m/s.
     let rebound_m = |bounce_velocity_m_s| {
@@ -82,7 +82,7 @@ fn an_impact_below_the_bounce_velocity_does_not_rebound() {
     assert!(below_m < 0.01, "{below_m} m");
 }
 
-#[test]
+in_both_engines!(a_resting_block_sinks_by_its_weight_over_the_stiffness_of_its_contacts);
 fn a_resting_block_sinks_by_its_weight_over_the_stiffness_of_its_contacts() {
     for (soft_erp, soft_cfm_m_s_per_n) in [(0.2, 0.01), (0.8, 0.01), (0.2, 0.1), (0.9, 0.2)] {
         let surface = Surface { soft_erp, soft_cfm_m_s_per_n, ..Default::default() };
@@ -95,7 +95,7 @@ fn a_resting_block_sinks_by_its_weight_over_the_stiffness_of_its_contacts() {
     }
 }
 
-#[test]
+in_both_engines!(ground_and_stairs_have_independent_softness);
 fn ground_and_stairs_have_independent_softness() {
     let sunk_m = |on_stairs: bool, stairs_cfm, ground_cfm| {
         let soft = |soft_cfm_m_s_per_n| Surface { soft_cfm_m_s_per_n, ..Default::default() };
@@ -128,7 +128,7 @@ fn ground_and_stairs_have_independent_softness() {
     assert!(hard_m.abs() < 0.001, "hard stairs beside soft ground: {hard_m} m");
 }
 
-#[test]
+in_both_engines!(a_soft_skin_on_hard_ground_sinks_as_soft_ground_does);
 fn a_soft_skin_on_hard_ground_sinks_as_soft_ground_does() {
     let mut plan = block(Surface::default());
     plan.skin = Skin { soft_erp: 0.4, soft_cfm_m_s_per_n: 0.02, ..Default::default() };
@@ -150,7 +150,7 @@ fn creep_m_s(surface: Surface, push_n: f32) -> f32 {
     body(&mut simulation).linvel().y
 }
 
-#[test]
+in_both_engines!(creep_is_proportional_to_slip_and_to_force);
 fn creep_is_proportional_to_slip_and_to_force() {
     // The cone ends at 49 N.
     for slip_m_s_per_n in [0.001, 0.01, 0.05] {
@@ -163,14 +163,14 @@ fn creep_is_proportional_to_slip_and_to_force() {
     assert!(creep_m_s(Surface::default(), 40.0).abs() < 1e-4, "without slip it holds");
 }
 
-#[test]
+in_both_engines!(soft_ground_slips_as_hard_ground_does);
 fn soft_ground_slips_as_hard_ground_does() {
     let surface = Surface { slip_m_s_per_n: 0.01, soft_cfm_m_s_per_n: 0.001, ..Default::default() };
     let found = creep_m_s(surface, 20.0);
     assert!((found / 0.2 - 1.0).abs() < 0.05, "{found} m/s for 0.2 m/s");
 }
 
-#[test]
+in_both_engines!(dampen_halves_a_sliding_blocks_speed_in_the_computed_time);
 fn dampen_halves_a_sliding_blocks_speed_in_the_computed_time() {
     for dampen_per_s in [0.5, 2.0] {
         let surface = Surface { friction: 0.0, dampen_per_s, ..Default::default() };
@@ -192,7 +192,7 @@ fn dampen_halves_a_sliding_blocks_speed_in_the_computed_time() {
     }
 }
 
-#[test]
+in_both_engines!(the_frictions_of_surface_and_skin_multiply_and_the_larger_bounce_counts);
 fn the_frictions_of_surface_and_skin_multiply_and_the_larger_bounce_counts() {
     let slides = |skin_friction, tangent: f32| {
         let mut plan = block(Surface { friction: 0.5, ..Default::default() });
@@ -268,7 +268,7 @@ fn energy_gained_j(surface: Surface) -> (f32, f32) {
     (gained_j, first_j)
 }
 
-#[test]
+in_both_engines!(no_surface_adds_energy);
 fn no_surface_adds_energy() {
     let slippery = Surface { friction: 2.0, slip_m_s_per_n: 0.1, ..Default::default() };
     let soft = Surface { soft_cfm_m_s_per_n: 0.01, ..Default::default() };

@@ -1,0 +1,92 @@
+//! The arms of the study, and their runs.
+
+use std::time::Instant;
+
+use crate::check::Invalid;
+use crate::evolve::{Champion, RunPlan, Settings};
+use crate::run::compare::run_one;
+use crate::run::evaluator::Evaluator;
+use crate::run::exam::examine;
+use crate::run::experiment::Experiment;
+use crate::run::run_control::{Cancelled, RunControl};
+use crate::run::study::{StudyArm, budgeted};
+use crate::save::EngineStudyRun;
+use crate::schema::choices;
+use crate::score::ExamSuite;
+use crate::world::PhysicsEngine;
+
+choices! {
+    /// The engine in which the snakes of a run learn.
+    pub enum EngineArm {
+        Rapier = "rapier", "rapier", "Learns in rapier.";
+        Lanes = "lanes", "lanes", "Learns in lanes.";
+    }
+}
+
+impl EngineArm {
+    /// The engine.
+    pub fn engine(self) -> PhysicsEngine {
+        match self {
+            Self::Rapier => PhysicsEngine::Rapier,
+            Self::Lanes => PhysicsEngine::Lanes,
+        }
+    }
+}
+
+impl StudyArm for EngineArm {
+    type Run = EngineStudyRun;
+
+    fn plan(self, settings: &Settings, seed: u64, evaluations: u32) -> Result<RunPlan, Invalid> {
+        let mut settings = settings.clone();
+        settings.trial.physics.engine = self.engine();
+        let champion_trials = settings.trial.repeats.champion_trials;
+        let mut plan = budgeted("climb", settings, seed, evaluations)?;
+        plan.settings.trial.repeats.champion_trials = champion_trials;
+        plan.settings.check()?;
+        Ok(plan)
+    }
+
+    fn measured(
+        self,
+        plan: &RunPlan,
+        evaluator: &dyn Evaluator,
+        control: &RunControl,
+        spent: &(dyn Fn(u64) + Sync),
+    ) -> Result<EngineStudyRun, Cancelled> {
+        let mut experiment = Experiment::new(plan.clone());
+        let started = Instant::now();
+        let run = run_one(&mut experiment, plan, |experiment| {
+            let report = experiment.run_generation(evaluator, control)?;
+            spent(report.evaluations.into());
+            Ok(report)
+        })?;
+        let elapsed_s = started.elapsed().as_secs_f64();
+        let kept = match experiment.best() {
+            Some(best) => kept_in_other(best, evaluator, control)?,
+            None => None,
+        };
+        Ok(EngineStudyRun {
+            seed: plan.seed,
+            evaluations: run.evaluations,
+            first_on_landing: run.first_on_landing,
+            last_mean: run.last_mean,
+            fitness: run.best.map(|best| best.fitness),
+            kept,
+            elapsed_s,
+            run_hash: run.run_hash,
+        })
+    }
+}
+
+/// The share of its way that a champion keeps in the other engine; none if that cannot simulate it.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn kept_in_other(
+    champion: &Champion,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Option<f32>, Cancelled> {
+    let results = examine(champion, &[ExamSuite::Engine], evaluator, control)?;
+    Ok(results.first().map(|result| result.kept))
+}

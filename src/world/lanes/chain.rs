@@ -1,0 +1,280 @@
+//! One snake as the solver sees it: its boxes, joints and surroundings, and the contacts of its last step.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use super::block::Block;
+use super::contact::Contact;
+use crate::world::contact::{joint_coefficients, soft_contacts};
+use crate::world::surface::ContactLaw;
+use crate::world::{BodyPlan, Vector, WorldPlan};
+
+/// Numbers of parts that this engine simulates.
+const PARTS: RangeInclusive<usize> = 1..=12;
+
+/// A box of the snake.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    pub half_m: Vector,
+    pub mass_kg: f32,
+    /// About its own axes, in kg·m².
+    pub inertia_kg_m2: Vector,
+}
+
+/// The state of a part at the beginning and at the end of a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct PartState {
+    /// Its centre, in metres.
+    pub at: Vector,
+    /// Its rotation as a quaternion: x, y, z and w.
+    pub turn: [f32; 4],
+    /// Velocity of its centre, in m/s.
+    pub linear: Vector,
+    /// In rad/s, in the world.
+    pub angular: Vector,
+    /// Force on its centre besides gravity, in N.
+    pub force_n: Vector,
+    /// Torque on it, in N·m, in the world.
+    pub torque_nm: Vector,
+    /// Whether it is held where it is, and nothing moves it.
+    pub is_held: bool,
+}
+
+impl PartState {
+    /// Velocity of the part at a place in the world, in m/s.
+    pub fn velocity_at(&self, at: Vector) -> Vector {
+        self.linear + self.angular.cross(at - self.at)
+    }
+
+    /// Its axes in the world.
+    pub fn axes(&self) -> [Vector; 3] {
+        let [x, y, z, w] = self.turn;
+        [
+            Vector::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
+            Vector::new(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
+            Vector::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
+        ]
+    }
+}
+
+/// A universal joint between the rear face of a part and the front face of another one.
+#[derive(Debug, Clone)]
+pub(super) struct Joint {
+    /// Indices of the parts, the front one first.
+    pub parts: [usize; 2],
+    /// Sine and cosine of half of the greatest bend and twist; none where the axis turns freely.
+    pub half_limits: [Option<[f32; 2]>; 2],
+    /// Share of the damping that the solver integrates, in N·m·s/rad.
+    pub damping_nms: f32,
+    /// Share of a position error that is corrected, per second.
+    pub correction_per_s: f32,
+    /// Compliance, as a share of a row's own inverse mass.
+    pub compliance: f32,
+}
+
+/// How a contact behaves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Law {
+    pub contact: ContactLaw,
+    pub friction: f32,
+    pub bounce: f32,
+    /// Share of a penetration that is corrected, per second.
+    pub correction_per_s: f32,
+    /// Factor on the impulse of a touching point: 1 for a rigid contact, less for a spring.
+    pub softening: f32,
+}
+
+/// What the snake can touch.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Laws {
+    pub stairs: Law,
+    pub ground: Law,
+    pub limbs: Law,
+}
+
+/// A solid of the stairs.
+#[derive(Debug, Clone)]
+pub(super) struct Solid {
+    pub block: Block,
+    /// The upright box around it.
+    pub low: Vector,
+    pub high: Vector,
+}
+
+/// What all lanes of a solver have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Common {
+    pub step_s: f32,
+    pub substeps: u32,
+    pub iterations: u32,
+    pub parts: usize,
+    pub joints: usize,
+    /// Whether a contact or a joint is a spring: then each pass solves friction, and none of them takes corrections of
+    /// positions out of the velocities again.
+    pub has_springs: bool,
+}
+
+/// One snake on its stairs.
+#[derive(Debug, Clone)]
+pub(crate) struct Chain {
+    pub(super) common: Common,
+    pub(super) parts: Vec<Part>,
+    pub(super) joints: Vec<Joint>,
+    /// Pairs of parts that can touch, the front one first.
+    pub(super) pairs: Vec<[usize; 2]>,
+    pub(super) solids: Arc<[Solid]>,
+    pub(super) laws: Laws,
+    /// In m/s².
+    pub gravity: Vector,
+    /// The state that the next step begins with, and that the last one left.
+    pub state: Vec<PartState>,
+    /// The contacts of the last step: those between parts first, then those of each part with the world.
+    pub contacts: Vec<Contact>,
+    /// Those of the step before; its memory is used again.
+    pub(super) earlier: Vec<Contact>,
+}
+
+impl BodyPlan {
+    /// Why the engine *lanes* cannot simulate this body, in words that follow "because "; none if it can.
+    pub fn obstacle_in_lanes(&self) -> Option<&'static str> {
+        if !self.springs.is_empty() {
+            Some("its limbs are soft")
+        } else if self.is_branching() {
+            Some("its body branches")
+        } else if !PARTS.contains(&self.parts.len()) {
+            Some("it has more than 12 limbs")
+        } else {
+            None
+        }
+    }
+}
+
+impl Chain {
+    /// The snake of a plan whose body has no [obstacle](BodyPlan::obstacle_in_lanes).
+    pub fn new(plan: &WorldPlan) -> Self {
+        let WorldPlan { body, physics, skin, .. } = plan;
+        let parts: Vec<Part> = body
+            .parts
+            .iter()
+            .map(|part| {
+                let [w2, l2, h2] = part.size_m().map(|size_m| size_m * size_m);
+                let mass_kg = part.mass_kg();
+                let inertia_kg_m2 = Vector::new(l2 + h2, w2 + h2, w2 + l2) * (mass_kg / 12.0);
+                Part { half_m: Vector::from(part.size_m()) / 2.0, mass_kg, inertia_kg_m2 }
+            })
+            .collect();
+        let joints = body.joints.iter().map(|joint| {
+            let [front_kg, rear_kg] = [joint.parent, joint.child].map(|part| parts[part].mass_kg);
+            let soft =
+                joint_coefficients(joint.cfm_m_s_per_n, physics.substep_s(), front_kg, rear_kg);
+            Joint {
+                parts: [joint.parent, joint.child],
+                half_limits: [joint.bend_limit_rad, joint.twist_limit_rad].map(half_limit),
+                damping_nms: physics.joint_damping_in_solver() * joint.damping_nms_per_rad,
+                correction_per_s: soft.erp_inv_dt(physics.substep_s()),
+                compliance: soft.cfm_coeff(physics.substep_s()),
+            }
+        });
+        let soft = soft_contacts(plan);
+        let law = |contact: ContactLaw, friction: f32, bounce: f32| {
+            let spring = soft.of(contact.softness, physics);
+            Law {
+                contact,
+                friction: friction * skin.friction,
+                bounce: bounce.max(skin.bounce),
+                correction_per_s: spring.erp_inv_dt(physics.substep_s()),
+                softening: spring.cfm_factor(physics.substep_s()),
+            }
+        };
+        let laws = Laws {
+            stairs: law(soft.laws.stairs, plan.surface.friction, plan.surface.bounce),
+            ground: law(soft.laws.ground, plan.ground.friction, plan.ground.bounce),
+            limbs: law(soft.laws.limbs, skin.friction, skin.bounce),
+        };
+        let touch = |front: usize, rear: usize| {
+            !body.joints.iter().any(|joint| [joint.parent, joint.child] == [front, rear])
+                && !body
+                    .contact_free_pairs
+                    .contains(&[body.parts[front].limb, body.parts[rear].limb])
+        };
+        let count = parts.len();
+        let pairs = (0..count).flat_map(|front| (front + 1..count).map(move |rear| [front, rear]));
+        let mut chain = Self {
+            common: Common {
+                step_s: physics.step_s(),
+                substeps: physics.substeps.max(1),
+                iterations: physics.iterations,
+                parts: count,
+                joints: body.joints.len(),
+                has_springs: soft.laws.has_springs(),
+            },
+            joints: joints.collect(),
+            pairs: pairs.filter(|[front, rear]| touch(*front, *rear)).collect(),
+            solids: solids(plan),
+            laws,
+            gravity: Vector::new(0.0, 0.0, -physics.gravity_m_s2),
+            state: vec![PartState::default(); count],
+            contacts: Vec::new(),
+            earlier: Vec::new(),
+            parts,
+        };
+        for (state, pose) in chain.state.iter_mut().zip(plan.start_poses()) {
+            (state.at, state.turn) = (pose.translation, pose.rotation.to_array());
+        }
+        chain
+    }
+
+    /// What it must have in common with the other lanes of a solver.
+    pub fn common(&self) -> Common {
+        self.common
+    }
+
+    /// Mass of a part, in kg, and its inertia about its own axes, in kg·m²; none for a part that it does not have.
+    pub fn mass_of(&self, part: usize) -> Option<(f32, Vector)> {
+        self.parts.get(part).map(|part| (part.mass_kg, part.inertia_kg_m2))
+    }
+
+    /// The box of a part in its present state.
+    pub(super) fn block(&self, part: usize) -> Block {
+        let state = &self.state[part];
+        Block { centre: state.at, axes: state.axes(), half_m: self.parts[part].half_m }
+    }
+
+    /// Takes over the contacts of a snake of the same body on the same stairs, so that it goes on with their impulses.
+    pub fn take_contacts_of(&mut self, other: &Self) {
+        self.contacts.clone_from(&other.contacts);
+    }
+
+    /// Whether both have the same stairs.
+    pub fn has_solids_of(&self, other: &Self) -> bool {
+        let places = |of: &Self| {
+            of.solids
+                .iter()
+                .map(|solid| (solid.block.centre, solid.block.half_m, solid.block.axes))
+                .collect::<Vec<_>>()
+        };
+        places(self) == places(other)
+    }
+}
+
+/// Sine and cosine of half a limit; none for a limit of half a turn or more, which the angle cannot pass.
+fn half_limit(limit_rad: f32) -> Option<[f32; 2]> {
+    (limit_rad < std::f32::consts::PI).then(|| {
+        let (sin, cos) = libm::sincosf(limit_rad / 2.0);
+        [sin, cos]
+    })
+}
+
+fn solids(plan: &WorldPlan) -> Arc<[Solid]> {
+    let solids = plan.stairs.solids().into_iter().map(|solid| {
+        let state = PartState {
+            at: solid.pose.translation,
+            turn: solid.pose.rotation.to_array(),
+            ..PartState::default()
+        };
+        let block = Block { centre: state.at, axes: state.axes(), half_m: solid.half_m };
+        let reach_m = block.reach_m();
+        Solid { low: block.centre - reach_m, high: block.centre + reach_m, block }
+    });
+    solids.collect()
+}

@@ -1,0 +1,281 @@
+//! Finds the contacts of a snake at the beginning of a step, and gives each the impulses with which it begins.
+
+use super::block::{Block, Candidates, MOST_POINTS, of_blocks, on_ground};
+use super::chain::{Chain, Law};
+use crate::world::Vector;
+use crate::world::contact::SlippingPatch;
+
+/// Distance up to which bodies that approach are seen as a contact, in metres: rapier's.
+const WITHIN_M: f32 = 0.02;
+
+/// What a part touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Other {
+    /// The ground.
+    Ground,
+    /// A solid of the stairs, by its index.
+    Solid(usize),
+    /// A part further to the front, by its index.
+    Part(usize),
+}
+
+/// A point of a contact.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Point {
+    pub(super) features: u16,
+    /// Midway between both surfaces at the beginning of the step, in the world, in metres.
+    pub(super) at: Vector,
+    /// On the part, in its own frame, in metres.
+    pub on_part: Vector,
+    /// On what it touches: in the frame of that part, or in the world.
+    pub on_other: Vector,
+    /// At the beginning of the step, in metres.
+    pub(super) distance_m: f32,
+    /// Of the last substep, along the normal, in N·s.
+    pub impulse_ns: f32,
+    /// Of the whole step, in N·s.
+    pub total_ns: f32,
+    /// Whether it carried no load in the step before.
+    pub is_new: bool,
+    /// Speed at which the bodies approached here when the step began, in m/s; known where something bounces.
+    pub(super) incoming_m_s: f32,
+}
+
+/// A contact of a part: up to four points along one normal, which share their friction.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Contact {
+    /// Index of the part; of two parts that touch, the rear one.
+    pub part: usize,
+    /// What it touches.
+    pub other: Other,
+    /// Unit vector in the world along which the part is pushed.
+    pub normal: Vector,
+    /// Coulomb coefficient of the materials.
+    pub material_friction: f32,
+    /// That of this step, which is lower where the surface lets the part slip.
+    pub(super) friction: f32,
+    pub(super) bounce: f32,
+    pub(super) correction_per_s: f32,
+    pub(super) softening: f32,
+    points: [Point; MOST_POINTS],
+    count: usize,
+    /// Friction on the part in the last substep, in N·s, in the world.
+    pub friction_ns: Vector,
+    /// Torque of the friction on the part about the normal in the last substep, in N·m·s.
+    pub twist_nms: f32,
+}
+
+impl Contact {
+    /// Its points.
+    pub fn points(&self) -> &[Point] {
+        &self.points[..self.count]
+    }
+
+    pub(super) fn points_mut(&mut self) -> &mut [Point] {
+        &mut self.points[..self.count]
+    }
+}
+
+/// The second of two bodies whose contact is looked for, and the first one.
+struct Bodies<'a> {
+    part: usize,
+    other: Other,
+    first: Option<&'a Block>,
+    second: &'a Block,
+    law: Law,
+}
+
+impl Chain {
+    /// Finds the contacts of its present state. Those of the last step become the earlier ones.
+    pub(super) fn find_contacts(&mut self) {
+        std::mem::swap(&mut self.contacts, &mut self.earlier);
+        let mut contacts = std::mem::take(&mut self.contacts);
+        contacts.clear();
+        let mut found = Candidates::default();
+        let mut blocks = [None; MOST_PARTS];
+        for part in 0..self.parts.len().min(MOST_PARTS) {
+            let block = self.block(part);
+            blocks[part] = Some((block, block.reach_m()));
+        }
+        for &[front, rear] in &self.pairs {
+            let (Some((first, of_first)), Some((second, of_second))) =
+                (blocks[front], blocks[rear])
+            else {
+                continue;
+            };
+            let apart = (first.centre - second.centre).abs();
+            if (apart - (of_first + of_second)).max_element() > WITHIN_M {
+                continue;
+            }
+            if of_blocks(&first, &second, WITHIN_M, &mut found) {
+                let (other, law) = (Other::Part(front), self.laws.limbs);
+                let bodies =
+                    Bodies { part: rear, other, first: Some(&first), second: &second, law };
+                self.add_contact(&bodies, &found, &mut contacts);
+            }
+        }
+        for (part, block) in blocks.iter().enumerate() {
+            let Some((block, reach_m)) = block else { continue };
+            let (low, high) = (block.centre - *reach_m, block.centre + *reach_m);
+            if low.z <= WITHIN_M && on_ground(block, WITHIN_M, &mut found) {
+                let (other, law) = (Other::Ground, self.laws.ground);
+                let bodies = Bodies { part, other, first: None, second: block, law };
+                self.add_contact(&bodies, &found, &mut contacts);
+            }
+            for (index, solid) in self.solids.iter().enumerate() {
+                let is_far = solid.low.y - high.y > WITHIN_M
+                    || low.y - solid.high.y > WITHIN_M
+                    || low.z - solid.high.z > WITHIN_M
+                    || solid.low.x - high.x > WITHIN_M
+                    || low.x - solid.high.x > WITHIN_M
+                    || solid.low.z - high.z > WITHIN_M;
+                if is_far {
+                    continue;
+                }
+                if of_blocks(&solid.block, block, WITHIN_M, &mut found) {
+                    let (other, law) = (Other::Solid(index), self.laws.stairs);
+                    let first = Some(&solid.block);
+                    let bodies = Bodies { part, other, first, second: block, law };
+                    self.add_contact(&bodies, &found, &mut contacts);
+                }
+            }
+        }
+        self.contacts = contacts;
+    }
+
+    /// Adds the contact of two bodies, with the impulses that its points had in the step before, unless no point is near enough.
+    fn add_contact(&self, bodies: &Bodies<'_>, found: &Candidates, contacts: &mut Vec<Contact>) {
+        let Bodies { part, other, first, second, law } = bodies;
+        let turned = |of: Vector| first.map_or(of, |first| first.turned(of));
+        let placed = |at: Vector| first.map_or(at, |first| first.to_world(at));
+        let normal = turned(found.normal);
+        let mut contact = Contact {
+            part: *part,
+            other: *other,
+            normal,
+            material_friction: law.friction,
+            friction: law.friction,
+            bounce: law.bounce,
+            correction_per_s: law.correction_per_s,
+            softening: law.softening,
+            points: [Point::default(); MOST_POINTS],
+            count: 0,
+            friction_ns: Vector::ZERO,
+            twist_nms: 0.0,
+        };
+        let earlier = self.earlier.iter().find(|of| of.part == *part && of.other == *other);
+        let mut kept = 0.0;
+        let (chosen, count) = found.chosen(WITHIN_M);
+        for &index in &chosen[..count] {
+            let candidate = &found.points()[index];
+            let [on_first, on_second] = [candidate.on_first, candidate.on_second].map(placed);
+            if law.contact.softness.is_soft() {
+                // A spring pushes only once it is touched.
+                if candidate.distance_m > 0.0 {
+                    continue;
+                }
+            } else if candidate.distance_m >= WITHIN_M {
+                let approach_m_s = self.approach_m_s(*part, *other, on_second, normal);
+                if candidate.distance_m - approach_m_s * self.common.step_s >= WITHIN_M {
+                    continue;
+                }
+            }
+            let of_earlier = earlier
+                .and_then(|of| of.points().iter().find(|of| of.features == candidate.features));
+            let at = (on_first + on_second) * 0.5;
+            let on_other = if matches!(other, Other::Part(_)) {
+                first.map_or(on_first, |first| first.to_own(on_first))
+            } else {
+                on_first
+            };
+            contact.points[contact.count] = Point {
+                features: candidate.features,
+                at,
+                on_part: second.to_own(on_second),
+                on_other,
+                distance_m: candidate.distance_m,
+                impulse_ns: of_earlier.map_or(0.0, |of| of.impulse_ns),
+                total_ns: 0.0,
+                is_new: of_earlier.is_none_or(|of| of.total_ns == 0.0),
+                incoming_m_s: if law.bounce > 0.0 {
+                    self.approach_m_s(*part, *other, at, normal)
+                } else {
+                    0.0
+                },
+            };
+            contact.count += 1;
+            kept += if of_earlier.is_some() { 1.0 } else { 0.0 };
+        }
+        if contact.count == 0 {
+            return;
+        }
+        if let Some(earlier) = earlier {
+            // Each point had the friction of the whole contact; new points have none yet.
+            let share = kept / contact.count as f32;
+            contact.friction_ns = earlier.friction_ns * share;
+            contact.twist_nms = earlier.twist_nms * share;
+        }
+        self.apply_law(&mut contact, law, earlier.map_or(Vector::ZERO, |of| of.friction_ns), kept);
+        contacts.push(contact);
+    }
+
+    /// Speed at which the bodies approach each other at a point along the normal, in m/s.
+    pub(super) fn approach_m_s(
+        &self,
+        part: usize,
+        other: Other,
+        at: Vector,
+        normal: Vector,
+    ) -> f32 {
+        -self.relative_velocity(part, other, at).dot(normal)
+    }
+
+    /// Velocity of the part's surface relative to what it touches, in m/s.
+    fn relative_velocity(&self, part: usize, other: Other, at: Vector) -> Vector {
+        let of_other = match other {
+            Other::Part(front) => self.state[front].velocity_at(at),
+            Other::Ground | Other::Solid(_) => Vector::ZERO,
+        };
+        self.state[part].velocity_at(at) - of_other
+    }
+
+    /// The parameters of a surface that act before the contact is solved: the least speed for a bounce, and slip, which lowers
+    /// the friction (see [`SlippingPatch`]). `friction_ns` is that of the last step, which `kept` of the points had.
+    fn apply_law(&self, contact: &mut Contact, law: &Law, friction_ns: Vector, kept: f32) {
+        let (part, other, normal) = (contact.part, contact.other, contact.normal);
+        let law = law.contact;
+        if law.bounce_velocity_m_s > 0.0 {
+            let approach = |point: &Point| self.approach_m_s(part, other, point.at, normal);
+            let incoming_m_s = contact.points().iter().map(approach).fold(0.0, f32::max);
+            if incoming_m_s < law.bounce_velocity_m_s {
+                contact.bounce = 0.0;
+            }
+        }
+        if law.slip_m_s_per_n > 0.0 {
+            let count = contact.count as f32;
+            let pressed_ns: f32 = contact.points().iter().map(|point| point.impulse_ns).sum();
+            let centre = contact.points().iter().map(|point| point.at).sum::<Vector>() / count;
+            let velocity = self.relative_velocity(part, other, centre);
+            let along_normal = velocity.dot(normal);
+            let patch = SlippingPatch {
+                friction_ns: friction_ns * kept,
+                points: count,
+                pressed_ns,
+                sliding_m_s: velocity - normal * along_normal,
+                approach_m_s: -along_normal,
+                mass_kg: match other {
+                    Other::Part(front) => self.parts[part].mass_kg.min(self.parts[front].mass_kg),
+                    Other::Ground | Other::Solid(_) => self.parts[part].mass_kg,
+                },
+                step_s: self.common.step_s,
+                substeps: self.common.substeps,
+            };
+            if let Some(friction) = patch.friction(law.slip_m_s_per_n) {
+                contact.friction = contact.friction.min(friction);
+            }
+        }
+    }
+}
+
+/// The most parts of a snake.
+const MOST_PARTS: usize = 12;

@@ -1,0 +1,335 @@
+//! Numbers, vectors and rotations of several snakes side by side, one snake per lane.
+//!
+//! Each operation is a loop over plain arrays, which the compiler turns into the vector instructions that a processor has, or
+//! into none. It adds, multiplies, divides and takes square roots only, each rounded on its own as IEEE 754 says, and never
+//! fuses two of them. So a lane has the same bits on every processor, for every number of lanes, and whatever the other lanes
+//! hold. There is one exception, which [`Wide::without_signed_zeros`] ends: where a lane takes part in an operation only because
+//! another one needs it, it adds a product with zero, which may turn -0 into 0.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use crate::world::Vector;
+
+/// One number of each lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wide<const N: usize>(pub [f32; N]);
+
+/// One vector of each lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideVector<const N: usize> {
+    pub x: Wide<N>,
+    pub y: Wide<N>,
+    pub z: Wide<N>,
+}
+
+/// One rotation of each lane, as a unit quaternion.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideRotation<const N: usize> {
+    pub x: Wide<N>,
+    pub y: Wide<N>,
+    pub z: Wide<N>,
+    pub w: Wide<N>,
+}
+
+/// One symmetric matrix of each lane: an inverse inertia in the world.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideSymmetric<const N: usize> {
+    xx: Wide<N>,
+    xy: Wide<N>,
+    xz: Wide<N>,
+    yy: Wide<N>,
+    yz: Wide<N>,
+    zz: Wide<N>,
+}
+
+macro_rules! lane_by_lane {
+    ($operation:ident, $function:ident, $sign:tt) => {
+        impl<const N: usize> $operation for Wide<N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                let mut result = [0.0; N];
+                for lane in 0..N {
+                    result[lane] = self.0[lane] $sign other.0[lane];
+                }
+                Self(result)
+            }
+        }
+    };
+}
+
+lane_by_lane!(Add, add, +);
+lane_by_lane!(Sub, sub, -);
+lane_by_lane!(Mul, mul, *);
+lane_by_lane!(Div, div, /);
+
+impl<const N: usize> Neg for Wide<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.each(|value| -value)
+    }
+}
+
+impl<const N: usize> AddAssign for Wide<N> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const N: usize> SubAssign for Wide<N> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const N: usize> Wide<N> {
+    pub const ZERO: Self = Self([0.0; N]);
+    pub const ONE: Self = Self([1.0; N]);
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn all(value: f32) -> Self {
+        Self([value; N])
+    }
+
+    #[inline(always)]
+    fn each(self, of: impl Fn(f32) -> f32) -> Self {
+        let mut result = [0.0; N];
+        for lane in 0..N {
+            result[lane] = of(self.0[lane]);
+        }
+        Self(result)
+    }
+
+    /// The smaller one of each lane; of two that compare equal, or with a NaN, `other`.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self::where_less(self, other, self, other)
+    }
+
+    /// The greater one of each lane; of two that compare equal, or with a NaN, `other`.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self::where_less(other, self, self, other)
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        self.each(f32::sqrt)
+    }
+
+    /// `then` in the lanes where `a` is less than `b`, else `otherwise`.
+    #[inline(always)]
+    pub fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        let mut result = [0.0; N];
+        for lane in 0..N {
+            result[lane] = if a.0[lane] < b.0[lane] { then.0[lane] } else { otherwise.0[lane] };
+        }
+        Self(result)
+    }
+
+    /// Whether a lane has a number greater than that of `other`.
+    #[inline(always)]
+    pub fn any_greater(self, other: Self) -> bool {
+        let mut any = false;
+        for lane in 0..N {
+            any |= self.0[lane] > other.0[lane];
+        }
+        any
+    }
+
+    /// The same numbers, with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
+    /// products, quotients by numbers other than zero, roots and comparisons let nothing else come of such a difference.
+    #[inline(always)]
+    pub fn without_signed_zeros(self) -> Self {
+        self + Self::ZERO
+    }
+}
+
+impl<const N: usize> Add for WideVector<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<const N: usize> Sub for WideVector<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl<const N: usize> Mul<Wide<N>> for WideVector<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: Wide<N>) -> Self {
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
+    }
+}
+
+impl<const N: usize> AddAssign for WideVector<N> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const N: usize> SubAssign for WideVector<N> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const N: usize> WideVector<N> {
+    pub const ZERO: Self = Self { x: Wide::ZERO, y: Wide::ZERO, z: Wide::ZERO };
+
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> Wide<N> {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// The products of the components.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
+    /// Sets the vector of one lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, to: Vector) {
+        self.x.0[lane] = to.x;
+        self.y.0[lane] = to.y;
+        self.z.0[lane] = to.z;
+    }
+
+    /// The vector of one lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Vector {
+        Vector::new(self.x.0[lane], self.y.0[lane], self.z.0[lane])
+    }
+
+    /// See [`Wide::without_signed_zeros`].
+    #[inline(always)]
+    pub fn without_signed_zeros(self) -> Self {
+        Self {
+            x: self.x.without_signed_zeros(),
+            y: self.y.without_signed_zeros(),
+            z: self.z.without_signed_zeros(),
+        }
+    }
+}
+
+impl<const N: usize> WideRotation<N> {
+    pub const IDENTITY: Self = Self { x: Wide::ZERO, y: Wide::ZERO, z: Wide::ZERO, w: Wide::ONE };
+
+    /// The rotated axes x, y and z.
+    #[inline(always)]
+    pub fn axes(self) -> [WideVector<N>; 3] {
+        let Self { x, y, z, w } = self;
+        let (one, two) = (Wide::ONE, Wide::all(2.0));
+        [
+            WideVector {
+                x: one - two * (y * y + z * z),
+                y: two * (x * y + w * z),
+                z: two * (x * z - w * y),
+            },
+            WideVector {
+                x: two * (x * y - w * z),
+                y: one - two * (x * x + z * z),
+                z: two * (y * z + w * x),
+            },
+            WideVector {
+                x: two * (x * z + w * y),
+                y: two * (y * z - w * x),
+                z: one - two * (x * x + y * y),
+            },
+        ]
+    }
+
+    /// The rotation after a small rotation at this angular velocity for `step_s`, linearised and normalised.
+    #[inline(always)]
+    pub fn turned(self, angular: WideVector<N>, step_s: Wide<N>) -> Self {
+        let by = angular * (step_s * Wide::all(0.5));
+        let Self { x, y, z, w } = self;
+        let turned = Self {
+            x: x + (by.x * w + by.y * z - by.z * y),
+            y: y + (by.y * w + by.z * x - by.x * z),
+            z: z + (by.z * w + by.x * y - by.y * x),
+            w: w - (by.x * x + by.y * y + by.z * z),
+        };
+        let length =
+            (turned.x * turned.x + turned.y * turned.y + turned.z * turned.z + turned.w * turned.w)
+                .sqrt();
+        let scale = Wide::ONE / length;
+        Self { x: turned.x * scale, y: turned.y * scale, z: turned.z * scale, w: turned.w * scale }
+    }
+
+    /// See [`Wide::without_signed_zeros`].
+    #[inline(always)]
+    pub fn without_signed_zeros(self) -> Self {
+        Self {
+            x: self.x.without_signed_zeros(),
+            y: self.y.without_signed_zeros(),
+            z: self.z.without_signed_zeros(),
+            w: self.w.without_signed_zeros(),
+        }
+    }
+}
+
+impl<const N: usize> WideSymmetric<N> {
+    pub const ZERO: Self = Self {
+        xx: Wide::ZERO,
+        xy: Wide::ZERO,
+        xz: Wide::ZERO,
+        yy: Wide::ZERO,
+        yz: Wide::ZERO,
+        zz: Wide::ZERO,
+    };
+
+    /// The matrix with these values along these axes.
+    #[inline(always)]
+    pub fn along(axes: &[WideVector<N>; 3], values: WideVector<N>) -> Self {
+        let [a, b, c] = *axes;
+        let scaled = [a * values.x, b * values.y, c * values.z];
+        Self {
+            xx: scaled[0].x * a.x + scaled[1].x * b.x + scaled[2].x * c.x,
+            xy: scaled[0].x * a.y + scaled[1].x * b.y + scaled[2].x * c.y,
+            xz: scaled[0].x * a.z + scaled[1].x * b.z + scaled[2].x * c.z,
+            yy: scaled[0].y * a.y + scaled[1].y * b.y + scaled[2].y * c.y,
+            yz: scaled[0].y * a.z + scaled[1].y * b.z + scaled[2].y * c.z,
+            zz: scaled[0].z * a.z + scaled[1].z * b.z + scaled[2].z * c.z,
+        }
+    }
+
+    /// The product with a vector.
+    #[inline(always)]
+    pub fn of(&self, vector: WideVector<N>) -> WideVector<N> {
+        WideVector {
+            x: self.xx * vector.x + self.xy * vector.y + self.xz * vector.z,
+            y: self.xy * vector.x + self.yy * vector.y + self.yz * vector.z,
+            z: self.xz * vector.x + self.yz * vector.y + self.zz * vector.z,
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Worlds whose motion the engine *lanes* computes, alone or several side by side.
+
+use std::borrow::Cow;
+
+use rapier3d::prelude::*;
+
+use super::Simulation;
+use super::patches::ContactPatch;
+use crate::world::lanes::{Chain, Common, Contact, LaneSolver, Other, PartState};
+use crate::world::turning;
+use crate::world::{Disqualification, JointTorque, PhysicsEngine, TouchedSurface, WorldPlan};
+
+/// Snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have.
+pub(crate) const LANES: usize = 8;
+
+/// A point of a contact, for drawing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenContact {
+    /// On what is touched, and on the part, in metres.
+    pub on_m: [Vector; 2],
+    /// Unit vector along which the part is pushed.
+    pub normal: Vector,
+}
+
+/// A snake of the engine *lanes*, and its own solver for steps that it takes alone.
+#[derive(Clone)]
+pub(super) struct LanesWorld {
+    chain: Chain,
+    solver: LaneSolver<1>,
+}
+
+impl LanesWorld {
+    /// That of a plan that asks for the engine. A plan that it cannot run is refused before it is built; if one came here, rapier
+    /// would run it.
+    pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
+        let is_chosen =
+            plan.physics.engine == PhysicsEngine::Lanes && plan.body.obstacle_in_lanes().is_none();
+        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: LaneSolver::default() }))
+    }
+
+    /// The contacts of the last step.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.chain.contacts
+    }
+}
+
+impl Simulation {
+    /// What all worlds of a lock step must have in common; none for those of rapier.
+    pub(crate) fn common(&self) -> Option<Common> {
+        self.lanes.as_ref().map(|lanes| lanes.chain.common())
+    }
+
+    /// One step of the engine *lanes*, for this snake alone.
+    pub(super) fn advance_alone(&mut self) {
+        self.state_to_lanes();
+        if let Some(lanes) = &mut self.lanes {
+            let LanesWorld { chain, solver } = &mut **lanes;
+            solver.advance(&mut [chain]);
+        }
+        self.state_from_lanes();
+    }
+
+    /// Copies the state of the bodies, forces and torques included, to the lanes' engine.
+    fn state_to_lanes(&mut self) {
+        let Some(lanes) = &mut self.lanes else { return };
+        lanes.chain.gravity = self.physics.gravity;
+        for (state, &part) in lanes.chain.state.iter_mut().zip(&self.parts) {
+            let body = &self.physics.bodies[part];
+            *state = PartState {
+                at: body.translation(),
+                turn: body.rotation().to_array(),
+                linear: body.linvel(),
+                angular: body.angvel(),
+                force_n: body.user_force(),
+                torque_nm: body.user_torque(),
+                is_held: !body.is_dynamic(),
+            };
+        }
+    }
+
+    /// Takes over what the lanes' engine has computed, and lets limbs bounce.
+    fn state_from_lanes(&mut self) {
+        let Some(mut lanes) = self.lanes.take() else { return };
+        for (state, &part) in lanes.chain.state.iter().zip(&self.parts) {
+            let body = &mut self.physics.bodies[part];
+            body.set_position(Pose::from_parts(state.at, Rotation::from_array(state.turn)), false);
+            body.set_linvel(state.linear, false);
+            body.set_angvel(state.angular, false);
+        }
+        self.add_to_balance();
+        if lanes.chain.bounce() {
+            for (state, &part) in lanes.chain.state.iter().zip(&self.parts) {
+                let body = &mut self.physics.bodies[part];
+                body.set_linvel(state.linear, false);
+                body.set_angvel(state.angular, false);
+            }
+        }
+        self.lanes = Some(lanes);
+    }
+
+    /// Goes on with the contacts of another world of the lanes' engine, if both have the same stairs.
+    pub(super) fn take_contacts_of(&mut self, other: &Self) {
+        if let (Some(lanes), Some(other)) = (&mut self.lanes, &other.lanes)
+            && lanes.chain.has_solids_of(&other.chain)
+        {
+            lanes.chain.take_contacts_of(&other.chain);
+        }
+    }
+
+    /// A rotated vector, with the same bits on every processor in the lanes' engine.
+    pub(super) fn turned(&self, rotation: Rotation, vector: Vector) -> Vector {
+        if self.lanes.is_some() { turning::turned(rotation, vector) } else { rotation * vector }
+    }
+
+    /// The rotation `second`, followed by `first`, likewise.
+    pub(super) fn product(&self, first: Rotation, second: Rotation) -> Rotation {
+        if self.lanes.is_some() { turning::product(first, second) } else { first * second }
+    }
+
+    /// Inertia of a part about its own axes in the lanes' engine, in kg·m²; none in rapier's worlds.
+    pub(super) fn inertia_in_lanes_kg_m2(&self, part: usize) -> Option<Vector> {
+        Some(self.lanes.as_ref()?.chain.mass_of(part)?.1)
+    }
+
+    /// Kinetic and potential energy of a part in the lanes' engine, in J. Its positions are half a substep ahead of its velocities.
+    pub(super) fn energy_in_lanes_j(&self, part: usize, substep_s: f32) -> f64 {
+        let mass = self.lanes.as_ref().and_then(|lanes| lanes.chain.mass_of(part));
+        let Some((mass_kg, inertia)) = mass else { return 0.0 };
+        let body = &self.physics.bodies[self.parts[part]];
+        let rate = self.turned(body.rotation().inverse(), body.angvel());
+        let velocity = body.linvel();
+        let kinetic_j = (mass_kg * velocity.dot(velocity) + (inertia * rate).dot(rate)) / 2.0;
+        let at = body.translation() - velocity * (substep_s / 2.0);
+        f64::from(kinetic_j) + f64::from(-mass_kg * self.physics.gravity.dot(at))
+    }
+
+    /// The shapes of all bodies where they are now: rapier's own, which the lanes' engine does not move.
+    pub fn colliders(&self) -> Cow<'_, ColliderSet> {
+        if self.lanes.is_none() {
+            return Cow::Borrowed(&self.physics.colliders);
+        }
+        let mut colliders = self.physics.colliders.clone();
+        for &part in &self.parts {
+            let body = &self.physics.bodies[part];
+            for &collider in body.colliders() {
+                if let Some(collider) = colliders.get_mut(collider) {
+                    collider.set_position(*body.position());
+                }
+            }
+        }
+        Cow::Owned(colliders)
+    }
+
+    /// The points of the contacts of the lanes' engine; none in rapier's worlds, whose contacts its narrow phase has.
+    pub fn contacts_in_lanes(&self) -> Vec<SeenContact> {
+        let place = |part: usize| *self.physics.bodies[self.parts[part]].position();
+        let contacts = self.lanes_contacts().iter();
+        let points = contacts.flat_map(|contact| {
+            let other = match contact.other {
+                Other::Part(front) => place(front),
+                Other::Ground | Other::Solid(_) => Pose::IDENTITY,
+            };
+            contact.points().iter().map(move |point| SeenContact {
+                on_m: [other * point.on_other, place(contact.part) * point.on_part],
+                normal: contact.normal,
+            })
+        });
+        points.collect()
+    }
+
+    /// The contacts of the lanes' engine; none in rapier's worlds.
+    pub(super) fn lanes_contacts(&self) -> &[Contact] {
+        self.lanes.as_ref().map_or(&[], |lanes| lanes.contacts())
+    }
+
+    /// What a contact of the lanes' engine touches; of two parts the rear one is the contact's own.
+    pub(super) fn touched_in_lanes(&self, contact: &Contact) -> TouchedSurface {
+        match contact.other {
+            Other::Ground => TouchedSurface::Ground,
+            Other::Solid(_) => TouchedSurface::Stairs,
+            Other::Part(_) => TouchedSurface::Limb(self.body.parts[contact.part].limb),
+        }
+    }
+
+    /// The patch of a contact of the lanes' engine; none if nothing presses there.
+    pub(super) fn patch_in_lanes(&self, contact: &Contact) -> Option<ContactPatch> {
+        let place = |part: usize| *self.physics.bodies[self.parts[part]].position();
+        let (own_place, own) =
+            (place(contact.part), self.solved_velocity(self.parts[contact.part]));
+        let (front, front_place, of_front) = match contact.other {
+            Other::Part(front) => {
+                (Some(front), place(front), self.solved_velocity(self.parts[front]))
+            }
+            Other::Ground | Other::Solid(_) => (None, Pose::IDENTITY, Default::default()),
+        };
+        let points = contact.points();
+        let pressed_ns: f32 = points.iter().map(|point| point.impulse_ns).sum();
+        if pressed_ns <= 0.0 {
+            return None;
+        }
+        let at_m = |point: &crate::world::lanes::Point| front_place * point.on_other;
+        let middle_m = points.iter().map(at_m).sum::<Vector>() / points.len() as f32;
+        let sliding = |at: Vector| {
+            let relative = own.at(at) - of_front.at(at);
+            relative - contact.normal * relative.dot(contact.normal)
+        };
+        let (mut slip_m_s, mut depth_m, mut lever_nms) = (0.0_f32, f32::NEG_INFINITY, 0.0);
+        for point in points.iter().filter(|point| point.impulse_ns > 0.0) {
+            let at = at_m(point);
+            slip_m_s = slip_m_s.max(sliding(at).length());
+            depth_m = depth_m.max((at - own_place * point.on_part).dot(contact.normal));
+            lever_nms += point.impulse_ns * at.distance(middle_m);
+        }
+        let touched = self.touched_in_lanes(contact);
+        let friction = contact.material_friction;
+        let substep_s = self.substep_s();
+        let spin_rad_s = (own.angular_rad_s() - of_front.angular_rad_s()).dot(contact.normal);
+        let friction_j =
+            -(contact.friction_ns.dot(sliding(middle_m)) + contact.twist_nms * spin_rad_s);
+        let has_bounced = self.has_bounced_in_lanes(contact.part)
+            || front.is_some_and(|front| self.has_bounced_in_lanes(front));
+        Some(ContactPatch {
+            limb: self.body.parts[front.unwrap_or(contact.part)].limb,
+            touched,
+            normal_n: pressed_ns / substep_s,
+            friction_limit_n: friction * pressed_ns / substep_s,
+            grip_share: super::patches::share(contact.friction_ns.length(), friction * pressed_ns)
+                .max(super::patches::share(contact.twist_nms.abs(), friction * lever_nms)),
+            slip_m_s,
+            depth_m,
+            friction_w: if has_bounced { 0.0 } else { friction_j / substep_s },
+        })
+    }
+
+    /// Whether a part has bounced in the last step.
+    fn has_bounced_in_lanes(&self, part: usize) -> bool {
+        let of_part =
+            |contact: &&Contact| contact.part == part || contact.other == Other::Part(part);
+        self.lanes_contacts().iter().filter(of_part).any(Chain::bounces)
+    }
+}
+
+/// Steps several worlds of the lanes' engine side by side.
+#[derive(Default)]
+pub(crate) struct LockStep {
+    solver: LaneSolver<LANES>,
+}
+
+impl LockStep {
+    /// Advances up to [`LANES`] worlds by one step each, as [`Simulation::step`] does one, with the same bits. All have the same
+    /// [`Simulation::common`].
+    pub fn step(
+        &mut self,
+        worlds: &mut [(&mut Simulation, &[JointTorque])],
+    ) -> Vec<Result<(), Disqualification>> {
+        for (world, torques) in worlds.iter_mut() {
+            world.apply(torques);
+            world.read_turns();
+            world.state_to_lanes();
+        }
+        let mut chains: Vec<&mut Chain> = worlds
+            .iter_mut()
+            .filter_map(|(world, _)| world.lanes.as_mut().map(|lanes| &mut lanes.chain))
+            .collect();
+        self.solver.advance(&mut chains);
+        let ends = worlds.iter_mut().map(|(world, _)| {
+            world.state_from_lanes();
+            world.dampen_half_step();
+            world.take_in_step()
+        });
+        ends.collect()
+    }
+}

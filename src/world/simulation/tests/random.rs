@@ -1,0 +1,128 @@
+//! Random chains on random surfaces under random torques: no number that is not finite goes unnoticed.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::*;
+use crate::rng::{Purpose, stream};
+
+/// A number between two positive ones, with the same chance of each order of magnitude.
+fn between(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
+    libm::expf(rng.random_range(libm::logf(least)..=libm::logf(most)))
+}
+
+/// 0 in half of the cases.
+fn or_none(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
+    if rng.random_bool(0.5) { 0.0 } else { between(rng, least, most) }
+}
+
+fn surface(rng: &mut ChaCha8Rng) -> Surface {
+    Surface {
+        friction: or_none(rng, 0.01, 1000.0),
+        bounce: if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..=1.0) },
+        bounce_velocity_m_s: or_none(rng, 0.01, 100.0),
+        soft_erp: rng.random_range(0.01..=1.0),
+        soft_cfm_m_s_per_n: or_none(rng, 1.0e-6, 1.0),
+        slip_m_s_per_n: or_none(rng, 1.0e-4, 10.0),
+        dampen_per_s: or_none(rng, 0.01, 20.0),
+    }
+}
+
+/// A world whose every number is drawn from all that settings and genomes allow.
+fn random_plan(rng: &mut ChaCha8Rng) -> WorldPlan {
+    let limbs = rng.random_range(1..=12);
+    let mut plan = plan(limbs);
+    for part in &mut plan.body.parts {
+        part.width_m = between(rng, 0.1, 10.0);
+        part.length_m = between(rng, 0.1, 10.0);
+        part.height_m = between(rng, 0.1, 10.0);
+        part.density_kg_m3 = between(rng, 0.1, 1000.0);
+    }
+    for joint in &mut plan.body.joints {
+        joint.bend_limit_rad = rng.random_range(0.0..=std::f32::consts::PI);
+        joint.twist_limit_rad = rng.random_range(0.0..=std::f32::consts::PI);
+        joint.max_bend_torque_nm = or_none(rng, 1.0, 1.0e6);
+        joint.max_twist_torque_nm = or_none(rng, 1.0, 1.0e6);
+        joint.damping_nms_per_rad = or_none(rng, 0.01, 1.0e5);
+        joint.cfm_m_s_per_n = or_none(rng, 1.0e-6, 1.0);
+    }
+    plan.body.angular_damping_per_s = or_none(rng, 0.01, 1000.0);
+    plan.physics.steps_per_s = rng.random_range(20..=240);
+    plan.physics.substeps = rng.random_range(1..=4);
+    plan.physics.iterations = rng.random_range(1..=4);
+    plan.physics.gravity_m_s2 = or_none(rng, 0.1, 100.0);
+    (plan.surface, plan.ground) = (surface(rng), surface(rng));
+    plan.skin.friction = between(rng, 0.01, 1000.0);
+    plan.skin.soft_cfm_m_s_per_n = or_none(rng, 1.0e-6, 1.0);
+    plan.stairs.nosing_m = if rng.random_bool(0.5) { 0.0 } else { 0.3 };
+    // Many begin among the stairs, inside of them.
+    plan.start_y_m = rng.random_range(-20.0..=20.0);
+    plan.start_turn_rad = rng.random_range(-3.2..=3.2);
+    plan
+}
+
+/// Steps random snakes with these numbers. Returns how many of their steps were healthy.
+fn step_random_snakes(numbers: std::ops::Range<u32>) -> u32 {
+    let mut healthy = 0;
+    for number in numbers {
+        let mut rng = stream(1, 0, number, Purpose::Perturbation);
+        let plan = random_plan(&mut rng);
+        let mut simulation = Simulation::new(&plan);
+        assert!(simulation.lanes.is_some());
+        for step in 0..12 {
+            let torques: Vec<JointTorque> = plan
+                .body
+                .joints
+                .iter()
+                .map(|_| JointTorque {
+                    bend_nm: rng.random_range(-1.0e6..=1.0e6),
+                    twist_nm: rng.random_range(-1.0e6..=1.0e6),
+                })
+                .collect();
+            if simulation.step(&torques).is_err() {
+                break;
+            }
+            healthy += 1;
+            let poses = simulation.poses().zip(simulation.velocities());
+            for (pose, [linear, angular]) in poses {
+                let is_finite = pose.translation.is_finite()
+                    && pose.rotation.is_finite()
+                    && linear.is_finite()
+                    && angular.is_finite();
+                assert!(is_finite, "snake {number}, step {step}: {pose:?} {linear} {angular}");
+            }
+            let forces = simulation.contact_forces();
+            let is_finite = forces.iter().all(|force| force.force_n.is_finite());
+            assert!(is_finite, "snake {number}, step {step}: {forces:?}");
+            assert!(simulation.effort().energy_j.is_finite(), "snake {number}, step {step}");
+        }
+    }
+    healthy
+}
+
+#[test]
+fn random_chains_end_or_stay_finite() {
+    ENGINE.set(PhysicsEngine::Lanes);
+    let healthy = step_random_snakes(0..2_000);
+    assert!(healthy > 4_000, "{healthy} healthy steps");
+}
+
+/// A million of them: `cargo test --release --no-default-features --lib a_million_random_chains -- --ignored`.
+#[test]
+#[ignore = "takes minutes"]
+fn a_million_random_chains_end_or_stay_finite() {
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u32;
+    std::thread::scope(|scope| {
+        let each = 1_000_000 / threads + 1;
+        let workers: Vec<_> = (0..threads)
+            .map(|thread| {
+                scope.spawn(move || {
+                    ENGINE.set(PhysicsEngine::Lanes);
+                    step_random_snakes(thread * each..(thread + 1) * each)
+                })
+            })
+            .collect();
+        let healthy: u32 = workers.into_iter().map(|worker| worker.join().expect("finite")).sum();
+        assert!(healthy > 2_000_000, "{healthy} healthy steps");
+    });
+}
