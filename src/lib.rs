@@ -14,11 +14,12 @@
 //!    ([`evolve::Founder`]).
 //! 3. **No transcendental function of the standard library in the core**: their results differ between C
 //!    libraries. The core uses `libm` only; `clippy.toml` lists the forbidden functions.
-//!    Through the physics engine a step calls two float functions of the C library, and neither can change
+//!    Through rapier a step calls two float functions of the C library, and neither can change
 //!    a result: `sincosf`, always with +0, because joint limits are symmetric (the C standard fixes both
 //!    results); and `log2f`, with which parry's bounding volume tree decides how much of itself to rebuild,
 //!    rounded to a whole number that no error of a few units in the last place changes for any tree of
-//!    fewer than 100 000 leaves. `snakes verify` compares the resulting trajectories.
+//!    fewer than 100 000 leaves. The engine *lanes* calls none, and its bits are the same on every processor, not on x86-64
+//!    alone: see [`world`]. `snakes verify` compares the resulting trajectories.
 //! 4. **The viewer only reads.** The frame rate, a moved window or a slow panel cannot change a result. If the user
 //!    pulls a limb, the rollout is marked as disturbed, is never compared with a record, and is never saved.
 //! 5. **Panels send messages; one system applies them.** All actions that have a name stand in one list, from which
@@ -42,7 +43,7 @@ pub mod learn;
 /// Rows that describe each setting, and the walk through them.
 pub mod schema;
 
-/// Stairs, surfaces, the snake's body, and one `Simulation` that steps them; built on rapier3d.
+/// Stairs, surfaces, the snake's body, and one `Simulation` that steps them, by rapier3d or by an engine of its own.
 pub mod world;
 
 /// Genomes: the controllers and body properties that evolve.

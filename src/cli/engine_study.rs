@@ -1,4 +1,4 @@
-//! `snakes engine-study`: whether snakes move and learn alike in the two physics engines, and how long that takes.
+//! `snakes engine-study`: whether snakes move and learn alike in the two physics engines.
 
 use super::args::{Args, EngineStudyArgs};
 use super::error::CliError;
@@ -41,7 +41,7 @@ pub fn engine_study(args: &Args, wanted: &EngineStudyArgs) -> Result<(), CliErro
     };
     let (files, runs) = study.continued::<EngineArm>(|run| {
         let landing = run.first_on_landing.map_or("never".to_owned(), |number| number.to_string());
-        format!("first landing {landing}, {:.1} s", run.elapsed_s)
+        format!("first landing {landing}")
     })?;
     let control = cancel_on_interrupt();
     let evaluator = evaluator(args, name, &files[0])?;

@@ -124,25 +124,39 @@ pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
     caught(|| score(genome, trial))
 }
 
-/// Evaluates genomes on this thread, side by side where their engine does that. After a panic each is evaluated on its own, so that
-/// only the one that caused it fails.
+/// Evaluates genomes on this thread, side by side where their engine does that, and reports each as soon as its result is known.
+/// After a panic the rest is evaluated one by one, so that only the genome that caused it fails.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
 pub fn evaluate_together(
     trials: &[Trial],
     jobs: &[Job<'_>],
+    control: &RunControl,
     mut report: impl FnMut(usize, EvaluationResult),
-) {
-    if let [job] = jobs {
-        return report(0, evaluate_caught(job.genome, &trials[job.trial]));
-    }
+) -> Result<(), Cancelled> {
     let pairs: Vec<_> = jobs.iter().map(|job| (job.genome, &trials[job.trial])).collect();
-    let mut results: Vec<Option<Scored>> = vec![None; jobs.len()];
-    let _ = caught(|| {
-        score_together(&pairs, |index, scored| results[index] = Some(scored));
-    });
-    for (index, (result, job)) in results.into_iter().zip(jobs).enumerate() {
-        let alone = || evaluate_caught(job.genome, &trials[job.trial]);
-        report(index, result.map_or_else(alone, Ok));
+    let mut is_reported = vec![false; jobs.len()];
+    let mut is_cancelled = false;
+    if jobs.len() > 1 {
+        let goes_on = || {
+            is_cancelled = control.wait_while_paused().is_err();
+            !is_cancelled
+        };
+        let _ = caught(|| {
+            score_together(&pairs, goes_on, |index, scored| {
+                is_reported[index] = true;
+                report(index, Ok(scored));
+            });
+        });
     }
+    for (index, job) in jobs.iter().enumerate() {
+        if !is_reported[index] {
+            control.wait_while_paused()?;
+            report(index, evaluate_caught(job.genome, &trials[job.trial]));
+        }
+    }
+    Ok(())
 }
 
 /// Number of jobs that a thread takes at once where their engine steps several snakes side by side: the share of each thread, or a
@@ -228,10 +242,10 @@ impl Evaluator for LocalPool {
         }
         self.0.install(|| {
             order.par_chunks(many).try_for_each(|order| {
-                control.wait_while_paused()?;
                 let jobs: Vec<Job<'_>> = order.iter().map(|&index| jobs[index]).collect();
-                evaluate_together(trials, &jobs, |index, result| report(order[index], result));
-                Ok(())
+                evaluate_together(trials, &jobs, control, |index, result| {
+                    report(order[index], result);
+                })
             })
         })
     }

@@ -38,8 +38,8 @@ choices! {
             "60 staircases on which no run may learn, 15 each with equal steps, irregular steps, the proportions of houses, and \
              nosings; 30 s each. A landing counts once the middles of all blocks have been behind the last tread for half a second.";
         Engine = "engine", "The other engine",
-            "20 trials in the program's other physics engine, from other starts (±0.2 m, ±5°): lanes examines champions of rapier, \
-             and rapier those of lanes. Only for rigid limbs in a row, which both can simulate, and only if it is named.";
+            "20 trials in the program's other physics engine, from other starts (±0.2 m, ±5°), and the same trials in its own: lanes \
+             examines champions of rapier, and rapier those of lanes. Only for rigid limbs in a row, which both can simulate, and only if it is named.";
     }
 }
 
@@ -244,6 +244,9 @@ impl SuiteResult {
             ExamSuite::HeldOut => !end.is_disqualified && end.arrived_s.is_some(),
             _ => end.has_landed,
         };
+        if suite == ExamSuite::Engine {
+            return Self::between_engines(ends);
+        }
         let share = |end: &ExamEnd| if own.way > 0.0 { end.way / own.way } else { 0.0 };
         let each = match suite {
             ExamSuite::StepRate => {
@@ -278,6 +281,22 @@ impl SuiteResult {
 }
 
 impl SuiteResult {
+    /// The result of the starts in the own engine, followed by the same starts in the other: of the latter, but with the share of
+    /// the way from the same start in the own engine, over those from which there is a way.
+    fn between_engines(ends: &[ExamEnd]) -> Self {
+        let (own, other) = ends.split_at(ends.len() / 2);
+        let shares = own.iter().zip(other).filter(|(own, _)| own.way > 0.0);
+        Self {
+            suite: ExamSuite::Engine,
+            trials: other.len() as u32,
+            landed: other.iter().filter(|end| end.has_landed).count() as u32,
+            disqualified: other.iter().filter(|end| end.is_disqualified).count() as u32,
+            median_steps: median(other.iter().map(|end| end.steps as f32).collect()),
+            kept: median(shares.map(|(own, other)| other.way / own.way).collect()),
+            each: Vec::new(),
+        }
+    }
+
     /// The classes of the held-out stairs, each with the number of its staircases on which the champion landed and the
     /// number of all; of other suites none.
     pub fn classes(&self) -> Vec<(&str, u32, u32)> {

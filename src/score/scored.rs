@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
 use crate::learn::Episode;
-use crate::world::{LANES, LockStep};
+use crate::world::{LANES, LanesCommon, LockStep};
 
 /// The outcome of scoring a genome.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,38 +99,38 @@ impl<'a> Scoring<'a> {
 /// which its trial holds. A champion's file is therefore enough to score it again.
 pub fn score(genome: &Genome, trial: &Trial) -> Scored {
     let mut scored = Vec::with_capacity(1);
-    score_together(&[(genome, trial)], |_, found| scored.push(found));
+    score_together(&[(genome, trial)], || true, |_, found| scored.push(found));
     // Each job is reported once.
     scored.remove(0)
 }
 
 /// Scores several genomes, each in its trial, with the results of [`score`]; `report` gets each with its index, in the order in
-/// which they end. Where the physics engine takes steps of several snakes side by side, their trials run so.
-pub fn score_together(jobs: &[(&Genome, &Trial)], mut report: impl FnMut(usize, Scored)) {
+/// which they end. Where the physics engine takes steps of several snakes side by side, their trials run so. Before it begins a
+/// trial it asks `goes_on`, and ends without further results if that says no.
+pub fn score_together(
+    jobs: &[(&Genome, &Trial)],
+    mut goes_on: impl FnMut() -> bool,
+    mut report: impl FnMut(usize, Scored),
+) {
     let mut scorings: Vec<_> =
         jobs.iter().map(|(genome, trial)| Scoring::of(genome, trial)).collect();
-    // Trials that are still to be made: job, and number of the trial. Those of a genome follow its nominal one.
-    let mut waiting: VecDeque<(usize, u32)> = (0..jobs.len()).map(|job| (job, 0)).collect();
+    let mut queue = TrialQueue::of(jobs.len());
     let mut lock_step = LockStep::default();
     let mut together: Vec<(usize, TrialRun)> = Vec::with_capacity(LANES);
-    // One that does not fit beside the others, for whose end it waits.
-    let mut misfit: Option<(usize, TrialRun)> = None;
     loop {
         while together.len() < LANES {
-            let common = together.first().map(|(_, run)| run.rollout.common());
-            if common == Some(None) {
+            let beside = together.first().map(|(_, run)| run.rollout.common());
+            if beside == Some(None) {
                 // This engine takes each step alone.
                 break;
             }
-            let mut begun = || {
-                let (job, number) = waiting.pop_front()?;
-                Some((job, scorings[job].begin(number)))
-            };
-            let Some(next) = misfit.take().or_else(&mut begun) else { break };
-            if common.is_some_and(|common| common != next.1.rollout.common()) {
-                misfit = Some(next);
+            if queue.is_empty() {
                 break;
             }
+            if !goes_on() {
+                return;
+            }
+            let Some(next) = queue.next_beside(beside, &scorings) else { break };
             together.push(next);
         }
         if together.is_empty() {
@@ -147,13 +147,63 @@ pub fn score_together(jobs: &[(&Genome, &Trial)], mut report: impl FnMut(usize, 
             let scoring = &mut scorings[job];
             scoring.take_in(&mut run);
             if run.number == 0 {
-                // Before other genomes, so that results come in about the order of the jobs.
-                scoring.perturbed().rev().for_each(|number| waiting.push_front((job, number)));
+                queue.add_perturbed(job, scoring);
             }
             if let Some(scored) = scoring.outcome() {
                 report(job, scored);
             }
         }
+    }
+}
+
+/// Trials that are still to be made.
+struct TrialQueue {
+    /// Job, and number of the trial. Those of a genome follow its nominal one.
+    waiting: VecDeque<(usize, u32)>,
+    /// Trials that have been built, and did not fit beside those that ran then.
+    set_aside: Vec<(usize, TrialRun)>,
+}
+
+/// Maximum number of trials that are set aside.
+const MOST_SET_ASIDE: usize = 4 * LANES;
+
+impl TrialQueue {
+    /// The nominal trials of this number of jobs.
+    fn of(jobs: usize) -> Self {
+        let waiting = (0..jobs).map(|job| (job, 0)).collect();
+        Self { waiting, set_aside: Vec::new() }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.waiting.is_empty() && self.set_aside.is_empty()
+    }
+
+    /// Adds the perturbed trials of a genome, before other genomes, so that results come in about the order of the jobs.
+    fn add_perturbed(&mut self, job: usize, scoring: &Scoring<'_>) {
+        for number in scoring.perturbed().rev() {
+            self.waiting.push_front((job, number));
+        }
+    }
+
+    /// The next trial that can run beside trials with this in common; any trial, if none runs.
+    fn next_beside(
+        &mut self,
+        beside: Option<Option<LanesCommon>>,
+        scorings: &[Scoring<'_>],
+    ) -> Option<(usize, TrialRun)> {
+        let fits = |run: &TrialRun| beside.is_none_or(|beside| beside == run.rollout.common());
+        if let Some(index) = self.set_aside.iter().position(|(_, run)| fits(run)) {
+            return Some(self.set_aside.remove(index));
+        }
+        while self.set_aside.len() < MOST_SET_ASIDE {
+            let (job, number) = self.waiting.pop_front()?;
+            let run = scorings[job].begin(number);
+            if fits(&run) {
+                return Some((job, run));
+            }
+            self.set_aside.push((job, run));
+        }
+        None
     }
 }
 
@@ -197,8 +247,12 @@ mod tests {
             trial.physics.engine = PhysicsEngine::Lanes;
             trial.stairs.first_riser_y_m = -2.0;
             trial.agent.limbs = if individual % 5 == 4 { 3 } else { 5 };
+            trial.surface.bounce = if individual % 2 == 1 { 0.5 } else { 0.0 };
+            trial.surface.slip_m_s_per_n = if individual % 3 == 1 { 0.01 } else { 0.0 };
+            trial.surface.soft_cfm_m_s_per_n = if individual % 4 == 1 { 0.01 } else { 0.0 };
             if individual % 7 == 3 {
                 (trial.repeats.trials, trial.repeats.list) = (3, PerturbationList::Fixed);
+                trial.repeats.off.step_rate = 0.2;
             }
             let mut rng = stream(1, 1, individual, Purpose::Birth);
             (GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng), trial)
@@ -209,7 +263,7 @@ mod tests {
     fn together(jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
         let pairs: Vec<_> = jobs.iter().map(|(genome, trial)| (genome, trial)).collect();
         let mut found = vec![None; jobs.len()];
-        score_together(&pairs, |index, scored| found[index] = Some(scored));
+        score_together(&pairs, || true, |index, scored| found[index] = Some(scored));
         found
     }
 
@@ -225,9 +279,24 @@ mod tests {
         assert_eq!(together(&jobs.iter().collect::<Vec<_>>()), alone);
         let reversed = together(&jobs.iter().rev().collect::<Vec<_>>());
         assert_eq!(reversed.into_iter().rev().collect::<Vec<_>>(), alone);
-        for (job, alone) in jobs.iter().zip(&alone).take(3) {
-            assert_eq!(together(&[job]), [alone.clone()]);
+        for beside in 2..=9 {
+            let few: Vec<_> = jobs.iter().take(beside).collect();
+            assert_eq!(together(&few), alone[..beside]);
         }
+    }
+
+    #[test]
+    fn a_batch_ends_without_further_results_when_it_is_told_to() {
+        let jobs = jobs();
+        let pairs: Vec<_> = jobs.iter().map(|(genome, trial)| (genome, trial)).collect();
+        let (mut begun, mut reported) = (0, 0);
+        let goes_on = || {
+            begun += 1;
+            begun <= 12
+        };
+        score_together(&pairs, goes_on, |_, _| reported += 1);
+        assert!(reported < 12, "{reported}");
+        assert_eq!(begun, 13);
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds,
 //! radians, newton metres. Built on rapier3d with every body, collider and joint inserted in a fixed
-//! order. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
+//! order, and on a second engine, *lanes*, for snakes of rigid limbs in a row (`lanes/mod.rs` explains it): its states live in
+//! rapier's bodies, so that everything that reads a world reads both alike. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
 
 mod body;
 mod bounce;
@@ -14,6 +15,7 @@ mod health;
 mod lanes;
 mod mount;
 mod physics;
+mod plan;
 mod pull;
 mod simulation;
 mod soft_limb;
@@ -32,6 +34,7 @@ pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;
 pub use physics::{PhysicsEngine, PhysicsSettings, STEP_RATES_HZ};
+pub use plan::WorldPlan;
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
@@ -39,7 +42,7 @@ pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{Discontinuity, SeenContact, Shove, Simulation, WorldPlan};
+pub use simulation::{Discontinuity, SeenPoint, Shove, Simulation};
 pub(crate) use simulation::{LANES, LockStep};
 pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,

@@ -52,7 +52,7 @@ impl SettingGroup for PhysicsSettings {
                 .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
                 .slider(0.0, 20.0);
             engine: choice("Physics engine").advanced()
-                .hint("The program that computes the motion. Another one changes all motions a little");
+                .hint("The program that computes the motion. Motions differ a little at first, and a champion of one may fall in the other");
             steps_per_s: whole("Physics steps per second", STEP_RATES_HZ).advanced()
                 .hint("More steps are more accurate but take longer. A different number changes all motions")
                 .slider(20.0, 240.0);

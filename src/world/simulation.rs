@@ -25,58 +25,13 @@ use super::damping::HalfStepDamping;
 use super::energy::{EnergyBalance, LimbTurn};
 use super::stair_profile::StairProfile;
 use super::torque::{AppliedTorque, JointTorque};
-use super::{
-    BodyPlan, Disqualification, Effort, HealthLimits, PhysicsSettings, PhysicsWorld, Pull, Skin,
-    Stairs, Surface,
-};
+use super::{BodyPlan, Disqualification, Effort, HealthLimits, PhysicsWorld, Pull, WorldPlan};
 use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
 pub use continued::Discontinuity;
 use lanes::LanesWorld;
-pub use lanes::SeenContact;
+pub use lanes::SeenPoint;
 pub(crate) use lanes::{LANES, LockStep};
 pub use shove::Shove;
-
-/// Everything that determines a world: two worlds built from it and stepped with the same torques agree
-/// in every bit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WorldPlan {
-    /// Step length, substeps, gravity.
-    pub physics: PhysicsSettings,
-    /// The staircase.
-    pub stairs: Stairs,
-    /// The material of the stairs.
-    pub surface: Surface,
-    /// The material of the ground.
-    pub ground: Surface,
-    /// The material of the snake.
-    pub skin: Skin,
-    /// When the agent is disqualified.
-    pub health: HealthLimits,
-    /// The snake.
-    pub body: BodyPlan,
-    /// Whether the snake comes to rest without commanded torques before its trial begins.
-    pub settles: bool,
-    /// Position of the middle of the straight snake on the y axis at the start, in metres.
-    pub start_y_m: f32,
-    /// Its position on the x axis at the start, in metres; 0 is in front of the middle of the stairs.
-    pub start_x_m: f32,
-    /// Turn of the snake at the start, in radians, counterclockwise seen from above; at 0 it heads for the
-    /// stairs.
-    pub start_turn_rad: f32,
-}
-
-impl WorldPlan {
-    /// Position of the middle part's centre on the y axis at the start, in metres, but for what a turn and the settling
-    /// change.
-    pub fn middle_start_y_m(&self) -> f32 {
-        if self.settles {
-            self.start_y_m + self.body.length_m() / 2.0 - self.body.front_to_middle_m()
-        } else {
-            // The middle of equal limbs, without the rounding of the sums.
-            self.start_y_m
-        }
-    }
-}
 
 /// A running world. A clone continues with the bits of the original.
 pub struct Simulation {

@@ -192,7 +192,7 @@ pub enum Subcommand {
     PoetStudy(PoetStudyArgs),
     /// Measure, over several seeds, how many of the held-out stairs snakes climb that learned on many stairs, or on one
     StairsStudy(StairsStudyArgs),
-    /// Measure whether snakes move and learn alike in the physics engines rapier and lanes, and how long that takes
+    /// Measure whether snakes move and learn alike in the physics engines rapier and lanes
     EngineStudy(EngineStudyArgs),
     /// Compare search strategies and controllers under equal budgets
     Compare(CompareArgs),

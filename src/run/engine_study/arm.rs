@@ -1,7 +1,5 @@
 //! The arms of the study, and their runs.
 
-use std::time::Instant;
-
 use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, Settings};
 use crate::run::compare::run_one;
@@ -54,16 +52,15 @@ impl StudyArm for EngineArm {
         spent: &(dyn Fn(u64) + Sync),
     ) -> Result<EngineStudyRun, Cancelled> {
         let mut experiment = Experiment::new(plan.clone());
-        let started = Instant::now();
         let run = run_one(&mut experiment, plan, |experiment| {
             let report = experiment.run_generation(evaluator, control)?;
             spent(report.evaluations.into());
             Ok(report)
         })?;
-        let elapsed_s = started.elapsed().as_secs_f64();
-        let kept = match experiment.best() {
-            Some(best) => kept_in_other(best, evaluator, control)?,
-            None => None,
+        let kept = match (self, experiment.best()) {
+            (Self::Lanes, Some(best)) => kept_in_other(best, evaluator, control)?,
+            // Rapier's champions are the built-in ones.
+            _ => None,
         };
         Ok(EngineStudyRun {
             seed: plan.seed,
@@ -72,7 +69,6 @@ impl StudyArm for EngineArm {
             last_mean: run.last_mean,
             fitness: run.best.map(|best| best.fitness),
             kept,
-            elapsed_s,
             run_hash: run.run_hash,
         })
     }

@@ -14,8 +14,6 @@ const MOST_DIFFERENCE: f64 = 0.1;
 /// Share of its way that a champion must keep in the other engine, and the share of champions that must.
 const KEPT: f32 = 0.8;
 const MUST_KEEP: [usize; 2] = [4, 7];
-/// Share of rapier's time that lanes may take.
-const MOST_TIME: f64 = 1.0 / 3.0;
 
 /// What was measured beside the runs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,11 +32,10 @@ pub fn engine_claims(runs: &StudyRuns<EngineStudyRun>, findings: &EngineFindings
     let rows = [head, of_newborns(findings)]
         .into_iter()
         .chain(of_champions(runs, findings))
-        .chain([of_landings(runs), of_means(runs), of_time(runs)]);
+        .chain([of_landings(runs), of_means(runs)]);
     format!(
         "{}\nmedian [quartiles] of the {} of {} newborns that are healthy in both engines\n\n{}\nshare of its way that each shipped \
-         champion keeps in the other engine: median over 20 starts\n\n{}\nmedian [quartiles] over the seeds; time of a run on one \
-         thread\n\n{}",
+         champion keeps in the other engine: median over 20 starts\n\n{}\nmedian [quartiles] over the seeds\n\n{}",
         markdown_table(&newborn_table(findings), 1),
         findings.healthy[0],
         findings.healthy[1],
@@ -75,17 +72,9 @@ fn shipped_table(findings: &EngineFindings) -> Vec<Vec<String>> {
 }
 
 fn run_table(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
-    let head = [
-        "learned in",
-        "runs",
-        "landed",
-        "first landing",
-        "last mean",
-        "kept in the other",
-        "time, s",
-    ]
-    .map(str::to_owned)
-    .to_vec();
+    let head = ["learned in", "runs", "landed", "first landing", "last mean", "kept in rapier"]
+        .map(str::to_owned)
+        .to_vec();
     let rows = EngineArm::OPTIONS.iter().map(|arm| {
         let of_arm = runs.of_arm(arm.name());
         let landed = of_arm.iter().filter(|run| run.first_on_landing.is_some()).count();
@@ -96,7 +85,6 @@ fn run_table(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
             Quartiles::words(first_landings(&of_arm), 0),
             Quartiles::words(of_arm.iter().filter_map(|run| run.last_mean), 3),
             Quartiles::words(of_arm.iter().filter_map(|run| run.kept.map(f64::from)), 2),
-            Quartiles::words(of_arm.iter().map(|run| run.elapsed_s), 1),
         ]
     });
     [head].into_iter().chain(rows).collect()
@@ -146,7 +134,8 @@ fn of_champions(runs: &StudyRuns<EngineStudyRun>, findings: &EngineFindings) -> 
         row("shipped champions that keep 80 % of their way in the other engine", shipped),
         row(
             "champions of lanes that keep 80 % of their way in rapier",
-            of_lanes.iter().filter_map(|run| run.kept).collect(),
+            // A run without a healthy champion keeps nothing.
+            of_lanes.iter().map(|run| run.kept.unwrap_or(0.0)).collect(),
         ),
     ]
 }
@@ -187,18 +176,6 @@ fn of_means(runs: &StudyRuns<EngineStudyRun>) -> Vec<String> {
     overlap("mean fitness of the last generation", values, 3)
 }
 
-fn of_time(runs: &StudyRuns<EngineStudyRun>) -> Vec<String> {
-    let [rapier, lanes] = of_arms(runs, |runs| runs.iter().map(|run| run.elapsed_s).collect());
-    let median = |values: Vec<f64>| Quartiles::of(values).map(|of| of.median);
-    let share = median(lanes).zip(median(rapier)).map(|(lanes, rapier)| lanes / rapier);
-    vec![
-        "time of lanes over that of rapier".to_owned(),
-        format!("less than {MOST_TIME:.2}"),
-        share.map_or("–".to_owned(), |share| format!("{share:.2}")),
-        verdict(share.map(|share| share < MOST_TIME)),
-    ]
-}
-
 /// The runs as records for a CSV file, the names of the columns first.
 pub fn engine_records(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
     let head = [
@@ -209,7 +186,6 @@ pub fn engine_records(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
         "last_mean",
         "fitness",
         "kept",
-        "elapsed_s",
         "run_hash",
     ];
     let mut records = vec![head.map(str::to_owned).to_vec()];
@@ -224,7 +200,6 @@ pub fn engine_records(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
                 optional(run.last_mean.map(|mean| mean.to_string())),
                 optional(run.fitness.map(|fitness| fitness.to_string())),
                 optional(run.kept.map(|kept| kept.to_string())),
-                format!("{:.2}", run.elapsed_s),
                 run.run_hash.clone(),
             ]);
         }
@@ -236,7 +211,7 @@ pub fn engine_records(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
 mod tests {
     use super::*;
 
-    fn run(seed: u64, landing: u32, elapsed_s: f64) -> EngineStudyRun {
+    fn run(seed: u64, landing: u32) -> EngineStudyRun {
         EngineStudyRun {
             seed,
             evaluations: 6000,
@@ -244,7 +219,6 @@ mod tests {
             last_mean: Some(0.5 + seed as f64 / 100.0),
             fitness: Some(0.9),
             kept: Some(if seed > 6 { 0.5 } else { 0.9 }),
-            elapsed_s,
             run_hash: "0".repeat(16),
         }
     }
@@ -255,8 +229,8 @@ mod tests {
         let mut findings = EngineFindings::default();
         assert!(engine_claims(&runs, &findings).contains("not measured"));
         for seed in 1..=8 {
-            runs.add("rapier", run(seed, 1000 + seed as u32 * 100, 90.0));
-            runs.add("lanes", run(seed, 1100 + seed as u32 * 100, 20.0));
+            runs.add("rapier", run(seed, 1000 + seed as u32 * 100));
+            runs.add("lanes", run(seed, 1100 + seed as u32 * 100));
         }
         let quartiles = |scale: f64| Quartiles { low: scale, median: 2.0, high: 3.0 };
         findings.newborns = vec![NewbornStatistics {
@@ -267,8 +241,7 @@ mod tests {
         let text = engine_claims(&runs, &findings);
         assert!(text.contains("| 4.8 %"), "{text}");
         assert!(text.contains("| 1 of 2 ") && text.contains("| 6 of 8 "), "{text}");
-        assert!(text.contains("| less than 0.33") && text.contains("| 0.22 "), "{text}");
-        assert_eq!(text.matches("| yes").count(), 5, "{text}");
+        assert_eq!(text.matches("| yes").count(), 4, "{text}");
         assert_eq!(text.matches("| no ").count(), 1, "{text}");
         let records = engine_records(&runs);
         assert_eq!(records.len(), 17);

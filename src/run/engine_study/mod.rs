@@ -1,5 +1,5 @@
 //! A study of the two physics engines: whether newborns move alike in both, whether champions of one keep their way in the other,
-//! and whether snakes learn as well, and how much sooner.
+//! and whether snakes learn as well.
 
 mod arm;
 mod claims;

@@ -77,9 +77,9 @@ pub fn newborn_statistics(
 }
 
 /// A measure, and its value for an evaluation that began at a place on the y axis.
-type Measure = (&'static str, fn(&Evaluation, f32) -> f64);
+type NewbornMeasure = (&'static str, fn(&Evaluation, f32) -> f64);
 
-const MEASURES: [Measure; 4] = [
+const MEASURES: [NewbornMeasure; 4] = [
     ("distance covered, m", |of, start_y_m| f64::from((of.centre_y_m - start_y_m).abs())),
     ("share of limbs in contact", |of, _| {
         of.behaviour.map_or(0.0, |behaviour| behaviour.contact_duty.into())

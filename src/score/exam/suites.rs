@@ -86,7 +86,7 @@ fn long(trial: &Trial) -> Trial {
     Trial { duration_s: DURATION_S, stairs, ..trial.clone() }
 }
 
-/// Other starts in the other engine; none if that cannot simulate the trial's snakes.
+/// Other starts, each in the own engine and then each in the other; none if that cannot simulate the trial's snakes.
 fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
     if trial.agent.youngs_modulus_pa.is_some() {
         return Vec::new();
@@ -96,12 +96,14 @@ fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
         PhysicsEngine::Rapier => PhysicsEngine::Lanes,
         PhysicsEngine::Lanes => PhysicsEngine::Rapier,
     };
-    varied(
-        &other,
-        &PerturbationRange { friction: 0.0, rise: 0.0, ..Default::default() },
-        STARTS,
-        SEED,
-    )
+    let range = PerturbationRange { friction: 0.0, rise: 0.0, ..Default::default() };
+    let in_engine = |trial: &Trial, words: &str| {
+        let starts = varied(trial, &range, STARTS, SEED).into_iter();
+        let named =
+            starts.map(|of| ExamCondition { label: format!("{}, {words}", of.label), ..of });
+        named.collect::<Vec<_>>()
+    };
+    [in_engine(trial, "own engine"), in_engine(&other, "other engine")].concat()
 }
 
 /// The trial with all outer senses frozen.

@@ -36,7 +36,7 @@ fn every_condition_is_one_of_an_allowed_trial_and_differs_from_all_others() {
             ExamSuite::StepRate => 5,
             ExamSuite::Surprise => 30,
             ExamSuite::HeldOut => 60,
-            ExamSuite::Engine => 20,
+            ExamSuite::Engine => 40,
             _ => 100,
         };
         assert_eq!(conditions.len(), expected, "{suite:?}");

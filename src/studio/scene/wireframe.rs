@@ -10,7 +10,7 @@ use super::overlays::Overlays;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::world::SeenContact;
+use crate::world::SeenPoint;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, draw.in_set(FrameSet::Draw));
@@ -43,7 +43,7 @@ impl DebugRenderBackend for CollisionLines<'_, '_, '_> {
 }
 
 /// Draws contacts that rapier does not know, as it draws its own: the gap or the overlap of each point, and its normal.
-fn draw_contacts(contacts: &[SeenContact], lines: &mut CollisionLines<'_, '_, '_>) {
+fn draw_contacts(contacts: &[SeenPoint], lines: &mut CollisionLines<'_, '_, '_>) {
     let style = DebugRenderStyle::default();
     for contact in contacts {
         let [from, to] = contact.on_m;

@@ -20,7 +20,7 @@ pub(super) struct Block {
 
 /// A point in which two bodies touch, or nearly do.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Candidate {
+pub(super) struct SharedPoint {
     /// Corners, edges or faces that meet there. Equal numbers in two steps are the same point of the same bodies.
     pub features: u16,
     /// On the first body, in the frame of the search, in metres.
@@ -32,23 +32,24 @@ pub(super) struct Candidate {
 }
 
 /// More than two faces with four corners each can share: each corner of both, and each crossing of edges.
-const MOST_CANDIDATES: usize = 16;
+const MOST_SHARED: usize = 16;
 
-/// All points in which two bodies touch, in a frame of their own. Its memory is used again for each pair of bodies.
+/// All points in which two bodies touch, in the frame of the first box, or of the world for the ground. Its memory is used again for
+/// each pair of bodies.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Candidates {
+pub(super) struct SharedPoints {
     /// Unit vector from the first body to the second.
     pub normal: Vector,
-    points: [Candidate; MOST_CANDIDATES],
+    points: [SharedPoint; MOST_SHARED],
     count: usize,
 }
 
-impl Candidates {
+impl SharedPoints {
     fn begin(&mut self, normal: Vector) {
         (self.normal, self.count) = (normal, 0);
     }
 
-    fn push(&mut self, point: Candidate) {
+    fn push(&mut self, point: SharedPoint) {
         if let Some(slot) = self.points.get_mut(self.count) {
             *slot = point;
             self.count += 1;
@@ -56,7 +57,7 @@ impl Candidates {
     }
 
     /// The points.
-    pub fn points(&self) -> &[Candidate] {
+    pub fn points(&self) -> &[SharedPoint] {
         &self.points[..self.count]
     }
 }
@@ -66,12 +67,13 @@ fn sign(value: f32) -> f32 {
     if value < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// The rotated rows of a matrix given by its columns: its transpose times a vector.
+/// A vector of the world along the axes of a box.
 fn into(axes: &[Vector; 3], vector: Vector) -> Vector {
     Vector::new(axes[0].dot(vector), axes[1].dot(vector), axes[2].dot(vector))
 }
 
-fn out_of(axes: &[Vector; 3], vector: Vector) -> Vector {
+/// A vector along the axes of a box, in the world.
+pub(super) fn out_of(axes: &[Vector; 3], vector: Vector) -> Vector {
     axes[0] * vector.x + axes[1] * vector.y + axes[2] * vector.z
 }
 
@@ -99,8 +101,16 @@ impl Block {
     }
 }
 
-/// The corners of the face of a box that looks most along a direction, in order around the face, with a number for each.
-fn face_along(half_m: Vector, direction: Vector) -> ([Vector; 4], [u8; 4]) {
+/// A face of a box: its corners in order around it, a number for each of them, and the number of the face. The eight corners have
+/// 0 to 7, the faces 8 to 13.
+struct Face {
+    corners: [Vector; 4],
+    numbers: [u8; 4],
+    number: u8,
+}
+
+/// The face of a box that looks most along a direction.
+fn face_along(half_m: Vector, direction: Vector) -> Face {
     let size = direction.abs();
     // The first of equal ones.
     let axis = if size.x >= size.y && size.x >= size.z {
@@ -125,11 +135,11 @@ fn face_along(half_m: Vector, direction: Vector) -> ([Vector; 4], [u8; 4]) {
         let bit = |value: f32, bit: u8| if value < 0.0 { bit } else { 0 };
         numbers[index] = bit(of_axis.x, 1) | bit(of_axis.y, 2) | bit(of_axis.z, 4);
     }
-    (corners, numbers)
+    Face { corners, numbers, number: 8 + 2 * axis as u8 + u8::from(side < 0.0) }
 }
 
-/// Number of a face; corners have 0 to 7.
-const FACE: u8 = 8;
+/// Number of the only face of the ground.
+const GROUND: u8 = 8;
 
 /// Number of the edge between two corners.
 fn edge(a: u8, b: u8) -> u8 {
@@ -141,15 +151,15 @@ fn features(first: u8, second: u8) -> u16 {
 }
 
 /// Finds the contact of the ground, z = 0, with a box. The frame of the search is the world. Returns whether there is one.
-pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut Candidates) -> bool {
+pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut SharedPoints) -> bool {
     let down = into(&block.axes, Vector::new(0.0, 0.0, -1.0));
-    let (corners, numbers) = face_along(block.half_m, down);
+    let Face { corners, numbers, .. } = face_along(block.half_m, down);
     found.begin(Vector::Z);
     for (corner, number) in corners.into_iter().zip(numbers) {
         let at = block.to_world(corner);
         if at.z <= within_m {
-            found.push(Candidate {
-                features: features(FACE, number),
+            found.push(SharedPoint {
+                features: features(GROUND, number),
                 on_first: Vector::new(at.x, at.y, 0.0),
                 on_second: at,
                 distance_m: at.z,
@@ -246,7 +256,7 @@ pub(super) fn of_blocks(
     first: &Block,
     second: &Block,
     within_m: f32,
-    found: &mut Candidates,
+    found: &mut SharedPoints,
 ) -> bool {
     let place = first.to_own(second.centre);
     let axes = second.axes.map(|axis| into(&first.axes, axis));
@@ -346,10 +356,12 @@ fn of_faces(
     place: Vector,
     axes: &[Vector; 3],
     normal: Vector,
-    found: &mut Candidates,
+    found: &mut SharedPoints,
 ) {
-    let (first, first_numbers) = face_along(first_half_m, normal);
-    let (own, second_numbers) = face_along(second_half_m, into(axes, -normal));
+    let Face { corners: first, numbers: first_numbers, number: first_face } =
+        face_along(first_half_m, normal);
+    let Face { corners: own, numbers: second_numbers, number: second_face } =
+        face_along(second_half_m, into(axes, -normal));
     let second = own.map(|corner| place + out_of(axes, corner));
     let plane = Plane::across(normal);
     let (first_seen, second_seen) =
@@ -365,8 +377,8 @@ fn of_faces(
             if is_within(&second_seen, first_seen[index]) {
                 within[0] += 1;
                 let distance_m = (second[0] - corner).dot(upright) / along;
-                found.push(Candidate {
-                    features: features(first_numbers[index], FACE),
+                found.push(SharedPoint {
+                    features: features(first_numbers[index], second_face),
                     on_first: corner,
                     on_second: corner + normal * distance_m,
                     distance_m,
@@ -381,8 +393,8 @@ fn of_faces(
             if is_within(&first_seen, second_seen[index]) {
                 within[1] += 1;
                 let distance_m = (corner - first[0]).dot(upright) / along;
-                found.push(Candidate {
-                    features: features(FACE, second_numbers[index]),
+                found.push(SharedPoint {
+                    features: features(first_face, second_numbers[index]),
                     on_first: corner - normal * distance_m,
                     on_second: corner,
                     distance_m,
@@ -401,7 +413,7 @@ fn of_faces(
             if let Some([share, of_second]) = crossing(first_edge, second_edge) {
                 let on_first = first[i] * (1.0 - share) + first[(i + 1) % 4] * share;
                 let on_second = second[j] * (1.0 - of_second) + second[(j + 1) % 4] * of_second;
-                found.push(Candidate {
+                found.push(SharedPoint {
                     features: features(
                         edge(first_numbers[i], first_numbers[(i + 1) % 4]),
                         edge(second_numbers[j], second_numbers[(j + 1) % 4]),
@@ -418,7 +430,7 @@ fn of_faces(
 /// Points of a contact that are solved.
 pub(super) const MOST_POINTS: usize = 4;
 
-impl Candidates {
+impl SharedPoints {
     /// Up to four points that span the contact, ordered by place: the deepest one, the one furthest from it, and the outermost
     /// ones on both sides of the line through these. Returns their indices and number.
     pub fn chosen(&self, within_m: f32) -> ([usize; MOST_POINTS], usize) {
@@ -489,5 +501,80 @@ impl Candidates {
             }
             _ => (chosen, 2),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rapier3d::parry::query::details::contact_manifold_cuboid_cuboid;
+    use rapier3d::parry::query::{ContactManifold, TrackedContact};
+    use rapier3d::parry::shape::Cuboid;
+
+    use crate::rng::{Purpose, stream};
+    use crate::world::{Pose, Rotation};
+    use rand::RngExt;
+
+    fn block(pose: &Pose, half_m: Vector) -> Block {
+        let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
+        Block { centre: pose.translation, axes, half_m }
+    }
+
+    /// The same contacts as those that rapier sees: as many points in the same places, along the same normal.
+    #[test]
+    fn random_boxes_touch_as_in_parry() {
+        let mut rng = stream(1, 1, 1, Purpose::Birth);
+        let (mut touching, mut agreeing, mut found) = (0, 0, SharedPoints::default());
+        for _ in 0..20_000 {
+            let mut number = |most: f32| rng.random_range(-most..most);
+            let half_m = [0, 1]
+                .map(|_| Vector::new(0.6 + number(0.4), 0.8 + number(0.5), 0.5 + number(0.3)));
+            let poses = [0, 1].map(|_| {
+                let turn = Rotation::from_xyzw(number(1.0), number(1.0), number(1.0), number(1.0));
+                let at = Vector::new(number(1.0), number(1.0), number(1.0));
+                Pose::from_parts(at, turn.normalize())
+            });
+            let between = poses[0].inverse() * poses[1];
+            let shapes = half_m.map(Cuboid::new);
+            let mut manifold: ContactManifold<(), ()> = ContactManifold::new();
+            contact_manifold_cuboid_cuboid(&between, &shapes[0], &shapes[1], 0.02, &mut manifold);
+            let blocks = [block(&poses[0], half_m[0]), block(&poses[1], half_m[1])];
+            let touches = of_blocks(&blocks[0], &blocks[1], 0.02, &mut found);
+            if !touches && manifold.points.is_empty() {
+                continue;
+            }
+            touching += 1;
+            let is_there = |point: &TrackedContact<()>| {
+                let nearest = found.points().iter().map(|of| {
+                    (of.on_first - point.local_p1).length() + (of.distance_m - point.dist).abs()
+                });
+                nearest.fold(f32::MAX, f32::min) < 2.0e-3
+            };
+            let agrees = touches
+                && (found.normal - manifold.local_n1).length() < 1.0e-3
+                && found.points().len() == manifold.points.len()
+                && manifold.points.iter().all(is_there);
+            agreeing += i32::from(agrees);
+        }
+        // Of nearly parallel edges both may take another one for crossing.
+        assert!(
+            touching > 5_000 && touching - agreeing < touching / 200,
+            "{agreeing} of {touching}"
+        );
+    }
+
+    /// A corner that went from a riser to the tread above it kept its impulse, which then pushed along the new normal.
+    #[test]
+    fn a_corner_on_another_face_is_another_point() {
+        let step = block(&Pose::IDENTITY, Vector::new(2.0, 1.0, 0.5));
+        let at = |place| block(&Pose::from_translation(place), Vector::splat(0.5));
+        let features = |place| {
+            let mut found = SharedPoints::default();
+            assert!(of_blocks(&step, &at(place), 0.02, &mut found));
+            found.points().iter().map(|point| point.features).collect::<Vec<_>>()
+        };
+        let on_riser = features(Vector::new(0.0, -1.49, 0.3));
+        let on_tread = features(Vector::new(0.0, -0.8, 0.99));
+        assert!(on_riser.iter().all(|of| !on_tread.contains(of)), "{on_riser:?} {on_tread:?}");
     }
 }

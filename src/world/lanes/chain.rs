@@ -1,6 +1,5 @@
 //! One snake as the solver sees it: its boxes, joints and surroundings, and the contacts of its last step.
 
-use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use super::block::Block;
@@ -9,12 +8,15 @@ use crate::world::contact::{joint_coefficients, soft_contacts};
 use crate::world::surface::ContactLaw;
 use crate::world::{BodyPlan, Vector, WorldPlan};
 
-/// Numbers of parts that this engine simulates.
-const PARTS: RangeInclusive<usize> = 1..=12;
+/// Maximum number of parts that this engine simulates.
+pub(super) const MOST_PARTS: usize = 12;
+
+/// Greatest speed with which an error of position is corrected: of a contact in m/s, of a joint beyond its limit in rad/s. Rapier's.
+pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
 
 /// A box of the snake.
 #[derive(Debug, Clone)]
-pub(super) struct Part {
+pub(super) struct ChainPart {
     pub half_m: Vector,
     pub mass_kg: f32,
     /// About its own axes, in kg·m².
@@ -118,7 +120,7 @@ pub(crate) struct Common {
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
     pub(super) common: Common,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<ChainPart>,
     pub(super) joints: Vec<Joint>,
     /// Pairs of parts that can touch, the front one first.
     pub(super) pairs: Vec<[usize; 2]>,
@@ -141,7 +143,7 @@ impl BodyPlan {
             Some("its limbs are soft")
         } else if self.is_branching() {
             Some("its body branches")
-        } else if !PARTS.contains(&self.parts.len()) {
+        } else if self.parts.len() > MOST_PARTS {
             Some("it has more than 12 limbs")
         } else {
             None
@@ -153,14 +155,14 @@ impl Chain {
     /// The snake of a plan whose body has no [obstacle](BodyPlan::obstacle_in_lanes).
     pub fn new(plan: &WorldPlan) -> Self {
         let WorldPlan { body, physics, skin, .. } = plan;
-        let parts: Vec<Part> = body
+        let parts: Vec<ChainPart> = body
             .parts
             .iter()
             .map(|part| {
                 let [w2, l2, h2] = part.size_m().map(|size_m| size_m * size_m);
                 let mass_kg = part.mass_kg();
                 let inertia_kg_m2 = Vector::new(l2 + h2, w2 + h2, w2 + l2) * (mass_kg / 12.0);
-                Part { half_m: Vector::from(part.size_m()) / 2.0, mass_kg, inertia_kg_m2 }
+                ChainPart { half_m: Vector::from(part.size_m()) / 2.0, mass_kg, inertia_kg_m2 }
             })
             .collect();
         let joints = body.joints.iter().map(|joint| {

@@ -1,7 +1,7 @@
 //! Finds the contacts of a snake at the beginning of a step, and gives each the impulses with which it begins.
 
-use super::block::{Block, Candidates, MOST_POINTS, of_blocks, on_ground};
-use super::chain::{Chain, Law};
+use super::block::{Block, MOST_POINTS, SharedPoints, of_blocks, on_ground};
+use super::chain::{Chain, Law, MOST_PARTS};
 use crate::world::Vector;
 use crate::world::contact::SlippingPatch;
 
@@ -10,7 +10,7 @@ const WITHIN_M: f32 = 0.02;
 
 /// What a part touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Other {
+pub(crate) enum Touching {
     /// The ground.
     Ground,
     /// A solid of the stairs, by its index.
@@ -21,7 +21,7 @@ pub(crate) enum Other {
 
 /// A point of a contact.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Point {
+pub(crate) struct ContactPoint {
     pub(super) features: u16,
     /// Midway between both surfaces at the beginning of the step, in the world, in metres.
     pub(super) at: Vector,
@@ -47,7 +47,7 @@ pub(crate) struct Contact {
     /// Index of the part; of two parts that touch, the rear one.
     pub part: usize,
     /// What it touches.
-    pub other: Other,
+    pub other: Touching,
     /// Unit vector in the world along which the part is pushed.
     pub normal: Vector,
     /// Coulomb coefficient of the materials.
@@ -57,7 +57,7 @@ pub(crate) struct Contact {
     pub(super) bounce: f32,
     pub(super) correction_per_s: f32,
     pub(super) softening: f32,
-    points: [Point; MOST_POINTS],
+    points: [ContactPoint; MOST_POINTS],
     count: usize,
     /// Friction on the part in the last substep, in N·s, in the world.
     pub friction_ns: Vector,
@@ -67,11 +67,11 @@ pub(crate) struct Contact {
 
 impl Contact {
     /// Its points.
-    pub fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[ContactPoint] {
         &self.points[..self.count]
     }
 
-    pub(super) fn points_mut(&mut self) -> &mut [Point] {
+    pub(super) fn points_mut(&mut self) -> &mut [ContactPoint] {
         &mut self.points[..self.count]
     }
 }
@@ -79,7 +79,7 @@ impl Contact {
 /// The second of two bodies whose contact is looked for, and the first one.
 struct Bodies<'a> {
     part: usize,
-    other: Other,
+    other: Touching,
     first: Option<&'a Block>,
     second: &'a Block,
     law: Law,
@@ -91,7 +91,7 @@ impl Chain {
         std::mem::swap(&mut self.contacts, &mut self.earlier);
         let mut contacts = std::mem::take(&mut self.contacts);
         contacts.clear();
-        let mut found = Candidates::default();
+        let mut found = SharedPoints::default();
         let mut blocks = [None; MOST_PARTS];
         for part in 0..self.parts.len().min(MOST_PARTS) {
             let block = self.block(part);
@@ -108,7 +108,7 @@ impl Chain {
                 continue;
             }
             if of_blocks(&first, &second, WITHIN_M, &mut found) {
-                let (other, law) = (Other::Part(front), self.laws.limbs);
+                let (other, law) = (Touching::Part(front), self.laws.limbs);
                 let bodies =
                     Bodies { part: rear, other, first: Some(&first), second: &second, law };
                 self.add_contact(&bodies, &found, &mut contacts);
@@ -118,7 +118,7 @@ impl Chain {
             let Some((block, reach_m)) = block else { continue };
             let (low, high) = (block.centre - *reach_m, block.centre + *reach_m);
             if low.z <= WITHIN_M && on_ground(block, WITHIN_M, &mut found) {
-                let (other, law) = (Other::Ground, self.laws.ground);
+                let (other, law) = (Touching::Ground, self.laws.ground);
                 let bodies = Bodies { part, other, first: None, second: block, law };
                 self.add_contact(&bodies, &found, &mut contacts);
             }
@@ -133,7 +133,7 @@ impl Chain {
                     continue;
                 }
                 if of_blocks(&solid.block, block, WITHIN_M, &mut found) {
-                    let (other, law) = (Other::Solid(index), self.laws.stairs);
+                    let (other, law) = (Touching::Solid(index), self.laws.stairs);
                     let first = Some(&solid.block);
                     let bodies = Bodies { part, other, first, second: block, law };
                     self.add_contact(&bodies, &found, &mut contacts);
@@ -144,7 +144,7 @@ impl Chain {
     }
 
     /// Adds the contact of two bodies, with the impulses that its points had in the step before, unless no point is near enough.
-    fn add_contact(&self, bodies: &Bodies<'_>, found: &Candidates, contacts: &mut Vec<Contact>) {
+    fn add_contact(&self, bodies: &Bodies<'_>, found: &SharedPoints, contacts: &mut Vec<Contact>) {
         let Bodies { part, other, first, second, law } = bodies;
         let turned = |of: Vector| first.map_or(of, |first| first.turned(of));
         let placed = |at: Vector| first.map_or(at, |first| first.to_world(at));
@@ -158,7 +158,7 @@ impl Chain {
             bounce: law.bounce,
             correction_per_s: law.correction_per_s,
             softening: law.softening,
-            points: [Point::default(); MOST_POINTS],
+            points: [ContactPoint::default(); MOST_POINTS],
             count: 0,
             friction_ns: Vector::ZERO,
             twist_nms: 0.0,
@@ -183,12 +183,12 @@ impl Chain {
             let of_earlier = earlier
                 .and_then(|of| of.points().iter().find(|of| of.features == candidate.features));
             let at = (on_first + on_second) * 0.5;
-            let on_other = if matches!(other, Other::Part(_)) {
+            let on_other = if matches!(other, Touching::Part(_)) {
                 first.map_or(on_first, |first| first.to_own(on_first))
             } else {
                 on_first
             };
-            contact.points[contact.count] = Point {
+            contact.points[contact.count] = ContactPoint {
                 features: candidate.features,
                 at,
                 on_part: second.to_own(on_second),
@@ -223,7 +223,7 @@ impl Chain {
     pub(super) fn approach_m_s(
         &self,
         part: usize,
-        other: Other,
+        other: Touching,
         at: Vector,
         normal: Vector,
     ) -> f32 {
@@ -231,10 +231,10 @@ impl Chain {
     }
 
     /// Velocity of the part's surface relative to what it touches, in m/s.
-    fn relative_velocity(&self, part: usize, other: Other, at: Vector) -> Vector {
+    fn relative_velocity(&self, part: usize, other: Touching, at: Vector) -> Vector {
         let of_other = match other {
-            Other::Part(front) => self.state[front].velocity_at(at),
-            Other::Ground | Other::Solid(_) => Vector::ZERO,
+            Touching::Part(front) => self.state[front].velocity_at(at),
+            Touching::Ground | Touching::Solid(_) => Vector::ZERO,
         };
         self.state[part].velocity_at(at) - of_other
     }
@@ -245,7 +245,7 @@ impl Chain {
         let (part, other, normal) = (contact.part, contact.other, contact.normal);
         let law = law.contact;
         if law.bounce_velocity_m_s > 0.0 {
-            let approach = |point: &Point| self.approach_m_s(part, other, point.at, normal);
+            let approach = |point: &ContactPoint| self.approach_m_s(part, other, point.at, normal);
             let incoming_m_s = contact.points().iter().map(approach).fold(0.0, f32::max);
             if incoming_m_s < law.bounce_velocity_m_s {
                 contact.bounce = 0.0;
@@ -264,8 +264,10 @@ impl Chain {
                 sliding_m_s: velocity - normal * along_normal,
                 approach_m_s: -along_normal,
                 mass_kg: match other {
-                    Other::Part(front) => self.parts[part].mass_kg.min(self.parts[front].mass_kg),
-                    Other::Ground | Other::Solid(_) => self.parts[part].mass_kg,
+                    Touching::Part(front) => {
+                        self.parts[part].mass_kg.min(self.parts[front].mass_kg)
+                    }
+                    Touching::Ground | Touching::Solid(_) => self.parts[part].mass_kg,
                 },
                 step_s: self.common.step_s,
                 substeps: self.common.substeps,
@@ -276,6 +278,3 @@ impl Chain {
         }
     }
 }
-
-/// The most parts of a snake.
-const MOST_PARTS: usize = 12;

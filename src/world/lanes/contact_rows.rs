@@ -1,10 +1,9 @@
 //! The rows of the contacts: each point keeps its part from approaching, and friction holds the contact as a whole.
 
 use super::block::{MOST_POINTS, basis};
-use super::chain::{Chain, Common};
-use super::contact::Other;
-use super::joint_rows::MOST_CORRECTION_PER_S;
-use super::solver::WidePart;
+use super::chain::{Chain, Common, MOST_CORRECTION_PER_S};
+use super::contact::Touching;
+use super::part::WidePart;
 use super::wide::{Wide, WideVector};
 use crate::world::Vector;
 
@@ -22,7 +21,7 @@ struct WidePoint<const N: usize> {
     distance_m: Wide<N>,
     /// From the middle of the contact, in metres.
     from_middle_m: Wide<N>,
-    /// Velocity at which the gap closes within a substep, with the correction of a penetration and without.
+    /// Added to the speed of approach: speed at which the gap closes within a substep, or at which a penetration is corrected.
     bias: Wide<N>,
     softening: Wide<N>,
     impulse: Wide<N>,
@@ -96,12 +95,6 @@ fn moved<const N: usize>(
     (part.at - part.began_at) + (out_of(&part.axes, own) - lever)
 }
 
-/// 1 / x, and 0 for 0.
-#[inline(always)]
-fn inverse<const N: usize>(x: Wide<N>) -> Wide<N> {
-    Wide::where_less(Wide::ZERO, x, Wide::ONE / x, Wide::ZERO)
-}
-
 impl<const N: usize> WideContact<N> {
     pub const EMPTY: Self = Self {
         contacts: [None; N],
@@ -161,8 +154,8 @@ impl<const N: usize> WideContact<N> {
         self.count = self.count.max(points.len());
         let part_at = chain.state[contact.part].at;
         let other_at = match contact.other {
-            Other::Part(front) => chain.state[front].at,
-            Other::Ground | Other::Solid(_) => Vector::ZERO,
+            Touching::Part(front) => chain.state[front].at,
+            Touching::Ground | Touching::Solid(_) => Vector::ZERO,
         };
         let middle = points.iter().map(|point| point.at).sum::<Vector>() / points.len() as f32;
         self.levers[0].set(lane, middle - part_at);
@@ -226,8 +219,9 @@ impl<const N: usize> WideContact<N> {
                 point.own[1] = into(&other.axes, point.levers[1]);
                 inverse_mass += point.by_inertia[1].dot(axis);
             }
-            point.mass = point.mass / inverse_mass;
-            point.total = Wide::ZERO;
+            point.mass = point.mass * inverse_mass.inverse();
+            // The impulse with which the step begins is that of the step before: the first substep adds it.
+            point.total = -point.impulse;
         }
         self.own[0] = into(&part.axes, self.levers[0]);
         if let Some(other) = other {
@@ -251,7 +245,7 @@ impl<const N: usize> WideContact<N> {
             }
         };
         let (xx, xy, yy) = (inverse_kg + product(0, 0), product(0, 1), inverse_kg + product(1, 1));
-        let of_determinant = inverse(xx * yy - xy * xy);
+        let of_determinant = (xx * yy - xy * xy).inverse();
         self.tangent_masses = [yy * of_determinant, -(xy * of_determinant), xx * of_determinant];
 
         self.twist_by_inertia[0] = part.inverse_inertia.of(normal);
@@ -260,7 +254,7 @@ impl<const N: usize> WideContact<N> {
             self.twist_by_inertia[1] = other.inverse_inertia.of(normal);
             twist += self.twist_by_inertia[1].dot(normal);
         }
-        self.twist_mass = inverse(twist);
+        self.twist_mass = twist.inverse();
     }
 
     /// Present distance of a point along the normal.
@@ -319,7 +313,6 @@ impl<const N: usize> WideContact<N> {
             point.bias = distance_m.max(Wide::ZERO) * per_substep;
             point.softening = Wide::ONE;
         }
-        self.tangent_bias = [Wide::ZERO; 2];
     }
 
     #[inline(always)]

@@ -1,11 +1,8 @@
 //! The rows of the universal joints: a velocity that two parts may not have against each other, and the impulse that prevents it.
 
-use super::chain::{Chain, Common};
-use super::solver::{WidePart, both};
+use super::chain::{Chain, Common, MOST_CORRECTION_PER_S};
+use super::part::{WidePart, both};
 use super::wide::{Wide, WideVector};
-
-/// Greatest speed with which a joint is turned back from beyond its limit, in rad/s: rapier's, in m/s for contacts.
-pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
 
 /// A row that only concerns rotations, about the same axis for both parts.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +19,7 @@ struct TurnRow<const N: usize> {
 
 /// A row that concerns velocities and rotations.
 #[derive(Debug, Clone, Copy)]
-struct Row<const N: usize> {
+struct JointRow<const N: usize> {
     direction: WideVector<N>,
     axes: [WideVector<N>; 2],
     by_inertia: [WideVector<N>; 2],
@@ -41,16 +38,17 @@ pub(super) struct WideJoint<const N: usize> {
     pub parts: [usize; 2],
     /// Distance of its anchors from the centres along y, in metres: behind the front part, before the rear part.
     anchors_m: [Wide<N>; 2],
-    /// Compliance of the damping, `1 / (damping · substep)`; 0 without damping, as which no axis is damped.
+    /// Compliance of the damping, `1 / (damping · substep)`.
     damping: Wide<N>,
+    /// 1, and 0 without damping.
     is_damped: Wide<N>,
     half_limits: [[Wide<N>; 2]; 2],
     correction_per_s: Wide<N>,
     compliance: Wide<N>,
     motors: [TurnRow<N>; 2],
     lock: TurnRow<N>,
-    anchors: [Row<N>; 3],
-    limits: [Row<N>; 2],
+    anchors: [JointRow<N>; 3],
+    limits: [JointRow<N>; 2],
     /// Whether any lane is beyond a limit.
     is_limited: [bool; 2],
 }
@@ -83,7 +81,7 @@ impl<const N: usize> TurnRow<N> {
     }
 }
 
-impl<const N: usize> Row<N> {
+impl<const N: usize> JointRow<N> {
     const EMPTY: Self = Self {
         direction: WideVector::ZERO,
         axes: [WideVector::ZERO; 2],
@@ -215,8 +213,8 @@ impl<const N: usize> WideJoint<N> {
         compliance: Wide::ZERO,
         motors: [TurnRow::EMPTY; 2],
         lock: TurnRow::EMPTY,
-        anchors: [Row::EMPTY; 3],
-        limits: [Row::EMPTY; 2],
+        anchors: [JointRow::EMPTY; 3],
+        limits: [JointRow::EMPTY; 2],
         is_limited: [false; 2],
     };
 
@@ -270,9 +268,9 @@ impl<const N: usize> WideJoint<N> {
             z: (a.w * b.w + a.z * b.z - a.x * b.x - a.y * b.y) * half,
         };
         let (mut lock, lock_mass) = TurnRow::about(axis, ends);
-        let lock_inverse = Wide::ONE / lock_mass;
+        let lock_inverse = lock_mass.inverse();
         lock.compliance = lock_mass * self.compliance;
-        lock.inverse = Wide::ONE / (lock_mass + lock.compliance);
+        lock.inverse = (lock_mass + lock.compliance).inverse();
         lock.bias = z * self.correction_per_s;
         self.lock = lock;
 
@@ -283,7 +281,7 @@ impl<const N: usize> WideJoint<N> {
             let by_inertia = [front.inverse_inertia.of(axes[0]), rear.inverse_inertia.of(axes[1])];
             let bias = direction.dot(gap) * self.correction_per_s;
             let row = &mut self.anchors[axis];
-            *row = Row { direction, axes, by_inertia, bias, ..Row::EMPTY };
+            *row = JointRow { direction, axes, by_inertia, bias, ..JointRow::EMPTY };
             row.take_out_turn(&self.lock, lock_inverse);
         }
         // Modified Gram-Schmidt: each row is made independent of those before it, so that one pass solves them all.
@@ -293,8 +291,8 @@ impl<const N: usize> WideJoint<N> {
             let row = &mut done[axis];
             let mass = row.product(row, inverse_kg);
             row.compliance = mass * self.compliance;
-            row.inverse = Wide::ONE / (mass + row.compliance);
-            inverses[axis] = Wide::ONE / mass;
+            row.inverse = (mass + row.compliance).inverse();
+            inverses[axis] = mass.inverse();
             for later in rest {
                 later.take_out(row, inverses[axis], inverse_kg);
             }
@@ -313,14 +311,14 @@ impl<const N: usize> WideJoint<N> {
             let by_inertia =
                 [front.inverse_inertia.of(direction), rear.inverse_inertia.of(direction)];
             let row = &mut self.limits[axis];
-            *row = Row { axes: [direction; 2], by_inertia, bias, ..Row::EMPTY };
+            *row = JointRow { axes: [direction; 2], by_inertia, bias, ..JointRow::EMPTY };
             row.take_out_turn(&self.lock, lock_inverse);
             for (anchor, inverse) in self.anchors.iter().zip(inverses) {
                 row.take_out(anchor, inverse, inverse_kg);
             }
             let mass = row.product(row, inverse_kg);
             row.compliance = mass * self.compliance;
-            row.inverse = Wide::ONE / (mass + row.compliance);
+            row.inverse = (mass + row.compliance).inverse();
             row.range = [is_below * Wide::all(-f32::MAX), is_above * Wide::all(f32::MAX)];
         }
     }
@@ -345,6 +343,38 @@ impl<const N: usize> WideJoint<N> {
                 let of_row = bias(row.bias);
                 row.solve_in_range(front, rear, of_row);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_beyond_a_limit_is_the_angle_minus_the_limit() {
+        for limit_rad in [0.0_f32, 0.3, 1.0, 2.9, 3.1] {
+            let (sin, cos) = libm::sincosf(limit_rad / 2.0);
+            for number in -62..=62_i16 {
+                let angle_rad = f32::from(number) * 0.05;
+                let (x, w) = libm::sincosf(angle_rad / 2.0);
+                let found = beyond(Wide([x]), Wide([w]), [Wide([sin]), Wide([cos])]);
+                let expected = if angle_rad.abs() > limit_rad {
+                    angle_rad - limit_rad.copysign(angle_rad)
+                } else {
+                    0.0
+                };
+                let found = found.map_or(0.0, |found| found.0[0]);
+                assert!((found - expected).abs() < 1.0e-5, "{angle_rad} {limit_rad}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_joint_without_a_limit_is_never_beyond_it() {
+        for number in -62..=62_i16 {
+            let (x, w) = libm::sincosf(f32::from(number) * 0.025);
+            assert!(beyond(Wide([x]), Wide([w]), [Wide([1.0]), Wide([0.0])]).is_none());
         }
     }
 }

@@ -29,10 +29,11 @@ mod chain;
 mod contact;
 mod contact_rows;
 mod joint_rows;
+mod part;
 mod restitution;
 mod solver;
 mod wide;
 
 pub(crate) use chain::{Chain, Common, PartState};
-pub(crate) use contact::{Contact, Other, Point};
+pub(crate) use contact::{Contact, ContactPoint, Touching};
 pub(crate) use solver::LaneSolver;

@@ -3,8 +3,9 @@
 //! A point that arrived in this step and was pressed leaves with the share of its speed that the materials give back. Each point
 //! disturbs those before it, so a block that lands on a whole face needs several rounds over its corners until all agree.
 
+use super::block::out_of;
 use super::chain::{Chain, PartState};
-use super::contact::{Contact, Other};
+use super::contact::{Contact, Touching};
 use crate::world::Vector;
 
 /// Rounds over the points of a step. The four corners of a block agree to a thousandth after ten.
@@ -31,7 +32,7 @@ impl Chain {
         contact.bounce > 0.0 && points.any(|point| Self::bounces_at(contact, point))
     }
 
-    fn bounces_at(contact: &Contact, point: &super::contact::Point) -> bool {
+    fn bounces_at(contact: &Contact, point: &super::contact::ContactPoint) -> bool {
         // What is there already rests, unless nothing is ever lost.
         (point.is_new || contact.bounce >= 1.0) && point.incoming_m_s > 0.0 && point.total_ns > 0.0
     }
@@ -73,17 +74,16 @@ impl Chain {
         let mut bounces = Vec::new();
         for (index, contact) in self.contacts.iter().enumerate() {
             let front = match contact.other {
-                Other::Part(front) => Some(front),
-                Other::Ground | Other::Solid(_) => None,
+                Touching::Part(front) => Some(front),
+                Touching::Ground | Touching::Solid(_) => None,
             };
             for (number, point) in contact.points().iter().enumerate() {
-                if contact.bounce <= 0.0 || !Self::bounces_at(contact, point) {
+                let is_held = self.state[contact.part].is_held
+                    || front.is_some_and(|front| self.state[front].is_held);
+                if is_held || contact.bounce <= 0.0 || !Self::bounces_at(contact, point) {
                     continue;
                 }
-                let lever = |part: usize, own: Vector| {
-                    let axes = self.state[part].axes();
-                    axes[0] * own.x + axes[1] * own.y + axes[2] * own.z
-                };
+                let lever = |part: usize, own: Vector| out_of(&self.state[part].axes(), own);
                 bounces.push(Bounce {
                     part: contact.part,
                     front,

@@ -1,165 +1,15 @@
 //! Steps of several snakes side by side: see the module's page for the method.
 
 use super::chain::{Chain, Common};
-use super::contact::Other;
+use super::contact::Touching;
 use super::contact_rows::WideContact;
 use super::joint_rows::WideJoint;
-use super::wide::{Wide, WideRotation, WideSymmetric, WideVector};
-
-/// Greatest speed of a part, in m/s, and its greatest turn within a step, in radians: rapier's.
-const MOST_M_S: f32 = 400.0;
-const MOST_TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
-
-/// A part in each lane.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct WidePart<const N: usize> {
-    pub at: WideVector<N>,
-    /// Where the step began.
-    pub began_at: WideVector<N>,
-    pub turn: WideRotation<N>,
-    /// Its axes in the world, at the present rotation.
-    pub axes: [WideVector<N>; 3],
-    pub linear: WideVector<N>,
-    pub angular: WideVector<N>,
-    pub inverse_kg: Wide<N>,
-    /// 1, and 0 for a part that is held.
-    moves: Wide<N>,
-    /// In the world, at the beginning of the step.
-    pub inverse_inertia: WideSymmetric<N>,
-    inertia: WideVector<N>,
-    /// What gravity, forces and torques add in a substep.
-    adds_linear: WideVector<N>,
-    adds_angular: WideVector<N>,
-}
-
-/// Two different parts, for changing both.
-#[inline(always)]
-pub(super) fn both<const N: usize>(
-    parts: &mut [WidePart<N>],
-    front: usize,
-    rear: usize,
-) -> Option<(&mut WidePart<N>, &mut WidePart<N>)> {
-    let (before, after) = parts.split_at_mut_checked(rear)?;
-    Some((before.get_mut(front)?, after.first_mut()?))
-}
-
-impl<const N: usize> WidePart<N> {
-    const EMPTY: Self = Self {
-        at: WideVector::ZERO,
-        began_at: WideVector::ZERO,
-        turn: WideRotation::IDENTITY,
-        axes: [WideVector::ZERO; 3],
-        linear: WideVector::ZERO,
-        angular: WideVector::ZERO,
-        inverse_kg: Wide::ONE,
-        moves: Wide::ONE,
-        inverse_inertia: WideSymmetric::ZERO,
-        inertia: WideVector { x: Wide::ONE, y: Wide::ONE, z: Wide::ONE },
-        adds_linear: WideVector::ZERO,
-        adds_angular: WideVector::ZERO,
-    };
-
-    fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
-        let (part, state) = (&chain.parts[index], &chain.state[index]);
-        self.at.set(lane, state.at);
-        let [x, y, z, w] = state.turn;
-        self.turn.x.0[lane] = x;
-        self.turn.y.0[lane] = y;
-        self.turn.z.0[lane] = z;
-        self.turn.w.0[lane] = w;
-        self.linear.set(lane, state.linear);
-        self.angular.set(lane, state.angular);
-        let moves = if state.is_held { 0.0 } else { 1.0 };
-        self.moves.0[lane] = moves;
-        self.inverse_kg.0[lane] = moves / part.mass_kg;
-        self.inertia.set(lane, part.inertia_kg_m2);
-        self.adds_linear.set(lane, chain.gravity * moves + state.force_n * (moves / part.mass_kg));
-        self.adds_angular.set(lane, state.torque_nm);
-    }
-
-    fn store(&self, lane: usize, chain: &mut Chain, index: usize) {
-        let state = &mut chain.state[index];
-        state.at = self.at.get(lane);
-        state.turn =
-            [self.turn.x.0[lane], self.turn.y.0[lane], self.turn.z.0[lane], self.turn.w.0[lane]];
-        state.linear = self.linear.get(lane);
-        state.angular = self.angular.get(lane);
-    }
-
-    /// Prepares a step after all lanes were loaded.
-    #[inline(always)]
-    fn begin_step(&mut self, substep_s: Wide<N>) {
-        self.began_at = self.at;
-        self.axes = self.turn.axes();
-        let inverse = WideVector {
-            x: self.moves / self.inertia.x,
-            y: self.moves / self.inertia.y,
-            z: self.moves / self.inertia.z,
-        };
-        self.inverse_inertia = WideSymmetric::along(&self.axes, inverse);
-        self.adds_linear = self.adds_linear * substep_s;
-        self.adds_angular = self.inverse_inertia.of(self.adds_angular) * substep_s;
-    }
-
-    /// Forces, torques and the gyroscopic torque of a substep.
-    #[inline(always)]
-    fn accelerate(&mut self, substep_s: Wide<N>) {
-        self.linear += self.adds_linear;
-        self.angular += self.adds_angular;
-        // The explicit step of Euler's equations, with the length of the angular momentum before it, as in rapier.
-        let [a, b, c] = self.axes;
-        let rate =
-            WideVector { x: a.dot(self.angular), y: b.dot(self.angular), z: c.dot(self.angular) };
-        let momentum = self.inertia.times(rate);
-        let turned = momentum - rate.cross(momentum) * substep_s;
-        let (before, after) = (momentum.dot(momentum), turned.dot(turned));
-        let scale = Wide::where_less(
-            Wide::ZERO,
-            after,
-            (before / after.max(Wide::all(f32::MIN_POSITIVE))).sqrt(),
-            Wide::ONE,
-        );
-        let rate = WideVector {
-            x: turned.x * scale / self.inertia.x,
-            y: turned.y * scale / self.inertia.y,
-            z: turned.z * scale / self.inertia.z,
-        };
-        self.angular = a * rate.x + b * rate.y + c * rate.z;
-    }
-
-    /// Moves the part for a substep.
-    #[inline(always)]
-    fn advance(&mut self, substep_s: Wide<N>, most_rad_s: f32) {
-        self.linear = within(self.linear, MOST_M_S);
-        self.angular = within(self.angular, most_rad_s);
-        self.at += self.linear * substep_s;
-        self.turn = self.turn.turned(self.angular, substep_s);
-        self.axes = self.turn.axes();
-    }
-
-    #[inline(always)]
-    fn end_step(&mut self) {
-        self.at = self.at.without_signed_zeros();
-        self.turn = self.turn.without_signed_zeros();
-        self.linear = self.linear.without_signed_zeros();
-        self.angular = self.angular.without_signed_zeros();
-    }
-}
+use super::part::{MOST_TURN_RAD, WidePart};
+use super::wide::Wide;
 
 /// The order in which the joints are solved, rapier's: every other one, whose parts are different, and then those between.
 fn alternating(joints: usize) -> impl Iterator<Item = usize> {
     (0..joints).step_by(2).chain((1..joints).step_by(2))
-}
-
-/// A vector no longer than `most`.
-#[inline(always)]
-fn within<const N: usize>(vector: WideVector<N>, most: f32) -> WideVector<N> {
-    let square = vector.dot(vector);
-    let (most, most_square) = (Wide::all(most), Wide::all(most * most));
-    if !square.any_greater(most_square) {
-        return vector;
-    }
-    vector * Wide::where_less(most_square, square, most / square.sqrt(), Wide::ONE)
 }
 
 /// Solves up to `N` snakes side by side. It holds working memory only.
@@ -254,8 +104,8 @@ impl<const N: usize> LaneSolver<N> {
         for (lane, (chain, next)) in chains.iter().zip(next.iter_mut()).enumerate() {
             let Some(contact) = chain.contacts.get(*next) else { continue };
             let front = match contact.other {
-                Other::Part(front) => Some(front),
-                Other::Ground | Other::Solid(_) => None,
+                Touching::Part(front) => Some(front),
+                Touching::Ground | Touching::Solid(_) => None,
             };
             if contact.part != part || front != other {
                 continue;

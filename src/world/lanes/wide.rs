@@ -134,6 +134,12 @@ impl<const N: usize> Wide<N> {
         Self(result)
     }
 
+    /// 1 / x for a positive number, else 0: what has no mass, or is held, takes no impulse.
+    #[inline(always)]
+    pub fn inverse(self) -> Self {
+        Self::where_less(Self::ZERO, self, Self::ONE / self, Self::ZERO)
+    }
+
     /// Whether a lane has a number greater than that of `other`.
     #[inline(always)]
     pub fn any_greater(self, other: Self) -> bool {

@@ -2,7 +2,7 @@
 
 use rapier3d::prelude::*;
 
-use super::WorldPlan;
+use crate::world::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
 use crate::world::{BodyPlan, JointPlan, PartPlan, PhysicsWorld, SpringPlan, StairSolid, Surface};

@@ -2,8 +2,8 @@
 
 use rapier3d::prelude::*;
 
-use super::{Simulation, WorldPlan};
-use crate::world::{BodyPlan, PhysicsWorld};
+use super::Simulation;
+use crate::world::{BodyPlan, PhysicsWorld, WorldPlan};
 
 /// Why a running world cannot continue under another plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

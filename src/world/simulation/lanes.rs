@@ -6,7 +6,7 @@ use rapier3d::prelude::*;
 
 use super::Simulation;
 use super::patches::ContactPatch;
-use crate::world::lanes::{Chain, Common, Contact, LaneSolver, Other, PartState};
+use crate::world::lanes::{Chain, Common, Contact, LaneSolver, PartState, Touching};
 use crate::world::turning;
 use crate::world::{Disqualification, JointTorque, PhysicsEngine, TouchedSurface, WorldPlan};
 
@@ -15,7 +15,7 @@ pub(crate) const LANES: usize = 8;
 
 /// A point of a contact, for drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SeenContact {
+pub struct SeenPoint {
     /// On what is touched, and on the part, in metres.
     pub on_m: [Vector; 2],
     /// Unit vector along which the part is pushed.
@@ -33,8 +33,10 @@ impl LanesWorld {
     /// That of a plan that asks for the engine. A plan that it cannot run is refused before it is built; if one came here, rapier
     /// would run it.
     pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
-        let is_chosen =
-            plan.physics.engine == PhysicsEngine::Lanes && plan.body.obstacle_in_lanes().is_none();
+        let is_possible = plan.body.obstacle_in_lanes().is_none();
+        let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;
+        debug_assert!(!is_chosen || is_possible, "the plan was not checked");
+        let is_chosen = is_chosen && is_possible;
         is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: LaneSolver::default() }))
     }
 
@@ -152,15 +154,15 @@ impl Simulation {
     }
 
     /// The points of the contacts of the lanes' engine; none in rapier's worlds, whose contacts its narrow phase has.
-    pub fn contacts_in_lanes(&self) -> Vec<SeenContact> {
+    pub fn contacts_in_lanes(&self) -> Vec<SeenPoint> {
         let place = |part: usize| *self.physics.bodies[self.parts[part]].position();
         let contacts = self.lanes_contacts().iter();
         let points = contacts.flat_map(|contact| {
             let other = match contact.other {
-                Other::Part(front) => place(front),
-                Other::Ground | Other::Solid(_) => Pose::IDENTITY,
+                Touching::Part(front) => place(front),
+                Touching::Ground | Touching::Solid(_) => Pose::IDENTITY,
             };
-            contact.points().iter().map(move |point| SeenContact {
+            contact.points().iter().map(move |point| SeenPoint {
                 on_m: [other * point.on_other, place(contact.part) * point.on_part],
                 normal: contact.normal,
             })
@@ -176,9 +178,9 @@ impl Simulation {
     /// What a contact of the lanes' engine touches; of two parts the rear one is the contact's own.
     pub(super) fn touched_in_lanes(&self, contact: &Contact) -> TouchedSurface {
         match contact.other {
-            Other::Ground => TouchedSurface::Ground,
-            Other::Solid(_) => TouchedSurface::Stairs,
-            Other::Part(_) => TouchedSurface::Limb(self.body.parts[contact.part].limb),
+            Touching::Ground => TouchedSurface::Ground,
+            Touching::Solid(_) => TouchedSurface::Stairs,
+            Touching::Part(_) => TouchedSurface::Limb(self.body.parts[contact.part].limb),
         }
     }
 
@@ -188,17 +190,17 @@ impl Simulation {
         let (own_place, own) =
             (place(contact.part), self.solved_velocity(self.parts[contact.part]));
         let (front, front_place, of_front) = match contact.other {
-            Other::Part(front) => {
+            Touching::Part(front) => {
                 (Some(front), place(front), self.solved_velocity(self.parts[front]))
             }
-            Other::Ground | Other::Solid(_) => (None, Pose::IDENTITY, Default::default()),
+            Touching::Ground | Touching::Solid(_) => (None, Pose::IDENTITY, Default::default()),
         };
         let points = contact.points();
         let pressed_ns: f32 = points.iter().map(|point| point.impulse_ns).sum();
         if pressed_ns <= 0.0 {
             return None;
         }
-        let at_m = |point: &crate::world::lanes::Point| front_place * point.on_other;
+        let at_m = |point: &crate::world::lanes::ContactPoint| front_place * point.on_other;
         let middle_m = points.iter().map(at_m).sum::<Vector>() / points.len() as f32;
         let sliding = |at: Vector| {
             let relative = own.at(at) - of_front.at(at);
@@ -235,7 +237,7 @@ impl Simulation {
     /// Whether a part has bounced in the last step.
     fn has_bounced_in_lanes(&self, part: usize) -> bool {
         let of_part =
-            |contact: &&Contact| contact.part == part || contact.other == Other::Part(part);
+            |contact: &&Contact| contact.part == part || contact.other == Touching::Part(part);
         self.lanes_contacts().iter().filter(of_part).any(Chain::bounces)
     }
 }
@@ -253,6 +255,7 @@ impl LockStep {
         &mut self,
         worlds: &mut [(&mut Simulation, &[JointTorque])],
     ) -> Vec<Result<(), Disqualification>> {
+        debug_assert!(worlds.len() <= LANES, "more worlds than lanes");
         for (world, torques) in worlds.iter_mut() {
             world.apply(torques);
             world.read_turns();

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use super::Simulation;
 use super::patches::solved_points;
 use crate::world::contact::other_collider;
-use crate::world::lanes::Other;
+use crate::world::lanes::Touching;
 use crate::world::{JointTorque, TouchedSurface};
 
 /// Angles and rates of a joint, as the snake senses them: those of the child relative to the parent.
@@ -150,7 +150,7 @@ impl Simulation {
     fn contact_forces_in_lanes(&self, substep_s: f32) -> Vec<ContactForce> {
         let mut forces = Vec::new();
         let contacts = self.lanes_contacts().iter();
-        for contact in contacts.filter(|contact| !matches!(contact.other, Other::Part(_))) {
+        for contact in contacts.filter(|contact| !matches!(contact.other, Touching::Part(_))) {
             let loaded = || contact.points().iter().filter(|point| point.impulse_ns > 0.0);
             let friction_ns = contact.friction_ns / loaded().count().max(1) as f32;
             forces.extend(loaded().map(|point| ContactForce {

@@ -7,7 +7,7 @@ use rapier3d::prelude::*;
 use super::Simulation;
 use super::patches::solved_points;
 use crate::world::contact::other_collider;
-use crate::world::lanes::Other;
+use crate::world::lanes::Touching;
 
 /// The senses of one limb, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -133,7 +133,7 @@ impl Simulation {
         let substep_s = self.substep_s();
         let (mut is_touching, mut impulse) = (false, Vector::ZERO);
         let contacts = self.lanes_contacts().iter().filter(|contact| contact.part == part);
-        for contact in contacts.filter(|contact| !matches!(contact.other, Other::Part(_))) {
+        for contact in contacts.filter(|contact| !matches!(contact.other, Touching::Part(_))) {
             is_touching = true;
             let pressed_ns: f32 = contact.points().iter().map(|point| point.impulse_ns).sum();
             if pressed_ns > 0.0 {

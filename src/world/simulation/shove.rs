@@ -1,5 +1,6 @@
 //! A shove: a limb's velocity changes at one moment, as if something had hit it.
 
+use rapier3d::prelude::RigidBody;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Simulation;
@@ -48,10 +49,20 @@ impl Simulation {
     /// and no loss in the energy balance.
     pub fn shove(&mut self, shove: &Shove) {
         for &part in &self.parts[self.body.parts_of(shove.limb)] {
+            let is_in_lanes = self.lanes.is_some();
             let body = &mut self.physics.bodies[part];
-            let before_j = body.kinetic_energy();
+            // Rapier's own energy of a body is not the same on every processor.
+            let energy_j = |of: &RigidBody| {
+                let velocity = of.linvel();
+                if is_in_lanes {
+                    of.mass() * velocity.dot(velocity) / 2.0
+                } else {
+                    of.kinetic_energy()
+                }
+            };
+            let before_j = energy_j(body);
             body.set_linvel(body.linvel() + shove.change_m_s, true);
-            self.balance.start_j += f64::from(body.kinetic_energy() - before_j);
+            self.balance.start_j += f64::from(energy_j(body) - before_j);
         }
     }
 }

@@ -44,7 +44,7 @@ mod settle;
 mod soft;
 mod surface;
 
-use super::super::{JointPlan, PartPlan};
+use super::super::{JointPlan, PartPlan, PhysicsSettings, Skin, Stairs, Surface};
 use super::*;
 
 /// A snake of `limbs` blocks without damping, in the world of the report.

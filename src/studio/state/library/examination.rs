@@ -7,7 +7,6 @@ use super::{Library, name_of};
 use crate::run::exam::{exam_trials, examine};
 use crate::run::{BackgroundTask, LocalPool, RunControl, TaskProgress};
 use crate::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
-use crate::schema::Choices;
 use crate::score::ExamSuite;
 use crate::studio::ui::notifications::Notices;
 
@@ -141,7 +140,6 @@ fn examined(
 #[cfg(test)]
 mod tests {
     use crate::save::load_champion;
-    use crate::schema::Choices;
     use crate::score::ExamSuite;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::library::tests::Tried;
