@@ -84,12 +84,12 @@ impl Block {
     }
 
     /// A point given in the block's own frame, in the world.
-    pub fn to_world(&self, point: Vector) -> Vector {
+    pub fn in_world(&self, point: Vector) -> Vector {
         self.centre + out_of(&self.axes, point)
     }
 
     /// A point of the world in the block's own frame.
-    pub fn to_own(&self, point: Vector) -> Vector {
+    pub fn in_own_frame(&self, point: Vector) -> Vector {
         into(&self.axes, point - self.centre)
     }
 
@@ -156,7 +156,7 @@ pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut SharedPoints) 
     let Face { corners, numbers, .. } = face_along(block.half_m, down);
     found.begin(Vector::Z);
     for (corner, number) in corners.into_iter().zip(numbers) {
-        let at = block.to_world(corner);
+        let at = block.in_world(corner);
         if at.z <= within_m {
             found.push(SharedPoint {
                 features: features(GROUND, number),
@@ -258,7 +258,7 @@ pub(super) fn of_blocks(
     within_m: f32,
     found: &mut SharedPoints,
 ) -> bool {
-    let place = first.to_own(second.centre);
+    let place = first.in_own_frame(second.centre);
     let axes = second.axes.map(|axis| into(&first.axes, axis));
     let (first_half_m, second_half_m) = (first.half_m, second.half_m);
     let mut best = along_faces(first_half_m, second_half_m, place, &axes);

@@ -93,9 +93,9 @@ impl Chain {
         contacts.clear();
         let mut found = SharedPoints::default();
         let mut blocks = [None; MOST_PARTS];
-        for part in 0..self.parts.len().min(MOST_PARTS) {
+        for (part, slot) in blocks.iter_mut().enumerate().take(self.parts.len()) {
             let block = self.block(part);
-            blocks[part] = Some((block, block.reach_m()));
+            *slot = Some((block, block.reach_m()));
         }
         for &[front, rear] in &self.pairs {
             let (Some((first, of_first)), Some((second, of_second))) =
@@ -147,7 +147,7 @@ impl Chain {
     fn add_contact(&self, bodies: &Bodies<'_>, found: &SharedPoints, contacts: &mut Vec<Contact>) {
         let Bodies { part, other, first, second, law } = bodies;
         let turned = |of: Vector| first.map_or(of, |first| first.turned(of));
-        let placed = |at: Vector| first.map_or(at, |first| first.to_world(at));
+        let placed = |at: Vector| first.map_or(at, |first| first.in_world(at));
         let normal = turned(found.normal);
         let mut contact = Contact {
             part: *part,
@@ -184,14 +184,14 @@ impl Chain {
                 .and_then(|of| of.points().iter().find(|of| of.features == candidate.features));
             let at = (on_first + on_second) * 0.5;
             let on_other = if matches!(other, Touching::Part(_)) {
-                first.map_or(on_first, |first| first.to_own(on_first))
+                first.map_or(on_first, |first| first.in_own_frame(on_first))
             } else {
                 on_first
             };
             contact.points[contact.count] = ContactPoint {
                 features: candidate.features,
                 at,
-                on_part: second.to_own(on_second),
+                on_part: second.in_own_frame(on_second),
                 on_other,
                 distance_m: candidate.distance_m,
                 impulse_ns: of_earlier.map_or(0.0, |of| of.impulse_ns),

@@ -97,6 +97,7 @@ impl<const N: usize> Wide<N> {
         Self([value; N])
     }
 
+    #[expect(clippy::needless_range_loop, reason = "such a loop becomes vector instructions")]
     #[inline(always)]
     fn each(self, of: impl Fn(f32) -> f32) -> Self {
         let mut result = [0.0; N];
@@ -125,6 +126,7 @@ impl<const N: usize> Wide<N> {
     }
 
     /// `then` in the lanes where `a` is less than `b`, else `otherwise`.
+    #[expect(clippy::needless_range_loop, reason = "such a loop becomes vector instructions")]
     #[inline(always)]
     pub fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
         let mut result = [0.0; N];
