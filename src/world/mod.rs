@@ -29,7 +29,7 @@ pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan, neighbours_pass};
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
-pub(crate) use lanes::Common as LanesCommon;
+pub use lanes::LanesCommon;
 pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;
@@ -42,8 +42,7 @@ pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{Discontinuity, SeenPoint, Shove, Simulation};
-pub(crate) use simulation::{LANES, LockStep};
+pub use simulation::{Discontinuity, LANES, LockStep, SeenPoint, Shove, Simulation};
 pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
 };

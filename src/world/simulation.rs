@@ -11,6 +11,7 @@ mod continued;
 mod damping;
 mod health_check;
 mod lanes;
+mod lanes_patches;
 pub(super) mod mirror;
 pub(super) mod observe;
 pub(super) mod patches;
@@ -29,8 +30,7 @@ use super::{BodyPlan, Disqualification, Effort, HealthLimits, PhysicsWorld, Pull
 use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
 pub use continued::Discontinuity;
 use lanes::LanesWorld;
-pub use lanes::SeenPoint;
-pub(crate) use lanes::{LANES, LockStep};
+pub use lanes::{LANES, LockStep, SeenPoint};
 pub use shove::Shove;
 
 /// A running world. A clone continues with the bits of the original.

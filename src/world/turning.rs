@@ -24,13 +24,14 @@ pub(super) fn turned(rotation: Rotation, vector: Vector) -> Vector {
     vector * (w * w - square) + axis * (vector.dot(axis) * 2.0) + axis.cross(vector) * (w * 2.0)
 }
 
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::rng::{Purpose, stream};
     use rand::RngExt;
 
     #[test]
+    #[cfg(target_arch = "x86_64")]
     fn on_this_processor_they_have_the_bits_of_glam() {
         let mut rng = stream(1, 1, 1, Purpose::Birth);
         let mut number = || rng.random_range(-1.0_f32..1.0);

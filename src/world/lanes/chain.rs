@@ -103,13 +103,18 @@ pub(super) struct Solid {
     pub high: Vector,
 }
 
-/// What all lanes of a solver have in common.
+/// What all snakes that are stepped side by side have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Common {
+pub struct LanesCommon {
+    /// Length of a step, in s.
     pub step_s: f32,
+    /// Substeps of a step.
     pub substeps: u32,
+    /// Passes over all joints and contacts in a substep.
     pub iterations: u32,
+    /// Number of parts of a snake.
     pub parts: usize,
+    /// Number of its joints.
     pub joints: usize,
     /// Whether a contact or a joint is a spring: then each pass solves friction, and none of them takes corrections of
     /// positions out of the velocities again.
@@ -119,7 +124,7 @@ pub(crate) struct Common {
 /// One snake on its stairs.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
-    pub(super) common: Common,
+    pub(super) common: LanesCommon,
     pub(super) parts: Vec<ChainPart>,
     pub(super) joints: Vec<Joint>,
     /// Pairs of parts that can touch, the front one first.
@@ -202,7 +207,7 @@ impl Chain {
         let count = parts.len();
         let pairs = (0..count).flat_map(|front| (front + 1..count).map(move |rear| [front, rear]));
         let mut chain = Self {
-            common: Common {
+            common: LanesCommon {
                 step_s: physics.step_s(),
                 substeps: physics.substeps.max(1),
                 iterations: physics.iterations,
@@ -227,7 +232,7 @@ impl Chain {
     }
 
     /// What it must have in common with the other lanes of a solver.
-    pub fn common(&self) -> Common {
+    pub fn common(&self) -> LanesCommon {
         self.common
     }
 

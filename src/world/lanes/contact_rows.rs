@@ -1,7 +1,7 @@
 //! The rows of the contacts: each point keeps its part from approaching, and friction holds the contact as a whole.
 
 use super::block::{MOST_POINTS, basis};
-use super::chain::{Chain, Common, MOST_CORRECTION_PER_S};
+use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
 use super::contact::Touching;
 use super::part::WidePart;
 use super::wide::{Wide, WideVector};
@@ -274,7 +274,7 @@ impl<const N: usize> WideContact<N> {
     pub fn begin_substep(
         &mut self,
         parts: &mut [WidePart<N>],
-        common: &Common,
+        common: &LanesCommon,
         per_substep: Wide<N>,
     ) {
         let most = Wide::all(MOST_CORRECTION_PER_S);

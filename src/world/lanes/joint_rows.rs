@@ -1,6 +1,6 @@
 //! The rows of the universal joints: a velocity that two parts may not have against each other, and the impulse that prevents it.
 
-use super::chain::{Chain, Common, MOST_CORRECTION_PER_S};
+use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
 use super::part::{WidePart, both};
 use super::wide::{Wide, WideVector};
 
@@ -241,7 +241,7 @@ impl<const N: usize> WideJoint<N> {
 
     /// Builds the rows for the present poses. Impulses begin at zero: the joints hold without those of the substep before.
     #[inline(always)]
-    pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &Common) {
+    pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &LanesCommon) {
         let ends = [front, rear];
         let levers = [front.axes[1] * self.anchors_m[0], rear.axes[1] * self.anchors_m[1]];
         let gap = (rear.at + levers[1]) - (front.at + levers[0]);

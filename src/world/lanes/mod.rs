@@ -34,6 +34,7 @@ mod restitution;
 mod solver;
 mod wide;
 
-pub(crate) use chain::{Chain, Common, PartState};
+pub use chain::LanesCommon;
+pub(crate) use chain::{Chain, PartState};
 pub(crate) use contact::{Contact, ContactPoint, Touching};
 pub(crate) use solver::LaneSolver;

@@ -1,6 +1,6 @@
 //! Steps of several snakes side by side: see the module's page for the method.
 
-use super::chain::{Chain, Common};
+use super::chain::{Chain, LanesCommon};
 use super::contact::Touching;
 use super::contact_rows::WideContact;
 use super::joint_rows::WideJoint;
@@ -29,7 +29,7 @@ impl<const N: usize> Default for LaneSolver<N> {
 }
 
 impl<const N: usize> LaneSolver<N> {
-    /// Advances up to `N` snakes by one step, without their bounces; all of them have the same [`Common`], and those beyond `N`
+    /// Advances up to `N` snakes by one step, without their bounces; all of them have the same [`LanesCommon`], and those beyond `N`
     /// are not advanced.
     pub fn advance(&mut self, chains: &mut [&mut Chain]) {
         let used = chains.len().min(N);
@@ -65,7 +65,7 @@ impl<const N: usize> LaneSolver<N> {
     }
 
     /// Takes the snakes into the lanes. A lane without a snake is another copy of the first.
-    fn load(&mut self, common: &Common, chains: &[&mut Chain]) {
+    fn load(&mut self, common: &LanesCommon, chains: &[&mut Chain]) {
         self.parts.resize(common.parts, WidePart::EMPTY);
         self.joints.resize(common.joints, WideJoint::EMPTY);
         let of_lane = |lane: usize| chains.get(lane).unwrap_or(&chains[0]);
@@ -126,7 +126,7 @@ impl<const N: usize> LaneSolver<N> {
 
     fn substep(
         &mut self,
-        common: &Common,
+        common: &LanesCommon,
         substep: Wide<N>,
         per_substep: Wide<N>,
         most_rad_s: f32,
