@@ -183,7 +183,7 @@ impl Rollout {
         }
     }
 
-    /// What its world must have in common with those beside which it advances; none if its engine takes each step alone.
+    /// Settings and sizes that its world must share with those beside which it advances; none if its engine takes each step alone.
     pub(crate) fn common(&self) -> Option<LanesCommon> {
         self.simulation.common()
     }

@@ -1,4 +1,4 @@
-//! What a world is built from.
+//! The plan from which a world is built.
 
 use super::{BodyPlan, HealthLimits, PhysicsSettings, Skin, Stairs, Surface};
 

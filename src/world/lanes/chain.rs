@@ -86,7 +86,7 @@ pub(super) struct Law {
     pub softening: f32,
 }
 
-/// What the snake can touch.
+/// The laws of the contacts with everything that the snake can touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Laws {
     pub stairs: Law,
@@ -103,7 +103,7 @@ pub(super) struct Solid {
     pub high: Vector,
 }
 
-/// What all snakes that are stepped side by side have in common.
+/// Settings and sizes that all snakes which are stepped side by side share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LanesCommon {
     /// Length of a step, in s.
@@ -231,7 +231,7 @@ impl Chain {
         chain
     }
 
-    /// What it must have in common with the other lanes of a solver.
+    /// Settings and sizes that the other lanes of a solver must share.
     pub fn common(&self) -> LanesCommon {
         self.common
     }

@@ -8,7 +8,7 @@ use crate::world::contact::SlippingPatch;
 /// Distance up to which bodies that approach are seen as a contact, in metres: rapier's.
 const WITHIN_M: f32 = 0.02;
 
-/// What a part touches.
+/// The body that a part touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Touching {
     /// The ground.
@@ -46,7 +46,7 @@ pub(crate) struct ContactPoint {
 pub(crate) struct Contact {
     /// Index of the part; of two parts that touch, the rear one.
     pub part: usize,
-    /// What it touches.
+    /// The body that the part touches.
     pub other: Touching,
     /// Unit vector in the world along which the part is pushed.
     pub normal: Vector,

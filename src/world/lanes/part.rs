@@ -24,7 +24,7 @@ pub(super) struct WidePart<const N: usize> {
     /// In the world, at the beginning of the step.
     pub inverse_inertia: WideSymmetric<N>,
     inertia: WideVector<N>,
-    /// What gravity, forces and torques add in a substep.
+    /// Changes of both velocities in a substep by gravity, forces and torques.
     adds_linear: WideVector<N>,
     adds_angular: WideVector<N>,
 }

@@ -33,7 +33,7 @@ impl Chain {
     }
 
     fn bounces_at(contact: &Contact, point: &super::contact::ContactPoint) -> bool {
-        // What is there already rests, unless nothing is ever lost.
+        // A contact that was there before rests, unless nothing is ever lost.
         (point.is_new || contact.bounce >= 1.0) && point.incoming_m_s > 0.0 && point.total_ns > 0.0
     }
 

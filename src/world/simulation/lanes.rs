@@ -46,7 +46,7 @@ impl LanesWorld {
 }
 
 impl Simulation {
-    /// What all worlds of a lock step must have in common; none for those of rapier.
+    /// Settings and sizes that all worlds of a lock step must share; none for those of rapier.
     pub(crate) fn common(&self) -> Option<LanesCommon> {
         self.lanes.as_ref().map(|lanes| lanes.chain.common())
     }

@@ -7,7 +7,7 @@ use super::patches::{ContactPatch, TouchedSurface, share};
 use crate::world::lanes::{Chain, Contact, ContactPoint, Touching};
 
 impl Simulation {
-    /// What a contact of the lanes' engine touches; of two parts the rear one is the contact's own.
+    /// The surface that a contact of the lanes' engine touches; of two parts the rear one is the contact's own.
     pub(super) fn touched_in_lanes(&self, contact: &Contact) -> TouchedSurface {
         match contact.other {
             Touching::Ground => TouchedSurface::Ground,
