@@ -8,11 +8,12 @@ use super::study::Study;
 use crate::check::within;
 use crate::run::Cancelled;
 use crate::run::engine_study::{
-    EngineArm, EngineFindings, engine_claims, engine_records, kept_in_other, newborn_statistics,
+    EngineFindings, engine_claims, engine_records, kept_in_other, newborn_statistics,
 };
 use crate::run::headless::{HeadlessError, say};
 use crate::save::library::shipped_champions;
 use crate::save::load_preset;
+use crate::world::PhysicsEngine;
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
 const FIRST_SEED: u64 = 201;
@@ -39,7 +40,7 @@ pub fn engine_study(args: &Args, wanted: &EngineStudyArgs) -> Result<(), CliErro
         settings: &settings,
         preset,
     };
-    let (files, runs) = study.continued::<EngineArm>(|run| {
+    let (files, runs) = study.continued::<PhysicsEngine>(|run| {
         let landing = run.first_on_landing.map_or("never".to_owned(), |number| number.to_string());
         format!("first landing {landing}")
     })?;

@@ -135,10 +135,10 @@ pub fn evaluate_together(
     control: &RunControl,
     mut report: impl FnMut(usize, EvaluationResult),
 ) -> Result<(), Cancelled> {
-    let pairs: Vec<_> = jobs.iter().map(|job| (job.genome, &trials[job.trial])).collect();
     let mut is_reported = vec![false; jobs.len()];
     let mut is_cancelled = false;
     if jobs.len() > 1 {
+        let pairs: Vec<_> = jobs.iter().map(|job| (job.genome, &trials[job.trial])).collect();
         let goes_on = || {
             is_cancelled = control.wait_while_paused().is_err();
             !is_cancelled

@@ -60,6 +60,23 @@ pub(super) fn budgeted(
     Ok(RunPlan::new(preset, seed, settings))
 }
 
+/// The same, but with trials that choose the champion of each generation. The budget does not count them.
+///
+/// # Errors
+/// Those of [`budgeted`].
+pub(super) fn budgeted_with_champions(
+    preset: &str,
+    settings: Settings,
+    seed: u64,
+    evaluations: u32,
+) -> Result<RunPlan, Invalid> {
+    let champion_trials = settings.trial.repeats.champion_trials;
+    let mut plan = budgeted(preset, settings, seed, evaluations)?;
+    plan.settings.trial.repeats.champion_trials = champion_trials;
+    plan.settings.check()?;
+    Ok(plan)
+}
+
 /// A run that is to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedArm<A> {

@@ -23,6 +23,17 @@ choices! {
     }
 }
 
+impl PhysicsEngine {
+    /// The one that this is not.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Rapier => Self::Lanes,
+            Self::Lanes => Self::Rapier,
+        }
+    }
+}
+
 setting_group! {
     /// Settings of the physics engine. They belong to the trial, because they change the bits.
     pub struct PhysicsSettings {

@@ -1,4 +1,4 @@
-//! The arms of the study, and their runs.
+//! The arms of the study, which are the engines, and their runs.
 
 use crate::check::Invalid;
 use crate::evolve::{Champion, RunPlan, Settings};
@@ -7,41 +7,18 @@ use crate::run::evaluator::Evaluator;
 use crate::run::exam::examine;
 use crate::run::experiment::Experiment;
 use crate::run::run_control::{Cancelled, RunControl};
-use crate::run::study::{StudyArm, budgeted};
+use crate::run::study::{StudyArm, budgeted_with_champions};
 use crate::save::EngineStudyRun;
-use crate::schema::choices;
 use crate::score::ExamSuite;
 use crate::world::PhysicsEngine;
 
-choices! {
-    /// The engine in which the snakes of a run learn.
-    pub enum EngineArm {
-        Rapier = "rapier", "rapier", "Learns in rapier.";
-        Lanes = "lanes", "lanes", "Learns in lanes.";
-    }
-}
-
-impl EngineArm {
-    /// The engine.
-    pub fn engine(self) -> PhysicsEngine {
-        match self {
-            Self::Rapier => PhysicsEngine::Rapier,
-            Self::Lanes => PhysicsEngine::Lanes,
-        }
-    }
-}
-
-impl StudyArm for EngineArm {
+impl StudyArm for PhysicsEngine {
     type Run = EngineStudyRun;
 
     fn plan(self, settings: &Settings, seed: u64, evaluations: u32) -> Result<RunPlan, Invalid> {
         let mut settings = settings.clone();
-        settings.trial.physics.engine = self.engine();
-        let champion_trials = settings.trial.repeats.champion_trials;
-        let mut plan = budgeted("climb", settings, seed, evaluations)?;
-        plan.settings.trial.repeats.champion_trials = champion_trials;
-        plan.settings.check()?;
-        Ok(plan)
+        settings.trial.physics.engine = self;
+        budgeted_with_champions("climb", settings, seed, evaluations)
     }
 
     fn measured(

@@ -1,6 +1,5 @@
 //! The results of the study against what is claimed of the second engine.
 
-use super::arm::EngineArm;
 use super::newborns::NewbornStatistics;
 use crate::run::markdown::markdown_table;
 use crate::run::report::Quartiles;
@@ -8,6 +7,7 @@ use crate::run::sign_test::median_difference;
 use crate::run::study::StudyArm;
 use crate::save::{EngineStudyRun, StudyRuns};
 use crate::schema::Choices;
+use crate::world::PhysicsEngine;
 
 /// How much a quartile may differ between the engines.
 const MOST_DIFFERENCE: f64 = 0.1;
@@ -15,7 +15,7 @@ const MOST_DIFFERENCE: f64 = 0.1;
 const KEPT: f32 = 0.8;
 const MUST_KEEP: [usize; 2] = [4, 7];
 
-/// What was measured beside the runs.
+/// Measurements beside those of the runs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EngineFindings {
     /// Motions of newborns.
@@ -75,7 +75,7 @@ fn run_table(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
     let head = ["learned in", "runs", "landed", "first landing", "last mean", "kept in rapier"]
         .map(str::to_owned)
         .to_vec();
-    let rows = EngineArm::OPTIONS.iter().map(|arm| {
+    let rows = PhysicsEngine::OPTIONS.iter().map(|arm| {
         let of_arm = runs.of_arm(arm.name());
         let landed = of_arm.iter().filter(|run| run.first_on_landing.is_some()).count();
         vec![
@@ -128,7 +128,7 @@ fn of_champions(runs: &StudyRuns<EngineStudyRun>, findings: &EngineFindings) -> 
             verdict((all > 0).then_some(most * of >= must * all)),
         ]
     };
-    let of_lanes = runs.of_arm(EngineArm::Lanes.name());
+    let of_lanes = runs.of_arm(PhysicsEngine::Lanes.name());
     let shipped = findings.shipped.iter().map(|(_, kept)| *kept).collect();
     [
         row("shipped champions that keep 80 % of their way in the other engine", shipped),
@@ -163,7 +163,7 @@ fn of_arms(
     runs: &StudyRuns<EngineStudyRun>,
     values: impl Fn(&[&EngineStudyRun]) -> Vec<f64>,
 ) -> [Vec<f64>; 2] {
-    [EngineArm::Rapier, EngineArm::Lanes].map(|arm| values(&runs.of_arm(arm.name())))
+    [PhysicsEngine::Rapier, PhysicsEngine::Lanes].map(|arm| values(&runs.of_arm(arm.name())))
 }
 
 fn of_landings(runs: &StudyRuns<EngineStudyRun>) -> Vec<String> {
@@ -189,7 +189,7 @@ pub fn engine_records(runs: &StudyRuns<EngineStudyRun>) -> Vec<Vec<String>> {
         "run_hash",
     ];
     let mut records = vec![head.map(str::to_owned).to_vec()];
-    for arm in EngineArm::OPTIONS {
+    for arm in PhysicsEngine::OPTIONS {
         for run in runs.of_arm(arm.name()) {
             let optional = |value: Option<String>| value.unwrap_or_default();
             records.push(vec![

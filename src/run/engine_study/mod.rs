@@ -5,6 +5,6 @@ mod arm;
 mod claims;
 mod newborns;
 
-pub use arm::{EngineArm, kept_in_other};
+pub use arm::kept_in_other;
 pub use claims::{EngineFindings, engine_claims, engine_records};
 pub use newborns::{NewbornStatistics, newborn_statistics};

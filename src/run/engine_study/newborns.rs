@@ -1,6 +1,5 @@
 //! The motions of newborns in both engines.
 
-use super::arm::EngineArm;
 use crate::evolve::Settings;
 use crate::genome::Genome;
 use crate::rng::{Purpose, stream};
@@ -10,6 +9,7 @@ use crate::run::run_control::{Cancelled, RunControl};
 use crate::run::{EvaluationResult, Job};
 use crate::schema::Choices;
 use crate::score::Evaluation;
+use crate::world::PhysicsEngine;
 
 /// A measure of a newborn's motion, in both engines.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +52,9 @@ pub fn newborn_statistics(
         })
         .collect();
     let mut in_engines = Vec::new();
-    for arm in EngineArm::OPTIONS {
+    for arm in PhysicsEngine::OPTIONS {
         let mut trial = settings.trial.clone();
-        trial.physics.engine = arm.engine();
+        trial.physics.engine = *arm;
         trial.repeats.trials = 1;
         let jobs: Vec<Job<'_>> = genomes.iter().map(|genome| Job { genome, trial: 0 }).collect();
         let trials = [trial];

@@ -6,7 +6,7 @@ use crate::run::evaluator::Evaluator;
 use crate::run::exam::examine;
 use crate::run::experiment::Experiment;
 use crate::run::run_control::{Cancelled, RunControl};
-use crate::run::study::{StudyArm, budgeted};
+use crate::run::study::{StudyArm, budgeted_with_champions};
 use crate::save::StairsStudyRun;
 use crate::schema::choices;
 use crate::score::{ExamSuite, StairsVariation};
@@ -26,20 +26,16 @@ impl StudyArm for StairsArm {
     fn plan(self, settings: &Settings, seed: u64, evaluations: u32) -> Result<RunPlan, Invalid> {
         let mut settings = settings.clone();
         let trials = settings.trial.repeats.trials;
-        let mut champion_trials = settings.trial.repeats.champion_trials;
         let mut evaluations = evaluations;
         if self == Self::Specialist {
             let repeats = &mut settings.trial.repeats;
             (repeats.trials, repeats.off.stairs) = (1, StairsVariation::Own);
             evaluations = evaluations.saturating_mul(trials);
             // It has as many times more generations, each of which chooses a champion.
-            champion_trials = (champion_trials / trials).max(1);
+            repeats.champion_trials = (repeats.champion_trials / trials).max(1);
         }
-        let mut plan = budgeted("generalist", settings, seed, evaluations)?;
         // Both choose their champions with care, each on variations of what it has learned.
-        plan.settings.trial.repeats.champion_trials = champion_trials;
-        plan.settings.check()?;
-        Ok(plan)
+        budgeted_with_champions("generalist", settings, seed, evaluations)
     }
 
     fn measured(

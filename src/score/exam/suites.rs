@@ -7,7 +7,7 @@ use crate::rng::{Purpose, stream};
 use crate::schema::Choices;
 use crate::score::perturbation::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
-use crate::world::{PhysicsEngine, Stairs};
+use crate::world::Stairs;
 
 /// How much later than without the shove a shoved snake may land, in s.
 pub(super) const RECOVERY_S: f32 = 5.0;
@@ -92,10 +92,7 @@ fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
         return Vec::new();
     }
     let mut other = trial.clone();
-    other.physics.engine = match trial.physics.engine {
-        PhysicsEngine::Rapier => PhysicsEngine::Lanes,
-        PhysicsEngine::Lanes => PhysicsEngine::Rapier,
-    };
+    other.physics.engine = trial.physics.engine.other();
     let range = PerturbationRange { friction: 0.0, rise: 0.0, ..Default::default() };
     let in_engine = |trial: &Trial, words: &str| {
         let starts = varied(trial, &range, STARTS, SEED).into_iter();

@@ -5,6 +5,7 @@
 //! detection", SIGGRAPH 1996. Which axis is chosen, and which points belong to a contact, follows parry's function for two
 //! cuboids, so that both engines see the same contacts.
 
+use super::shared_points::{Plane, SharedPoint, SharedPoints, sign};
 use crate::world::Vector;
 
 /// A box in the world.
@@ -16,55 +17,6 @@ pub(super) struct Block {
     pub axes: [Vector; 3],
     /// Half its sizes along them, in metres.
     pub half_m: Vector,
-}
-
-/// A point in which two bodies touch, or nearly do.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct SharedPoint {
-    /// Corners, edges or faces that meet there. Equal numbers in two steps are the same point of the same bodies.
-    pub features: u16,
-    /// On the first body, in the frame of the search, in metres.
-    pub on_first: Vector,
-    /// On the second body, in the same frame.
-    pub on_second: Vector,
-    /// Distance along the normal, in metres; negative where they overlap.
-    pub distance_m: f32,
-}
-
-/// More than two faces with four corners each can share: each corner of both, and each crossing of edges.
-const MOST_SHARED: usize = 16;
-
-/// All points in which two bodies touch, in the frame of the first box, or of the world for the ground. Its memory is used again for
-/// each pair of bodies.
-#[derive(Debug, Clone, Default)]
-pub(super) struct SharedPoints {
-    /// Unit vector from the first body to the second.
-    pub normal: Vector,
-    points: [SharedPoint; MOST_SHARED],
-    count: usize,
-}
-
-impl SharedPoints {
-    fn begin(&mut self, normal: Vector) {
-        (self.normal, self.count) = (normal, 0);
-    }
-
-    fn push(&mut self, point: SharedPoint) {
-        if let Some(slot) = self.points.get_mut(self.count) {
-            *slot = point;
-            self.count += 1;
-        }
-    }
-
-    /// The points.
-    pub fn points(&self) -> &[SharedPoint] {
-        &self.points[..self.count]
-    }
-}
-
-/// -1 for a negative number, else 1.
-fn sign(value: f32) -> f32 {
-    if value < 0.0 { -1.0 } else { 1.0 }
 }
 
 /// A vector of the world along the axes of a box.
@@ -166,7 +118,7 @@ pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut SharedPoints) 
             });
         }
     }
-    found.count > 0
+    !found.points().is_empty()
 }
 
 /// How far apart two boxes are along an axis, and that axis.
@@ -177,77 +129,172 @@ struct Separation {
     normal: Vector,
 }
 
-/// The best axis among the normals of the first box's faces. Where several of them separate the boxes, a corner or an edge is
-/// nearest, and the axis lies between them.
-fn along_faces(
+/// Sine of the angle to a face's plane below which its distance says nothing.
+const FLAT: f32 = 1.0e-6;
+
+/// Two boxes, in the frame of the first.
+struct BlockPair {
+    /// Half the sizes of the first, in metres.
     first_half_m: Vector,
+    /// Those of the second.
     second_half_m: Vector,
+    /// Centre of the second, in metres.
     place: Vector,
-    axes: &[Vector; 3],
-) -> Separation {
-    let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
-    let (mut between, mut separating) = (Vector::ZERO, 0);
-    for axis in 0..3 {
-        let side = sign(place[axis]);
-        let reach_m = axes[0][axis].abs() * second_half_m.x
-            + axes[1][axis].abs() * second_half_m.y
-            + axes[2][axis].abs() * second_half_m.z;
-        let distance_m = place[axis].abs() - reach_m - first_half_m[axis];
-        if distance_m > best.distance_m {
-            let mut normal = Vector::ZERO;
-            normal[axis] = side;
-            best = Separation { distance_m, normal };
-        }
-        if distance_m >= 0.0 {
-            between[axis] = side * distance_m.max(f32::EPSILON);
-            separating += 1;
-        }
-    }
-    if separating < 2 {
-        return best;
-    }
-    along(between / between.dot(between).sqrt(), first_half_m, second_half_m, place, axes)
+    /// Axes of the second.
+    axes: [Vector; 3],
 }
 
-/// The separation along an axis that points from the first box to the second.
-fn along(
-    normal: Vector,
-    first_half_m: Vector,
-    second_half_m: Vector,
-    place: Vector,
-    axes: &[Vector; 3],
-) -> Separation {
-    let reach_m = normal.abs().dot(first_half_m) + into(axes, normal).abs().dot(second_half_m);
-    Separation { distance_m: place.dot(normal) - reach_m, normal }
-}
+impl BlockPair {
+    fn of(first: &Block, second: &Block) -> Self {
+        Self {
+            first_half_m: first.half_m,
+            second_half_m: second.half_m,
+            place: first.in_own_frame(second.centre),
+            axes: second.axes.map(|axis| into(&first.axes, axis)),
+        }
+    }
 
-/// The best axis among the products of an edge of each box.
-fn along_edges(
-    first_half_m: Vector,
-    second_half_m: Vector,
-    place: Vector,
-    axes: &[Vector; 3],
-) -> Separation {
-    let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
-    for of in axes {
-        let products = [
-            Vector::new(0.0, -of.z, of.y),
-            Vector::new(of.z, 0.0, -of.x),
-            Vector::new(-of.y, of.x, 0.0),
-        ];
-        for product in products {
-            let length = product.dot(product).sqrt();
-            if length > f32::EPSILON {
-                let normal = product / length;
-                let normal = normal * sign(place.dot(normal));
-                let found = along(normal, first_half_m, second_half_m, place, axes);
-                if found.distance_m > best.distance_m {
-                    best = found;
+    /// The same pair in the frame of the second.
+    fn seen_from_second(&self) -> Self {
+        let axes = &self.axes;
+        Self {
+            first_half_m: self.second_half_m,
+            second_half_m: self.first_half_m,
+            place: into(axes, -self.place),
+            axes: [0, 1, 2].map(|row| Vector::new(axes[0][row], axes[1][row], axes[2][row])),
+        }
+    }
+
+    /// The best axis among the normals of the first box's faces. Where several of them separate the boxes, a corner or an edge is
+    /// nearest, and the axis lies between them.
+    fn along_faces(&self) -> Separation {
+        let Self { first_half_m, second_half_m, place, axes } = self;
+        let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
+        let (mut between, mut separating) = (Vector::ZERO, 0);
+        for axis in 0..3 {
+            let side = sign(place[axis]);
+            let reach_m = axes[0][axis].abs() * second_half_m.x
+                + axes[1][axis].abs() * second_half_m.y
+                + axes[2][axis].abs() * second_half_m.z;
+            let distance_m = place[axis].abs() - reach_m - first_half_m[axis];
+            if distance_m > best.distance_m {
+                let mut normal = Vector::ZERO;
+                normal[axis] = side;
+                best = Separation { distance_m, normal };
+            }
+            if distance_m >= 0.0 {
+                between[axis] = side * distance_m.max(f32::EPSILON);
+                separating += 1;
+            }
+        }
+        if separating < 2 {
+            return best;
+        }
+        self.along(between / between.dot(between).sqrt())
+    }
+
+    /// The separation along an axis that points from the first box to the second.
+    fn along(&self, normal: Vector) -> Separation {
+        let reach_m = normal.abs().dot(self.first_half_m)
+            + into(&self.axes, normal).abs().dot(self.second_half_m);
+        Separation { distance_m: self.place.dot(normal) - reach_m, normal }
+    }
+
+    /// The best axis among the products of an edge of each box.
+    fn along_edges(&self) -> Separation {
+        let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
+        for of in &self.axes {
+            let products = [
+                Vector::new(0.0, -of.z, of.y),
+                Vector::new(of.z, 0.0, -of.x),
+                Vector::new(-of.y, of.x, 0.0),
+            ];
+            for product in products {
+                let length = product.dot(product).sqrt();
+                if length > f32::EPSILON {
+                    let normal = product / length;
+                    let normal = normal * sign(self.place.dot(normal));
+                    let found = self.along(normal);
+                    if found.distance_m > best.distance_m {
+                        best = found;
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// Finds the points that the two faces along a normal share, in the frame of the first box.
+    fn shared_points(&self, normal: Vector, found: &mut SharedPoints) {
+        let Self { first_half_m, second_half_m, place, axes } = self;
+        let Face { corners: first, numbers: first_numbers, number: first_face } =
+            face_along(*first_half_m, normal);
+        let Face { corners: own, numbers: second_numbers, number: second_face } =
+            face_along(*second_half_m, into(axes, -normal));
+        let second = own.map(|corner| *place + out_of(axes, corner));
+        let plane = Plane::across(normal);
+        let (first_seen, second_seen) =
+            (first.map(|corner| plane.seen(corner)), second.map(|corner| plane.seen(corner)));
+        found.begin(normal);
+        let mut within = [0; 2];
+
+        // Corners of the first face within the second one, measured to its plane; and the other way round.
+        let upright = (second[2] - second[1]).cross(second[0] - second[1]);
+        let along = upright.dot(normal);
+        if along.abs() > FLAT * upright.length() {
+            for (index, corner) in first.into_iter().enumerate() {
+                if is_within(&second_seen, first_seen[index]) {
+                    within[0] += 1;
+                    let distance_m = (second[0] - corner).dot(upright) / along;
+                    found.push(SharedPoint {
+                        features: features(first_numbers[index], second_face),
+                        on_first: corner,
+                        on_second: corner + normal * distance_m,
+                        distance_m,
+                    });
+                }
+            }
+        }
+        let upright = (first[2] - first[1]).cross(first[0] - first[1]);
+        let along = upright.dot(normal);
+        if along.abs() > FLAT * upright.length() {
+            for (index, corner) in second.into_iter().enumerate() {
+                if is_within(&first_seen, second_seen[index]) {
+                    within[1] += 1;
+                    let distance_m = (corner - first[0]).dot(upright) / along;
+                    found.push(SharedPoint {
+                        features: features(first_face, second_numbers[index]),
+                        on_first: corner - normal * distance_m,
+                        on_second: corner,
+                        distance_m,
+                    });
+                }
+            }
+        }
+        if within.contains(&4) {
+            // A face that lies within the other one crosses none of its edges.
+            return;
+        }
+        for j in 0..4 {
+            let second_edge = [second_seen[j], second_seen[(j + 1) % 4]];
+            for i in 0..4 {
+                let first_edge = [first_seen[i], first_seen[(i + 1) % 4]];
+                if let Some([share, of_second]) = crossing(first_edge, second_edge) {
+                    let on_first = first[i] * (1.0 - share) + first[(i + 1) % 4] * share;
+                    let on_second = second[j] * (1.0 - of_second) + second[(j + 1) % 4] * of_second;
+                    found.push(SharedPoint {
+                        features: features(
+                            edge(first_numbers[i], first_numbers[(i + 1) % 4]),
+                            edge(second_numbers[j], second_numbers[(j + 1) % 4]),
+                        ),
+                        on_first,
+                        on_second,
+                        distance_m: (on_second - on_first).dot(normal),
+                    });
                 }
             }
         }
     }
-    best
 }
 
 /// Finds the contact of two boxes, in the frame of the first, if they are no further apart than `within_m`. Returns whether there is
@@ -258,57 +305,26 @@ pub(super) fn of_blocks(
     within_m: f32,
     found: &mut SharedPoints,
 ) -> bool {
-    let place = first.in_own_frame(second.centre);
-    let axes = second.axes.map(|axis| into(&first.axes, axis));
-    let (first_half_m, second_half_m) = (first.half_m, second.half_m);
-    let mut best = along_faces(first_half_m, second_half_m, place, &axes);
+    let pair = BlockPair::of(first, second);
+    let mut best = pair.along_faces();
     if best.distance_m > within_m {
         return false;
     }
-    // The same seen from the second box.
-    let back = {
-        let rows = [0, 1, 2].map(|row| Vector::new(axes[0][row], axes[1][row], axes[2][row]));
-        along_faces(second_half_m, first_half_m, into(&axes, -place), &rows)
-    };
+    let back = pair.seen_from_second().along_faces();
     if back.distance_m > within_m {
         return false;
     }
-    let edges = along_edges(first_half_m, second_half_m, place, &axes);
+    let edges = pair.along_edges();
     if edges.distance_m > within_m {
         return false;
     }
     if back.distance_m > best.distance_m && back.distance_m > edges.distance_m {
-        best = Separation { normal: out_of(&axes, -back.normal), ..back };
+        best = Separation { normal: out_of(&pair.axes, -back.normal), ..back };
     } else if edges.distance_m > best.distance_m {
         best = edges;
     }
-    of_faces(first_half_m, second_half_m, place, &axes, best.normal, found);
-    found.count > 0
-}
-
-/// A plane across the normal, on which both faces are seen.
-struct Plane([Vector; 2]);
-
-impl Plane {
-    /// The basis of Duff and others, "Building an orthonormal basis, revisited", JCGT 6, 2017.
-    fn across(normal: Vector) -> Self {
-        Self(basis(normal))
-    }
-
-    fn seen(&self, point: Vector) -> [f32; 2] {
-        [point.dot(self.0[0]), point.dot(self.0[1])]
-    }
-}
-
-/// Two unit vectors at right angles to a unit vector and to each other.
-pub(super) fn basis(normal: Vector) -> [Vector; 2] {
-    let side = sign(normal.z);
-    let a = -1.0 / (side + normal.z);
-    let b = normal.x * normal.y * a;
-    [
-        Vector::new(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
-        Vector::new(b, side + normal.y * normal.y * a, -normal.y),
-    ]
+    pair.shared_points(best.normal, found);
+    !found.points().is_empty()
 }
 
 /// Twice the signed area of the triangle between an edge and a point.
@@ -344,164 +360,6 @@ fn crossing(first: [[f32; 2]; 2], second: [[f32; 2]; 2]) -> Option<[f32; 2]> {
     }
     let shares = [product(between, v) / area, product(between, u) / area];
     shares.iter().all(|share| *share > 0.0 && *share < 1.0).then_some(shares)
-}
-
-/// Sine of the angle to a face's plane below which its distance says nothing.
-const FLAT: f32 = 1.0e-6;
-
-/// Finds the points that the two faces along a normal share, in the frame of the first box.
-fn of_faces(
-    first_half_m: Vector,
-    second_half_m: Vector,
-    place: Vector,
-    axes: &[Vector; 3],
-    normal: Vector,
-    found: &mut SharedPoints,
-) {
-    let Face { corners: first, numbers: first_numbers, number: first_face } =
-        face_along(first_half_m, normal);
-    let Face { corners: own, numbers: second_numbers, number: second_face } =
-        face_along(second_half_m, into(axes, -normal));
-    let second = own.map(|corner| place + out_of(axes, corner));
-    let plane = Plane::across(normal);
-    let (first_seen, second_seen) =
-        (first.map(|corner| plane.seen(corner)), second.map(|corner| plane.seen(corner)));
-    found.begin(normal);
-    let mut within = [0; 2];
-
-    // Corners of the first face within the second one, measured to its plane; and the other way round.
-    let upright = (second[2] - second[1]).cross(second[0] - second[1]);
-    let along = upright.dot(normal);
-    if along.abs() > FLAT * upright.length() {
-        for (index, corner) in first.into_iter().enumerate() {
-            if is_within(&second_seen, first_seen[index]) {
-                within[0] += 1;
-                let distance_m = (second[0] - corner).dot(upright) / along;
-                found.push(SharedPoint {
-                    features: features(first_numbers[index], second_face),
-                    on_first: corner,
-                    on_second: corner + normal * distance_m,
-                    distance_m,
-                });
-            }
-        }
-    }
-    let upright = (first[2] - first[1]).cross(first[0] - first[1]);
-    let along = upright.dot(normal);
-    if along.abs() > FLAT * upright.length() {
-        for (index, corner) in second.into_iter().enumerate() {
-            if is_within(&first_seen, second_seen[index]) {
-                within[1] += 1;
-                let distance_m = (corner - first[0]).dot(upright) / along;
-                found.push(SharedPoint {
-                    features: features(first_face, second_numbers[index]),
-                    on_first: corner - normal * distance_m,
-                    on_second: corner,
-                    distance_m,
-                });
-            }
-        }
-    }
-    if within.contains(&4) {
-        // A face that lies within the other one crosses none of its edges.
-        return;
-    }
-    for j in 0..4 {
-        let second_edge = [second_seen[j], second_seen[(j + 1) % 4]];
-        for i in 0..4 {
-            let first_edge = [first_seen[i], first_seen[(i + 1) % 4]];
-            if let Some([share, of_second]) = crossing(first_edge, second_edge) {
-                let on_first = first[i] * (1.0 - share) + first[(i + 1) % 4] * share;
-                let on_second = second[j] * (1.0 - of_second) + second[(j + 1) % 4] * of_second;
-                found.push(SharedPoint {
-                    features: features(
-                        edge(first_numbers[i], first_numbers[(i + 1) % 4]),
-                        edge(second_numbers[j], second_numbers[(j + 1) % 4]),
-                    ),
-                    on_first,
-                    on_second,
-                    distance_m: (on_second - on_first).dot(normal),
-                });
-            }
-        }
-    }
-}
-
-/// Points of a contact that are solved.
-pub(super) const MOST_POINTS: usize = 4;
-
-impl SharedPoints {
-    /// Up to four points that span the contact, ordered by place: the deepest one, the one furthest from it, and the outermost
-    /// ones on both sides of the line through these. Returns their indices and number.
-    pub fn chosen(&self, within_m: f32) -> ([usize; MOST_POINTS], usize) {
-        let (mut chosen, count) = self.spanning(within_m);
-        // In a fixed order on the plane of the contact, whatever the order in which they were found.
-        let plane = Plane::across(self.normal);
-        let before = |a: usize, b: usize| {
-            let [a, b] = [a, b].map(|index| plane.seen(self.points[index].on_first));
-            a[0] < b[0] || (a[0] == b[0] && a[1] < b[1])
-        };
-        for index in 1..count {
-            let moved = chosen[index];
-            let mut to = index;
-            while to > 0 && before(moved, chosen[to - 1]) {
-                chosen[to] = chosen[to - 1];
-                to -= 1;
-            }
-            chosen[to] = moved;
-        }
-        (chosen, count)
-    }
-
-    fn spanning(&self, within_m: f32) -> ([usize; MOST_POINTS], usize) {
-        let points = self.points();
-        let mut chosen = [0, 1, 2, 3];
-        if points.len() <= MOST_POINTS {
-            return (chosen, points.len());
-        }
-        for (index, point) in points.iter().enumerate() {
-            if point.distance_m < points[chosen[0]].distance_m {
-                chosen[0] = index;
-            }
-        }
-        let deepest = points[chosen[0]].on_first;
-        let near = |index: &usize| *index != chosen[0] && points[*index].distance_m <= within_m;
-        let (mut furthest, mut most) = (None, -1.0);
-        for index in (0..points.len()).filter(near) {
-            let away = points[index].on_first - deepest;
-            if away.dot(away) > most {
-                (furthest, most) = (Some(index), away.dot(away));
-            }
-        }
-        let Some(furthest) = furthest.filter(|_| most > 0.0) else { return (chosen, 1) };
-        chosen[1] = furthest;
-        let across = (points[furthest].on_first - deepest).cross(self.normal);
-        let (mut least, mut greatest) = (None, None);
-        let (mut low, mut high) = (f32::MAX, f32::MIN);
-        let others = (0..points.len()).filter(|index| {
-            *index != chosen[0] && *index != furthest && points[*index].distance_m <= within_m
-        });
-        for index in others {
-            let aside = (points[index].on_first - deepest).dot(across);
-            if aside < low {
-                (least, low) = (Some(index), aside);
-            }
-            if aside > high {
-                (greatest, high) = (Some(index), aside);
-            }
-        }
-        match (least, greatest) {
-            (Some(least), Some(greatest)) if least != greatest => {
-                (chosen[2], chosen[3]) = (least, greatest);
-                (chosen, 4)
-            }
-            (Some(least), _) => {
-                chosen[2] = least;
-                (chosen, 3)
-            }
-            _ => (chosen, 2),
-        }
-    }
 }
 
 #[cfg(test)]

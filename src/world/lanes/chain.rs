@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::block::Block;
 use super::contact::Contact;
+use super::wide::{Wide, WideRotation};
 use crate::world::contact::{joint_coefficients, soft_contacts};
 use crate::world::surface::ContactLaw;
 use crate::world::{BodyPlan, Vector, WorldPlan};
@@ -50,12 +51,8 @@ impl PartState {
 
     /// Its axes in the world.
     pub fn axes(&self) -> [Vector; 3] {
-        let [x, y, z, w] = self.turn;
-        [
-            Vector::new(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)),
-            Vector::new(2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)),
-            Vector::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
-        ]
+        let [x, y, z, w] = self.turn.map(|part| Wide([part]));
+        WideRotation { x, y, z, w }.axes().map(|axis| axis.get(0))
     }
 }
 
@@ -131,7 +128,7 @@ pub(crate) struct Chain {
     pub(super) pairs: Vec<[usize; 2]>,
     pub(super) solids: Arc<[Solid]>,
     pub(super) laws: Laws,
-    /// In m/s².
+    /// In m/s². Like the state it is given before each step.
     pub gravity: Vector,
     /// The state that the next step begins with, and that the last one left.
     pub state: Vec<PartState>,
@@ -206,7 +203,7 @@ impl Chain {
         };
         let count = parts.len();
         let pairs = (0..count).flat_map(|front| (front + 1..count).map(move |rear| [front, rear]));
-        let mut chain = Self {
+        Self {
             common: LanesCommon {
                 step_s: physics.step_s(),
                 substeps: physics.substeps.max(1),
@@ -219,16 +216,12 @@ impl Chain {
             pairs: pairs.filter(|[front, rear]| touch(*front, *rear)).collect(),
             solids: solids(plan),
             laws,
-            gravity: Vector::new(0.0, 0.0, -physics.gravity_m_s2),
+            gravity: Vector::ZERO,
             state: vec![PartState::default(); count],
             contacts: Vec::new(),
             earlier: Vec::new(),
             parts,
-        };
-        for (state, pose) in chain.state.iter_mut().zip(plan.start_poses()) {
-            (state.at, state.turn) = (pose.translation, pose.rotation.to_array());
         }
-        chain
     }
 
     /// Settings and sizes that the other lanes of a solver must share.

@@ -1,7 +1,8 @@
 //! Finds the contacts of a snake at the beginning of a step, and gives each the impulses with which it begins.
 
-use super::block::{Block, MOST_POINTS, SharedPoints, of_blocks, on_ground};
+use super::block::{Block, of_blocks, on_ground};
 use super::chain::{Chain, Law, MOST_PARTS};
+use super::shared_points::{MOST_POINTS, SharedPoints};
 use crate::world::Vector;
 use crate::world::contact::SlippingPatch;
 

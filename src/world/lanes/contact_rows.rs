@@ -1,9 +1,9 @@
 //! The rows of the contacts: each point keeps its part from approaching, and friction holds the contact as a whole.
 
-use super::block::{MOST_POINTS, basis};
 use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
 use super::contact::Touching;
 use super::part::WidePart;
+use super::shared_points::{MOST_POINTS, basis};
 use super::wide::{Wide, WideVector};
 use crate::world::Vector;
 
@@ -74,17 +74,6 @@ impl<const N: usize> WidePoint<N> {
     };
 }
 
-/// A vector of the world in the frame of a part.
-#[inline(always)]
-fn into<const N: usize>(axes: &[WideVector<N>; 3], vector: WideVector<N>) -> WideVector<N> {
-    WideVector { x: axes[0].dot(vector), y: axes[1].dot(vector), z: axes[2].dot(vector) }
-}
-
-#[inline(always)]
-fn out_of<const N: usize>(axes: &[WideVector<N>; 3], vector: WideVector<N>) -> WideVector<N> {
-    axes[0] * vector.x + axes[1] * vector.y + axes[2] * vector.z
-}
-
 /// How far a point of a part has moved since the beginning of the step.
 #[inline(always)]
 fn moved<const N: usize>(
@@ -92,7 +81,7 @@ fn moved<const N: usize>(
     own: WideVector<N>,
     lever: WideVector<N>,
 ) -> WideVector<N> {
-    (part.at - part.began_at) + (out_of(&part.axes, own) - lever)
+    (part.at - part.began_at) + (own.out_of_frame(&part.axes) - lever)
 }
 
 impl<const N: usize> WideContact<N> {
@@ -210,22 +199,22 @@ impl<const N: usize> WideContact<N> {
             let axis = point.levers[0].cross(normal);
             point.axes[0] = axis;
             point.by_inertia[0] = part.inverse_inertia.of(axis);
-            point.own[0] = into(&part.axes, point.levers[0]);
+            point.own[0] = point.levers[0].into_frame(&part.axes);
             let mut inverse_mass = inverse_kg + point.by_inertia[0].dot(axis);
             if let Some(other) = other {
                 let axis = point.levers[1].cross(normal);
                 point.axes[1] = axis;
                 point.by_inertia[1] = other.inverse_inertia.of(axis);
-                point.own[1] = into(&other.axes, point.levers[1]);
+                point.own[1] = point.levers[1].into_frame(&other.axes);
                 inverse_mass += point.by_inertia[1].dot(axis);
             }
             point.mass = point.mass * inverse_mass.inverse();
             // The impulse with which the step begins is that of the step before: the first substep adds it.
             point.total = -point.impulse;
         }
-        self.own[0] = into(&part.axes, self.levers[0]);
+        self.own[0] = self.levers[0].into_frame(&part.axes);
         if let Some(other) = other {
-            self.own[1] = into(&other.axes, self.levers[1]);
+            self.own[1] = self.levers[1].into_frame(&other.axes);
         }
         for axis in 0..2 {
             let of_part = self.levers[0].cross(self.tangents[axis]);

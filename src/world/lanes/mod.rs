@@ -31,6 +31,7 @@ mod contact_rows;
 mod joint_rows;
 mod part;
 mod restitution;
+mod shared_points;
 mod solver;
 mod wide;
 

@@ -104,9 +104,7 @@ impl<const N: usize> WidePart<N> {
         self.linear += self.adds_linear;
         self.angular += self.adds_angular;
         // The explicit step of Euler's equations, with the length of the angular momentum before it, as in rapier.
-        let [a, b, c] = self.axes;
-        let rate =
-            WideVector { x: a.dot(self.angular), y: b.dot(self.angular), z: c.dot(self.angular) };
+        let rate = self.angular.into_frame(&self.axes);
         let momentum = self.inertia.times(rate);
         let turned = momentum - rate.cross(momentum) * substep_s;
         let (before, after) = (momentum.dot(momentum), turned.dot(turned));
@@ -121,7 +119,7 @@ impl<const N: usize> WidePart<N> {
             y: turned.y * scale / self.inertia.y,
             z: turned.z * scale / self.inertia.z,
         };
-        self.angular = a * rate.x + b * rate.y + c * rate.z;
+        self.angular = rate.out_of_frame(&self.axes);
     }
 
     /// Moves the part for a substep.

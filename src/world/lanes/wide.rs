@@ -59,6 +59,23 @@ macro_rules! lane_by_lane {
     };
 }
 
+/// Addition or subtraction in place.
+macro_rules! in_place {
+    ($of:ident, $operation:ident, $function:ident, $sign:tt) => {
+        impl<const N: usize> $operation for $of<N> {
+            #[inline(always)]
+            fn $function(&mut self, other: Self) {
+                *self = *self $sign other;
+            }
+        }
+    };
+}
+
+in_place!(Wide, AddAssign, add_assign, +);
+in_place!(Wide, SubAssign, sub_assign, -);
+in_place!(WideVector, AddAssign, add_assign, +);
+in_place!(WideVector, SubAssign, sub_assign, -);
+
 lane_by_lane!(Add, add, +);
 lane_by_lane!(Sub, sub, -);
 lane_by_lane!(Mul, mul, *);
@@ -70,20 +87,6 @@ impl<const N: usize> Neg for Wide<N> {
     #[inline(always)]
     fn neg(self) -> Self {
         self.each(|value| -value)
-    }
-}
-
-impl<const N: usize> AddAssign for Wide<N> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const N: usize> SubAssign for Wide<N> {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 
@@ -187,20 +190,6 @@ impl<const N: usize> Mul<Wide<N>> for WideVector<N> {
     }
 }
 
-impl<const N: usize> AddAssign for WideVector<N> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const N: usize> SubAssign for WideVector<N> {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
-    }
-}
-
 impl<const N: usize> WideVector<N> {
     pub const ZERO: Self = Self { x: Wide::ZERO, y: Wide::ZERO, z: Wide::ZERO };
 
@@ -222,6 +211,18 @@ impl<const N: usize> WideVector<N> {
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
+    /// The vector along axes, given one of the world.
+    #[inline(always)]
+    pub fn into_frame(self, axes: &[Self; 3]) -> Self {
+        Self { x: axes[0].dot(self), y: axes[1].dot(self), z: axes[2].dot(self) }
+    }
+
+    /// The vector of the world, given one along axes.
+    #[inline(always)]
+    pub fn out_of_frame(self, axes: &[Self; 3]) -> Self {
+        axes[0] * self.x + axes[1] * self.y + axes[2] * self.z
     }
 
     /// Sets the vector of one lane.
