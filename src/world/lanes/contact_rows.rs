@@ -190,7 +190,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Builds the rows of a step.
-    #[inline(always)]
+    #[inline(never)]
     pub fn build(&mut self, parts: &[WidePart<N>]) {
         let (part, other) = self.ends(parts);
         let normal = self.normal;
@@ -259,7 +259,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Prepares a substep, and begins it with the impulses of the one before.
-    #[inline(always)]
+    #[inline(never)]
     pub fn begin_substep(
         &mut self,
         parts: &mut [WidePart<N>],
@@ -294,7 +294,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Gaps at the present poses, for the pass that corrects no positions.
-    #[inline(always)]
+    #[inline(never)]
     pub fn end_substep(&mut self, parts: &[WidePart<N>], per_substep: Wide<N>) {
         for index in 0..self.count {
             let distance_m = self.distance_m(parts, &self.points[index]);
@@ -343,7 +343,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// One pass over the points.
-    #[inline(always)]
+    #[inline(never)]
     pub fn solve_normal(&mut self, parts: &mut [WidePart<N>]) {
         for index in 0..self.count {
             let point = &mut self.points[index];
@@ -362,7 +362,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// One pass over the friction: first against a twist on the spot, then along the surface.
-    #[inline(always)]
+    #[inline(never)]
     pub fn solve_friction(&mut self, parts: &mut [WidePart<N>]) {
         let (mut most, mut most_twist) = (Wide::ZERO, Wide::ZERO);
         for point in &self.points[..self.count] {

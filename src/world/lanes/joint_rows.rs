@@ -240,7 +240,7 @@ impl<const N: usize> WideJoint<N> {
     }
 
     /// Builds the rows for the present poses. Impulses begin at zero: the joints hold without those of the substep before.
-    #[inline(always)]
+    #[inline(never)]
     pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &LanesCommon) {
         let ends = [front, rear];
         let levers = [front.axes[1] * self.anchors_m[0], rear.axes[1] * self.anchors_m[1]];
@@ -324,7 +324,7 @@ impl<const N: usize> WideJoint<N> {
     }
 
     /// One pass over the rows, with the correction of positions or without.
-    #[inline(always)]
+    #[inline(never)]
     pub fn solve(&mut self, parts: &mut [WidePart<N>], is_biased: bool) {
         let [front, rear] = self.parts;
         let Some((front, rear)) = both(parts, front, rear) else { return };

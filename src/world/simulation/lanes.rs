@@ -9,8 +9,9 @@ use crate::world::lanes::{Chain, Contact, LaneSolver, LanesCommon, PartState, To
 use crate::world::turning::{product, turned};
 use crate::world::{Disqualification, JointTorque, PhysicsEngine, WorldPlan};
 
-/// Snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have.
-pub const LANES: usize = 8;
+/// Snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On pages, where
+/// the size of the code counts, as many as WebAssembly has lanes.
+pub const LANES: usize = if cfg!(target_arch = "wasm32") { 4 } else { 8 };
 
 /// A point of a contact, for drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
