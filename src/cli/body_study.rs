@@ -6,6 +6,7 @@ use super::study::{FIRST_SEED, Study};
 use crate::run::body_study::{Arm, claims, study_records};
 use crate::run::creature_study::{CreatureArm, creature_claims, creature_records};
 use crate::save::load_preset;
+use crate::world::PhysicsEngine;
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
@@ -15,6 +16,8 @@ pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }
+    // The engine of the runs that are published.
+    settings.trial.physics.engine = PhysicsEngine::Rapier;
     let BodyStudyArgs { seeds, evaluations, .. } = *wanted;
     let command = "body-study";
     let first_seed = FIRST_SEED;

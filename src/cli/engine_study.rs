@@ -25,6 +25,8 @@ const MOST_NEWBORNS: u32 = 1_000_000;
 pub fn engine_study(args: &Args, wanted: &EngineStudyArgs) -> Result<(), CliError> {
     let (preset, name) = ("climb", "engine-study");
     let mut settings = load_preset(preset)?.settings;
+    // Each arm has its own engine.
+    settings.trial.physics.engine = PhysicsEngine::Rapier;
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }

@@ -5,6 +5,7 @@ use super::error::CliError;
 use super::study::{FIRST_SEED, Study};
 use crate::run::stairs_study::{StairsArm, stairs_claims, stairs_records};
 use crate::save::load_preset;
+use crate::world::PhysicsEngine;
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn stairs_study(args: &Args, wanted: &StairsStudyArgs) -> Result<(), CliError> {
@@ -13,6 +14,8 @@ pub fn stairs_study(args: &Args, wanted: &StairsStudyArgs) -> Result<(), CliErro
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }
+    // The engine of the runs that are published.
+    settings.trial.physics.engine = PhysicsEngine::Rapier;
     let StairsStudyArgs { seeds, evaluations } = *wanted;
     let first_seed = FIRST_SEED;
     let study = Study {

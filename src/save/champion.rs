@@ -5,6 +5,7 @@ use std::path::Path;
 use super::SaveError;
 use super::champion_exam::{exam_in_words, is_programs_comment};
 use super::files::{Header, LARGEST_FILE_MIB, parse, pretty, read_text, single_line};
+use super::same_engine::has_bits_of_this;
 use super::v5::{ChampionV5, FORMAT, KIND};
 use super::whole_file::write_whole;
 use crate::Engine;
@@ -16,7 +17,7 @@ use crate::score::{Recording, SuiteResult};
 pub struct LoadedChampion {
     /// The champion with its recorded evaluation.
     pub champion: Champion,
-    /// The engine that recorded it. An engine other than [`Engine::THIS`] may compute other bits.
+    /// The engine that recorded it.
     pub engine: Engine,
     /// Its recorded poses, if the file has them.
     pub recording: Option<Recording>,
@@ -143,7 +144,7 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
 impl LoadedChampion {
     /// Whether this program computes the same bits as the one that recorded the champion.
     pub fn is_of_this_engine(&self) -> bool {
-        self.engine == Engine::THIS
+        has_bits_of_this(self.engine, self.champion.trial.physics.engine)
     }
 }
 

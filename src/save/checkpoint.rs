@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::files::{Header, hash_of, numbered, parse, read_bytes, refuse_link, store_ron, text_of};
-use super::plan::check_engine;
 use super::run_name::fingerprint;
+use super::same_engine::check_engine;
 use super::v5::RecordedV5;
 use super::{GenerationRecord, SaveError};
 use crate::check::{Invalid, quoted, within};
@@ -152,7 +152,8 @@ pub fn parse_checkpoint(
         engine, processors, plan: of, generation, run_hash, strategy, front, ..
     } = file;
     let read = || {
-        check_engine(Engine { version: engine, processors })?;
+        let physics = plan.settings.trial.physics.engine;
+        check_engine(Engine { version: engine, processors }, physics)?;
         let expected = fingerprint(plan);
         if of != expected {
             let allowed = format!(

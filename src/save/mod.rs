@@ -34,6 +34,7 @@ mod preset;
 mod record;
 mod run;
 mod run_name;
+mod same_engine;
 mod stairs_file;
 mod stairs_study;
 mod study;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, read_text, refuse_link, store_ron};
+use super::same_engine::check_engine;
 use crate::check::{Invalid, name, quoted};
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::evolve::{Founder, RunPlan, Settings};
@@ -64,7 +65,7 @@ pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
 
 fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
     let RunV4 { engine, processors, preset, seed, settings, founder, .. } = file;
-    check_engine(Engine { version: engine, processors })?;
+    check_engine(Engine { version: engine, processors }, settings.trial.physics.engine)?;
     name("preset", &preset)?;
     settings.check().map_err(|error| error.inside("settings"))?;
     let plan = RunPlan::new(&preset, seed, settings);
@@ -75,16 +76,6 @@ fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
         return Err(Invalid::new("founder.name", quoted(&name), allowed));
     }
     plan.starting_from(founder)
-}
-
-/// Refuses a run of another engine, which would compute other bits.
-pub fn check_engine(engine: Engine) -> Result<(), Invalid> {
-    if engine == Engine::THIS {
-        return Ok(());
-    }
-    let allowed =
-        format!("{}; its champions can be replayed, but the run cannot continue", Engine::THIS);
-    Err(Invalid::new("engine", engine, allowed))
 }
 
 pub fn store_plan(path: &Path, plan: &RunPlan) -> Result<(), SaveError> {

@@ -172,7 +172,7 @@ mod tests {
     use crate::evolve::EvolutionSettings;
     use crate::rng::{Purpose, stream};
     use crate::score::{Fitness, Repeats, Trial, evaluate};
-    use crate::world::Stairs;
+    use crate::world::{PhysicsEngine, Stairs};
 
     #[test]
     fn the_shipped_presets_are_well_formed_and_the_default_is_first() {
@@ -210,7 +210,9 @@ mod tests {
             let (repeats, fitness) = (Repeats::default(), Fitness::default());
             // The genome does not come far enough to tell stairs apart.
             let stairs = Stairs::default();
-            let trial = Trial { repeats, fitness, stairs, ..preset.settings.trial };
+            let mut trial = Trial { repeats, fitness, stairs, ..preset.settings.trial };
+            // It stays in the air of presets that differ in the engine alone, and does not feel which one it is.
+            trial.physics.engine = PhysicsEngine::Rapier;
             if !worlds.contains(&trial) {
                 worlds.push(trial);
             }

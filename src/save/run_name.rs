@@ -2,7 +2,7 @@
 
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::Engine;
+use super::same_engine::engine_of;
 use crate::evolve::{RunPlan, SettingChange};
 
 /// The name of a run's folder: the preset, the seed, and eight hexadecimal digits that stand for everything else
@@ -20,7 +20,8 @@ pub fn settings_fingerprint(plan: &RunPlan) -> String {
         let genome = founder.genome();
         format!(" from {} {:016x}", genome.controller.kind(), genome.hash())
     });
-    let text = format!("{} {settings}{}", Engine::THIS, founder.unwrap_or_default());
+    let engine = engine_of(plan.settings.trial.physics.engine);
+    let text = format!("{engine} {settings}{}", founder.unwrap_or_default());
     format!("{:08x}", xxh3_64(text.as_bytes()) as u32)
 }
 

@@ -257,8 +257,10 @@ mod tests {
             let text = refusal.to_string();
             assert!(text.starts_with(start) && text.contains("do not use it"), "{text}");
         }
-        let used = "--preset climb --set youngs_modulus_pa=20000 --set soft_parts=4";
-        assert!(args_of(used).run_source().is_ok());
+        let soft = "--preset climb --set youngs_modulus_pa=20000 --set soft_parts=4";
+        assert!(args_of(&format!("{soft} --set engine=rapier")).run_source().is_ok());
+        let refusal = args_of(soft).run_source().map(|_| ()).expect_err("refused").to_string();
+        assert!(refusal.starts_with("trial.physics.engine is lanes; allowed: rapier"), "{refusal}");
     }
 
     #[test]

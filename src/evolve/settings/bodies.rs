@@ -78,7 +78,7 @@ impl Settings {
 
 impl Settings {
     /// Checks that the physics engine can simulate the snakes of a run.
-    fn check_engine(&self) -> Result<(), Invalid> {
+    pub(super) fn check_engine(&self) -> Result<(), Invalid> {
         let engine = self.trial.physics.engine;
         let bodies = &self.genome.bodies;
         let are_soft =

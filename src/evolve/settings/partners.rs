@@ -6,8 +6,9 @@
 use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
-use crate::schema::Choices;
+use crate::schema::{Choices, set_text};
 use crate::score::{Fitness, StairsVariation};
+use crate::world::PhysicsEngine;
 
 impl StrategyKind {
     /// Whether the strategy can improve controllers of this kind.
@@ -35,10 +36,29 @@ impl StrategyKind {
 /// The controllers whose waves follow the blocks of a chain that changes.
 const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
 
+/// The field of the physics engine.
+const ENGINE: &str = "trial.physics.engine";
+
 impl Settings {
-    /// The changes of strategy, controller and the evolution of bodies that a change of one of them calls for, as fields and
-    /// texts: without them they would not go together. Empty if they do, or if the field is another one.
+    /// The changes of strategy, controller, the evolution of bodies and the physics engine that a change of one of them, or of
+    /// the bodies, calls for, as fields and texts: without them they would not go together. Empty if they do.
     pub fn partner_changes(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
+        let mut changes = self.partner_choices(field, text);
+        let mut changed = self.clone();
+        for (field, text) in std::iter::once((field, text)).chain(changes.iter().copied()) {
+            // What is not allowed is refused where it is applied.
+            if set_text(&mut changed, field, text).is_err() {
+                return changes;
+            }
+        }
+        // An engine that is chosen for bodies it cannot simulate is refused.
+        if field != ENGINE && self.check_engine().is_ok() && changed.check_engine().is_err() {
+            changes.push((ENGINE, PhysicsEngine::Rapier.choice().name));
+        }
+        changes
+    }
+
+    fn partner_choices(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
         let mut changes: Vec<_> = self.partner_change(field, text).into_iter().collect();
         if field == "genome.bodies.vary" {
             let varies = text == "true";
@@ -155,6 +175,7 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::evolve::with_fields;
+    use crate::schema::PerPart;
 
     #[test]
     fn every_kind_of_controller_has_a_strategy_and_every_strategy_a_controller() {
@@ -199,6 +220,17 @@ mod tests {
         assert_eq!(partner(&settings, controller, "decisions"), Some((strategy, "q_learning")));
         assert_eq!(partner(&settings, controller, "reflex"), None);
         assert_eq!(partner(&settings, "trial.duration_s", "3"), None);
+        let (softness, engine) = ("trial.agent.youngs_modulus_pa", "trial.physics.engine");
+        assert_eq!(all(&settings, softness, "40000"), [], "rapier simulates soft limbs");
+        settings.trial.physics.engine = PhysicsEngine::Lanes;
+        assert_eq!(all(&settings, softness, "40000"), [(engine, "rapier")]);
+        assert_eq!(all(&settings, softness, "none"), []);
+        let creatures = all(&settings, controller, "part_neurons");
+        assert_eq!(creatures.last(), Some(&(engine, "rapier")), "{creatures:?}");
+        settings.trial.physics.engine = PhysicsEngine::Rapier;
+        settings.trial.agent.youngs_modulus_pa = Some(PerPart::All(40_000.0));
+        assert_eq!(all(&settings, engine, "lanes"), [], "it is refused");
+        settings.trial.agent.youngs_modulus_pa = None;
         settings.genome.controller = ControllerKind::Decisions;
         settings.evolution.strategy = StrategyKind::Zcs;
         assert_eq!(partner(&settings, strategy, "ga"), Some((controller, "gait")));

@@ -24,6 +24,9 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             "Bodies evolve now, to suit the strategy.".to_owned()
         }
         "genome.bodies.vary" => "Bodies no longer evolve, to suit the strategy.".to_owned(),
+        "trial.physics.engine" => {
+            "The physics engine is now rapier: lanes simulates rigid limbs in a row.".to_owned()
+        }
         _ => match StrategyKind::named(field, name) {
             Ok(kind) => format!("The strategy is now {}, to suit your choice.", kind.title()),
             Err(_) => String::new(),

@@ -89,6 +89,28 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
 }
 
 #[test]
+fn a_copy_in_the_other_engine_goes_on_with_the_same_motion() {
+    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
+    let trial = with_field(&settings, "physics.engine", "lanes").expect("allowed").trial;
+    let copy = original().in_world_from(Some(&original_at(MOMENT)), &trial, "lanes".to_owned());
+    assert!(copy.is_changed());
+    let (mut in_rapier, mut in_lanes) = (original().rollout(), copy.rollout());
+    let middle = |rollout: &Rollout| rollout.poses()[2].translation;
+    let mut moved_m = 0.0;
+    while in_rapier.step() < MOMENT + 6 {
+        let before = middle(&in_rapier);
+        assert!(in_rapier.advance() && in_lanes.advance());
+        if in_rapier.step() <= MOMENT {
+            assert_eq!(in_rapier.poses(), in_lanes.poses(), "step {}", in_rapier.step());
+        } else {
+            moved_m += middle(&in_rapier).distance(before);
+        }
+    }
+    let apart_m = middle(&in_rapier).distance(middle(&in_lanes));
+    assert!(apart_m > 0.0 && apart_m < 0.1 * moved_m, "{apart_m} m apart after {moved_m} m");
+}
+
+#[test]
 fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
     let mut played = copy("0.3").rollout();
     let mut expected = Vec::new();

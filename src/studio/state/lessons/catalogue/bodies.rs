@@ -46,12 +46,14 @@ pub(super) const PROTECTION: Lesson = Lesson {
 };
 
 /// Settings of a run with protection: small enough for a lesson.
-const PROTECTED: [(&str, &str); 6] = of_runs("age");
+const PROTECTED: [(&str, &str); 7] = of_runs("age");
 /// The same without protection.
-const UNPROTECTED: [(&str, &str); 6] = of_runs("none");
+const UNPROTECTED: [(&str, &str); 7] = of_runs("none");
 
-const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 6] {
+const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 7] {
     [
+        // That of the runs of which the conclusion speaks.
+        ("engine", "rapier"),
         ("strategy", "body_ga"),
         ("body_ga.protection", protection),
         ("population", "60"),
