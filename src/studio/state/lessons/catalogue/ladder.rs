@@ -13,7 +13,7 @@ pub(super) const LADDER: Lesson = Lesson {
     look_for: "How far the same snake gets on low and on high steps. In the runs, when each line rises, and whether it gets \
                stuck.",
     conclusion: "Stairs that only some snakes climb tell good from bad, and a ladder looks for such stairs. It is not always \
-                 needed: with ten seeds, the direct way landed 8 times, and the ladder 10 times.",
+                 needed: with ten seeds, the direct way landed 7 times, and the ladder 10 times.",
     scenes: &[
         LessonScene::Lanes {
             label: "One snake, two flights",
@@ -27,7 +27,7 @@ pub(super) const LADDER: Lesson = Lesson {
             label: "Direct and by a ladder",
             preset: "house",
             question: best_run(
-                "The direct search crawls past the stairs, where the way counts only up to the first riser.",
+                "With as many simulations, the direct search has come no further than the fourth step. Other seeds may differ.",
             ),
             runs: &[run("direct", 102, 1, &DIRECT), run("by a ladder", 102, 1, &BY_LADDER)],
         },
