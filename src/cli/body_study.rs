@@ -2,22 +2,18 @@
 
 use super::args::{Args, BodyStudyArgs};
 use super::error::CliError;
-use super::study::{FIRST_SEED, Study};
+use super::study::{FIRST_SEED, Study, published_settings};
 use crate::run::body_study::{Arm, claims, study_records};
 use crate::run::creature_study::{CreatureArm, creature_claims, creature_records};
-use crate::save::load_preset;
-use crate::world::PhysicsEngine;
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {
     let (preset, name) =
         if wanted.creatures { ("creatures", "creature-study") } else { ("bodies", "body-study") };
-    let mut settings = load_preset(preset)?.settings;
+    let mut settings = published_settings(preset)?;
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }
-    // The engine of the runs that are published.
-    settings.trial.physics.engine = PhysicsEngine::Rapier;
     let BodyStudyArgs { seeds, evaluations, .. } = *wanted;
     let command = "body-study";
     let first_seed = FIRST_SEED;

@@ -4,7 +4,7 @@ use super::args::{Args, EngineStudyArgs};
 use super::error::CliError;
 use super::evaluators::evaluator;
 use super::output::cancel_on_interrupt;
-use super::study::Study;
+use super::study::{Study, published_settings};
 use crate::check::within;
 use crate::run::Cancelled;
 use crate::run::engine_study::{
@@ -12,7 +12,6 @@ use crate::run::engine_study::{
 };
 use crate::run::headless::{HeadlessError, say};
 use crate::save::library::shipped_champions;
-use crate::save::load_preset;
 use crate::world::PhysicsEngine;
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
@@ -24,9 +23,8 @@ const MOST_NEWBORNS: u32 = 1_000_000;
 /// the results.
 pub fn engine_study(args: &Args, wanted: &EngineStudyArgs) -> Result<(), CliError> {
     let (preset, name) = ("climb", "engine-study");
-    let mut settings = load_preset(preset)?.settings;
     // Each arm has its own engine.
-    settings.trial.physics.engine = PhysicsEngine::Rapier;
+    let mut settings = published_settings(preset)?;
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }

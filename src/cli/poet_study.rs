@@ -6,6 +6,7 @@ use super::args::{Args, PoetStudyArgs};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
+use super::study::published_settings;
 use crate::check::Invalid;
 use crate::evolve::RunPlan;
 use crate::run::headless::{HeadlessError, say};
@@ -15,19 +16,16 @@ use crate::run::poet_study::{
 use crate::run::progress_bar::bar_of;
 use crate::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
 use crate::save::{
-    ExistingRun, PoetStudy, SaveError, load_poet_study, load_preset, settings_fingerprint,
-    store_csv, store_poet_study,
+    ExistingRun, PoetStudy, SaveError, load_poet_study, settings_fingerprint, store_csv,
+    store_poet_study,
 };
-use crate::world::PhysicsEngine;
 
 /// Seed of the run unless one is given: no setting was chosen by it or by those of the direct searches after it.
 const FIRST_SEED: u64 = 401;
 
 /// Makes what the study's file does not have yet, and prints the results.
 pub fn poet_study(args: &Args, wanted: &PoetStudyArgs) -> Result<(), CliError> {
-    let mut settings = load_preset("poet")?.settings;
-    // The engine of the runs that are published.
-    settings.trial.physics.engine = PhysicsEngine::Rapier;
+    let settings = published_settings("poet")?;
     let plan = RunPlan::new("poet", args.seed_or(FIRST_SEED)?, settings);
     let folder = args.results_folder();
     folder.prepare()?;

@@ -2,20 +2,16 @@
 
 use super::args::{Args, StairsStudyArgs};
 use super::error::CliError;
-use super::study::{FIRST_SEED, Study};
+use super::study::{FIRST_SEED, Study, published_settings};
 use crate::run::stairs_study::{StairsArm, stairs_claims, stairs_records};
-use crate::save::load_preset;
-use crate::world::PhysicsEngine;
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn stairs_study(args: &Args, wanted: &StairsStudyArgs) -> Result<(), CliError> {
     let (preset, name) = ("generalist", "stairs-study");
-    let mut settings = load_preset(preset)?.settings;
+    let mut settings = published_settings(preset)?;
     if let Some(duration_s) = args.duration_s()? {
         settings.trial.duration_s = duration_s;
     }
-    // The engine of the runs that are published.
-    settings.trial.physics.engine = PhysicsEngine::Rapier;
     let StairsStudyArgs { seeds, evaluations } = *wanted;
     let first_seed = FIRST_SEED;
     let study = Study {

@@ -13,9 +13,20 @@ use crate::run::headless::say;
 use crate::run::progress_bar::bar_of;
 use crate::run::study::{PlannedArm, StudyArm, train_arms};
 use crate::save::{
-    MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_study, settings_fingerprint, store_csv,
-    store_study,
+    MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_preset, load_study,
+    settings_fingerprint, store_csv, store_study,
 };
+use crate::world::PhysicsEngine;
+
+/// The settings of a preset, with the engine of the runs that are published.
+///
+/// # Errors
+/// There is no such preset.
+pub fn published_settings(preset: &str) -> Result<Settings, CliError> {
+    let mut settings = load_preset(preset)?.settings;
+    settings.trial.physics.engine = PhysicsEngine::Rapier;
+    Ok(settings)
+}
 
 /// Seed of the first run of most studies unless one is given: no setting was chosen by it or by those after it.
 pub const FIRST_SEED: u64 = 101;

@@ -10,6 +10,7 @@ use crate::check::{Invalid, within};
 use crate::evolve::{Champion, Descriptor, RunPlan, Settings, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::save::{CURVE_POINTS, ComparedBest, ComparedRun, Comparison};
+use crate::world::PhysicsEngine;
 
 /// One run of a comparison.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +46,10 @@ impl PlannedRun {
         settings.genome.controller = self.controller;
         settings.evolution.strategy = self.strategy;
         settings.genome.bodies.vary = self.strategy.info().varies_bodies;
+        if settings.genome.has_creatures() {
+            // The preset's engine may simulate nothing but limbs in a row.
+            settings.trial.physics.engine = PhysicsEngine::Rapier;
+        }
         let evolution = &mut settings.evolution;
         let fixed_generations = self.strategy.info().compared_generations;
         if let Some(generations) = fixed_generations {
@@ -329,6 +334,20 @@ mod tests {
         let evaluator = LocalPool::new(threads).expect("threads");
         run_all(plans, &evaluator, &RunControl::default(), |_| (), done).expect("not cancelled");
         comparison
+    }
+
+    #[test]
+    fn creatures_are_compared_in_rapier_with_bodies_in_lanes() {
+        let mut settings = Settings::default();
+        settings.trial.physics.engine = PhysicsEngine::Lanes;
+        let engine = |strategy, controller| {
+            let planned = PlannedRun { strategy, controller, seed: 1 };
+            let plan = planned.plan("test", &settings, 100_000).expect("allowed");
+            plan.settings.trial.physics.engine
+        };
+        let (creatures, bodies) = (StrategyKind::CreatureGa, StrategyKind::BodyGa);
+        assert_eq!(engine(creatures, ControllerKind::PartNeurons), PhysicsEngine::Rapier);
+        assert_eq!(engine(bodies, ControllerKind::Gait), PhysicsEngine::Lanes);
     }
 
     #[test]

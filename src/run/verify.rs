@@ -18,6 +18,7 @@ use crate::engine::{ENGINE_VERSION, Processors};
 use crate::evolve::RunPlan;
 use crate::save::SaveError;
 use crate::schema::is_default;
+use crate::world::PhysicsEngine;
 
 use cases::cases;
 use drawn_points::drawn_points;
@@ -26,8 +27,6 @@ use drawn_points::drawn_points;
 const SHORT_BUDGET: u64 = 12;
 /// Maximum number of short cases.
 const SHORT_CASES: usize = 12;
-/// How the descriptions of the cases in the engine lanes begin.
-const LANES: &str = "lanes: ";
 
 /// A computation and the hash of its bits.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -123,8 +122,10 @@ impl Trajectories {
         let is_short = |(_, plan): &&(String, RunPlan)| plan.budget() <= SHORT_BUDGET;
         let mut trajectories = Vec::new();
         let cases = cases()?;
-        let of_rapier = cases.iter().filter(is_short).take(SHORT_CASES);
-        let of_lanes = cases.iter().filter(|(what, _)| what.starts_with(LANES)).take(1);
+        let in_lanes = |(_, plan): &&(String, RunPlan)| is_in_lanes(plan);
+        let of_rapier = cases.iter().filter(|case| is_short(case) && !in_lanes(case));
+        let of_rapier = of_rapier.take(SHORT_CASES);
+        let of_lanes = cases.iter().filter(in_lanes).take(1);
         for (what, plan) in of_rapier.chain(of_lanes) {
             trajectories.push(trajectory(what.clone(), plan.clone(), evaluator, control)?);
         }
@@ -171,12 +172,15 @@ fn trajectory(
     Ok(Trajectory { what, hash: format!("{:016x}", experiment.run_hash()) })
 }
 
+fn is_in_lanes(plan: &RunPlan) -> bool {
+    plan.settings.trial.physics.engine == PhysicsEngine::Lanes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::evolve::fields;
     use crate::save::load_preset;
-    use crate::world::PhysicsEngine;
 
     #[test]
     fn every_setting_is_changed_by_some_case() {
@@ -230,10 +234,8 @@ mod tests {
     #[test]
     fn the_references_of_all_processors_agree_in_lanes() {
         let cases = cases().expect("well formed");
-        let is_of_lanes = |what: &String| {
-            let plan = cases.iter().find(|(case, _)| case == what).map(|(_, plan)| plan);
-            plan.is_some_and(|plan| plan.settings.trial.physics.engine == PhysicsEngine::Lanes)
-        };
+        let is_of_lanes =
+            |what: &String| cases.iter().any(|(case, plan)| case == what && is_in_lanes(plan));
         let of_lanes = |processors| -> Vec<Trajectory> {
             let reference = Trajectories::reference_of(processors).expect("well formed");
             let all = reference.trajectories.into_iter();

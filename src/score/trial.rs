@@ -170,6 +170,15 @@ impl Trial {
         genome.controller.check()
     }
 
+    /// The same trial, with the engine rapier if its own cannot simulate the body of a genome.
+    #[must_use]
+    pub fn suited_to(mut self, genome: &Genome) -> Self {
+        if self.agent.body_plan(genome).obstacle_in_lanes().is_some() {
+            self.physics.engine = PhysicsEngine::Rapier;
+        }
+        self
+    }
+
     /// The world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
         let body = self.agent.body_plan(genome);

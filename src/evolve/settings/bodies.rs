@@ -88,8 +88,9 @@ impl Settings {
             PhysicsEngine::Lanes if are_soft => "soft limbs",
             _ => return Ok(()),
         };
-        let allowed = format!("rapier for {kind}; lanes simulates rigid limbs in a row");
-        Err(Invalid::new("trial.physics.engine", engine.choice().name, allowed))
+        let allowed =
+            format!("rapier for {kind}, because lanes simulates only rigid limbs in a row");
+        Err(Invalid::new(super::ENGINE_FIELD, engine.choice().name, allowed))
     }
 }
 

@@ -30,6 +30,7 @@ pub use map_elites::MapElitesSettings;
 pub use mcc::MccSettings;
 pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
+pub use partners::{ENGINE_FIELD, with_fields_and_engine};
 pub use poet::PoetSettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::{StrategyInfo, StrategyKind};

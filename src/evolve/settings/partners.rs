@@ -3,10 +3,10 @@
 //! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
 //! needs genomes that grow: each of these goes with certain kinds of controllers, and these kinds with nothing else.
 
-use super::{Settings, StrategyKind};
+use super::{Settings, StrategyKind, with_fields};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
-use crate::schema::{Choices, set_text};
+use crate::schema::{Choices, find, set_text};
 use crate::score::{Fitness, StairsVariation};
 use crate::world::PhysicsEngine;
 
@@ -36,8 +36,22 @@ impl StrategyKind {
 /// The controllers whose waves follow the blocks of a chain that changes.
 const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
 
+/// The settings with some fields changed as by [`with_fields`], and with the engine rapier where the present one cannot simulate the
+/// changed bodies.
+///
+/// # Errors
+/// Those of [`with_fields`].
+pub fn with_fields_and_engine(
+    settings: &Settings,
+    changes: &[(&str, &str)],
+) -> Result<Settings, Invalid> {
+    let partners = changes.iter().flat_map(|(field, text)| settings.partner_changes(field, text));
+    let engine = partners.filter(|(field, _)| *field == ENGINE_FIELD);
+    with_fields(settings, changes.iter().copied().chain(engine))
+}
+
 /// The field of the physics engine.
-const ENGINE: &str = "trial.physics.engine";
+pub const ENGINE_FIELD: &str = "trial.physics.engine";
 
 impl Settings {
     /// The changes of strategy, controller, the evolution of bodies and the physics engine that a change of one of them, or of
@@ -47,13 +61,14 @@ impl Settings {
         let mut changed = self.clone();
         for (field, text) in std::iter::once((field, text)).chain(changes.iter().copied()) {
             // What is not allowed is refused where it is applied.
-            if set_text(&mut changed, field, text).is_err() {
+            let path = find(&changed, field);
+            if path.and_then(|path| set_text(&mut changed, &path, text)).is_err() {
                 return changes;
             }
         }
         // An engine that is chosen for bodies it cannot simulate is refused.
-        if field != ENGINE && self.check_engine().is_ok() && changed.check_engine().is_err() {
-            changes.push((ENGINE, PhysicsEngine::Rapier.choice().name));
+        if field != ENGINE_FIELD && self.check_engine().is_ok() && changed.check_engine().is_err() {
+            changes.push((ENGINE_FIELD, PhysicsEngine::Rapier.choice().name));
         }
         changes
     }
@@ -174,7 +189,6 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_fields;
     use crate::schema::PerPart;
 
     #[test]

@@ -5,6 +5,7 @@ use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::save::{Preset, load_preset, shipped_presets};
 use crate::schema::Choices;
 use crate::score::Fitness;
+use crate::world::PhysicsEngine;
 
 /// A case: its description; seed, population and generations; and its changes to the preset `report`, as `--set` takes
 /// them.
@@ -380,6 +381,9 @@ const CASES: &[Case] = &[
     ),
 ];
 
+/// Presets in lanes whose worlds are computed in rapier, too.
+const ALSO_IN_RAPIER: [&str; 4] = ["climb", "rubber", "mud", "trampoline"];
+
 /// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.
 pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
     let presets = shipped_presets()?;
@@ -411,10 +415,18 @@ pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
         let genome = &preset.settings.genome;
         !genome.controller.senses_surroundings() && !genome.bodies.vary
     };
+    let mut in_rapier = Vec::new();
     for (preset, seed) in presets.into_iter().filter(of_worlds).zip(200..) {
         let mut settings = preset.settings;
         sized(&mut settings, 6, 2);
+        if ALSO_IN_RAPIER.contains(&preset.name.as_str()) {
+            let mut settings = settings.clone();
+            settings.trial.physics.engine = PhysicsEngine::Rapier;
+            let what = format!("preset {}, in rapier", preset.name);
+            in_rapier.push((what, RunPlan::new("verify", seed, settings)));
+        }
         plans.push((format!("preset {}", preset.name), RunPlan::new("verify", seed, settings)));
     }
+    plans.append(&mut in_rapier);
     Ok(plans)
 }

@@ -9,7 +9,7 @@ use crate::evolve::Champion;
 use crate::genome::{BodyChange, Genome, GenomeSpace, Segment};
 use crate::rng::{Purpose, stream};
 use crate::run::{BackgroundTask, Tuned, caught, tune_controller};
-use crate::score::evaluate;
+use crate::score::{Trial, evaluate};
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::Show;
@@ -218,7 +218,7 @@ impl Edited {
 
     /// Why the body cannot be shown, if it cannot.
     fn problem(&self) -> Option<String> {
-        let checked = self.original.trial().check_genome(&self.genome);
+        let checked = self.trial().check_genome(&self.genome);
         checked.err().map(|error| error.to_string())
     }
 
@@ -281,12 +281,17 @@ impl Edited {
         }
     }
 
+    /// The original's trial, in rapier if its engine cannot simulate the edited body.
+    fn trial(&self) -> Trial {
+        self.original.trial().clone().suited_to(&self.genome)
+    }
+
     /// The edited snake with the evaluation of the original.
     fn unevaluated(&self) -> Result<Champion, String> {
         if let Some(problem) = self.problem() {
             return Err(problem);
         }
-        let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
+        let (genome, trial) = (self.genome.clone(), self.trial());
         let original = self.original.champion();
         let (evaluation, origin) = (original.evaluation, original.origin.clone());
         Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
@@ -303,7 +308,7 @@ impl Edited {
         if let Some(problem) = self.problem() {
             return Err(problem);
         }
-        let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
+        let (genome, trial) = (self.genome.clone(), self.trial());
         self.attempts += 1;
         let size = (TUNING, self.attempts);
         let task = BackgroundTask::start_counted(TUNING, move |progress| {

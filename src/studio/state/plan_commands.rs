@@ -5,7 +5,7 @@ use super::library::{Library, founder_of};
 use super::lineup::champion_of;
 use super::sweep::changes_of;
 use super::what_if::{ChangedStage, WorldChange, dropped, kept, kept_lane, what_if};
-use crate::evolve::StrategyKind;
+use crate::evolve::{ENGINE_FIELD, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::schema::Choices;
 use crate::studio::commands::PlanCommand;
@@ -24,8 +24,9 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             "Bodies evolve now, to suit the strategy.".to_owned()
         }
         "genome.bodies.vary" => "Bodies no longer evolve, to suit the strategy.".to_owned(),
-        "trial.physics.engine" => {
-            "The physics engine is now rapier: lanes simulates rigid limbs in a row.".to_owned()
+        ENGINE_FIELD => {
+            "The physics engine is now rapier: lanes simulates only rigid limbs in a row."
+                .to_owned()
         }
         _ => match StrategyKind::named(field, name) {
             Ok(kind) => format!("The strategy is now {}, to suit your choice.", kind.title()),

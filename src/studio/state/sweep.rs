@@ -1,7 +1,7 @@
 //! Sweep: one setting of the world at five values, in five lanes side by side.
 
 use super::wording::world_in_words;
-use crate::evolve::{Settings, fields, with_field};
+use crate::evolve::{Settings, fields, with_fields_and_engine};
 use crate::schema::{NumberRange, SettingKind, SettingValue, list};
 use crate::score::Trial;
 use crate::studio::stage::staged_champion::StagedChampion;
@@ -36,7 +36,7 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
         }
     };
     let world = |value: f32| -> Option<StagedChampion> {
-        let trial = with_field(&settings, field, &value.to_string()).ok()?.trial;
+        let trial = with_fields_and_engine(&settings, &[(field, &value.to_string())]).ok()?.trial;
         let words = world_in_words(champion.trial(), &trial);
         let staged = if trial == *champion.trial() {
             let value = listed.setting.value_in_words(&listed.value);
@@ -107,6 +107,7 @@ fn settings_of(trial: &Trial) -> Settings {
 mod tests {
     use super::*;
     use crate::save::shipped_champion;
+    use crate::world::PhysicsEngine;
 
     fn champion() -> StagedChampion {
         StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
@@ -140,6 +141,16 @@ mod tests {
             }
         }
         assert!(sweep(&champion, "evolution.population").is_err(), "it is not of the world");
+    }
+
+    #[test]
+    fn softness_is_swept_in_rapier() {
+        let mut trial = champion().trial().clone();
+        trial.physics.engine = PhysicsEngine::Lanes;
+        let in_lanes = champion().in_world(&trial, "lanes".to_owned());
+        let show = sweep(&in_lanes, "trial.agent.youngs_modulus_pa").expect("soft snakes");
+        let engines = show.champions.iter().map(|staged| staged.trial().physics.engine);
+        assert!(engines.eq(show.champions.iter().map(|_| PhysicsEngine::Rapier)));
     }
 
     #[test]

@@ -7,10 +7,11 @@ use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
 use super::wording::world_in_words;
-use crate::evolve::{RunPlan, Settings, with_fields};
+use crate::evolve::{RunPlan, Settings, with_fields_and_engine};
 use crate::score::{Rollout, Trial};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
+use crate::world::PhysicsSettings;
 
 /// A change of the world.
 #[derive(Debug, Clone)]
@@ -108,17 +109,22 @@ pub(crate) fn what_if(
         // Other differences of the next run's world are left out.
         WorldChange::Fields(changes) => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
-            let changed = with_fields(&settings, changes.iter().copied());
+            let changed = with_fields_and_engine(&settings, changes);
             changed.map_err(|error| error.to_string())?.trial
         }
-        // Duration and fitness stay, so that the lanes can be compared.
+        // Duration, fitness and the engine stay, so that the lanes can be compared.
         WorldChange::Preset(_) => Trial {
+            physics: PhysicsSettings {
+                engine: so_far.trial().physics.engine,
+                ..next.trial.physics.clone()
+            },
             duration_s: so_far.trial().duration_s,
             fitness: so_far.trial().fitness,
             energy_cost_per_kj: so_far.trial().energy_cost_per_kj,
             repeats: so_far.trial().repeats.clone(),
             ..next.trial.clone()
-        },
+        }
+        .suited_to(&so_far.champion().genome),
     };
     if trial == *so_far.trial() {
         return Ok(None);

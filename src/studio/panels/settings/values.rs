@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{Settings, fields};
-use crate::schema::{ListedSetting, list};
+use crate::evolve::{ENGINE_FIELD, Settings, fields};
+use crate::schema::{Choices, ListedSetting, list};
 use crate::studio::state::current_run::CurrentRun;
+use crate::world::PhysicsEngine;
 
 /// Settings of the next run and of its preset.
 #[derive(Debug, Default)]
@@ -17,7 +18,7 @@ pub struct Values {
     now: BTreeMap<String, String>,
     preset: BTreeMap<String, String>,
     preset_name: String,
-    /// Values that settings have without any preset.
+    /// See [`usual_values`].
     usual: BTreeMap<String, String>,
     /// Whether a setting may change in the current run.
     live: BTreeMap<String, Result<(), &'static str>>,
@@ -34,7 +35,7 @@ impl Values {
             now: fields(&settings).into_iter().collect(),
             preset: settings_of_preset.iter().flat_map(fields).collect(),
             preset_name: run.next_preset().to_owned(),
-            usual: every_setting().into_iter().map(|of| (of.path, of.value.to_string())).collect(),
+            usual: usual_values(),
             live: live.collect(),
             settings_of_run: run.settings().clone(),
             settings,
@@ -96,6 +97,13 @@ impl Values {
         };
         fields.into_iter().filter_map(back).collect()
     }
+}
+
+/// The usual values of all settings: those without a preset, and the engine of the default one.
+fn usual_values() -> BTreeMap<String, String> {
+    let all = every_setting().into_iter().map(|of| (of.path, of.value.to_string()));
+    let engine = PhysicsEngine::Lanes.choice().name.to_owned();
+    all.chain([(ENGINE_FIELD.to_owned(), engine)]).collect()
 }
 
 /// Every possible setting, including those of a separate ground.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::save::shipped_champion;
 use crate::studio::state::current_run::prepared_run;
+use crate::world::PhysicsEngine;
 
 fn climber() -> StagedChampion {
     StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
@@ -52,6 +53,22 @@ fn a_drag_of_a_slider_is_one_step_and_can_be_undone() {
     apply(&mut editor, BodyCommand::Redo);
     assert_eq!(lengths(&editor)[1], 1.5);
     assert_eq!(editor.edited().expect("editing").steps, [true, true]);
+}
+
+#[test]
+fn a_soft_block_of_a_snake_in_lanes_is_simulated_in_rapier() {
+    let mut loaded = shipped_champion().expect("well formed");
+    let champion = &mut loaded.champion;
+    champion.trial.physics.engine = PhysicsEngine::Lanes;
+    champion.evaluation = evaluate(&champion.genome, &champion.trial);
+    let original = StagedChampion::from_file(&loaded, 0, "in lanes");
+    let (mut editor, mut run) = (BodyEditor::default(), prepared_run());
+    editor.apply(&BodyCommand::Edit, Some(&original), &mut run).expect("a gait");
+    let soft = BodyCommand::Set { block: 2, size: BlockSize::Modulus, value: 40_000.0 };
+    editor.apply(&soft, None, &mut run).expect("allowed");
+    let shown = preview(&mut editor, &mut run).expect("a preview");
+    let engines = shown.champions.iter().map(|staged| staged.trial().physics.engine);
+    assert!(engines.eq([PhysicsEngine::Lanes, PhysicsEngine::Rapier]));
 }
 
 #[test]

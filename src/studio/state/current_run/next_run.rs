@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::CurrentRun;
 use crate::check::Invalid;
-use crate::evolve::{RunPlan, Settings, fields, with_fields};
+use crate::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
 use crate::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
@@ -57,10 +57,10 @@ impl CurrentRun {
         self.set_fields(&[(field, text)])
     }
 
-    /// Sets several settings of the next run at once, as [`Self::set_field`] does.
+    /// Sets several settings of the next run at once, as [`Self::set_field`] does, and the engine rapier where the bodies demand it.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
-        let settings = with_fields(&next.settings, changes.iter().copied())
+        let settings = with_fields_and_engine(&next.settings, changes)
             .map_err(|error: Invalid| error.to_string())?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }

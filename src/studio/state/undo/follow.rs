@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{RunPlan, Settings, fields, with_fields};
+use crate::evolve::{ENGINE_FIELD, RunPlan, Settings, fields, with_fields_and_engine};
 use crate::score::Trial;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::what_if::ChangedStage;
@@ -86,14 +86,14 @@ fn taken_over(
         trial.ground = if is_as_at_first { original.ground.clone() } else { new_ground.clone() };
     }
     let settings = Settings { trial, ..to.settings.clone() };
-    with_fields(&settings, restored)
+    with_fields_and_engine(&settings, &restored)
         .map(|settings| settings.trial)
         .map_err(|error| error.to_string())
 }
 
 /// Settings that do not follow a change of preset on the stage, so that the lanes can be compared.
 fn stays_with_a_preset(field: &str) -> bool {
-    let fields = ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj"];
+    let fields = ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj", ENGINE_FIELD];
     fields.contains(&field) || field.starts_with("trial.repeats.")
 }
 
@@ -173,6 +173,23 @@ mod tests {
         let forth = followed(stage(&first.champions, &first.mode), &start, &two);
         let forth = forth.expect("fits").expect("the friction differs");
         assert_eq!(labels(&forth), ["climber", "friction 0.3", "friction 2"]);
+    }
+
+    #[test]
+    fn the_engine_of_a_champion_stays_when_a_preset_is_undone_and_redone() {
+        let mut run = prepared_run();
+        let start = run.next_plan().clone();
+        let ice = WorldChange::Preset("ice");
+        let tried = what_if(&mut run, stage(&[saved()], &StageMode::Solo), &ice);
+        let tried = tried.expect("allowed").expect("another world");
+        let changed = run.next_plan().clone();
+        let back = followed(stage(&tried.champions, &tried.mode), &changed, &start);
+        let back = back.expect("fits").expect("the world differs");
+        let forth = followed(stage(&back.champions, &back.mode), &start, &changed);
+        let forth = forth.expect("fits").expect("the world differs");
+        assert_eq!(forth.champions[1].trial(), tried.champions[1].trial());
+        assert_eq!(forth.champions[1].trial().physics.engine, saved().trial().physics.engine);
+        assert_ne!(changed.settings.trial.physics.engine, saved().trial().physics.engine);
     }
 
     #[test]

@@ -1,8 +1,11 @@
 //! Copies beside the original: made, left beside the next, kept and discarded.
 
 use super::*;
+use crate::evolve::ENGINE_FIELD;
+use crate::save::library::{SavePlace, load_entry};
 use crate::save::shipped_champion;
 use crate::studio::state::current_run::prepared_run;
+use crate::world::PhysicsEngine;
 
 /// The stage with these champions, whose changes are tried from the start.
 fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {
@@ -78,6 +81,28 @@ fn a_world_that_the_genome_does_not_fit_is_refused_with_the_reason() {
         what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &WorldChange::Preset("ice"));
     let preset = preset.expect("allowed").expect("another world");
     assert_eq!(preset.champions[1].label(), "ice");
+}
+
+#[test]
+fn the_engine_of_a_champion_changes_only_where_its_body_demands_it() {
+    let mut run = prepared_run();
+    let solo = StageMode::Solo;
+    let ice = WorldChange::Preset("ice");
+    let engine_of = |show: &Show| show.champions[1].trial().physics.engine;
+    for name in ["climber", "crawler"] {
+        let (loaded, _) = load_entry(&SavePlace::Shipped(name)).expect("built in");
+        let original = StagedChampion::from_file(&loaded, 0, name);
+        let shown = what_if(&mut run, stage(&[original], &solo), &ice);
+        let shown = shown.expect("allowed").expect("another world");
+        assert_eq!(engine_of(&shown), PhysicsEngine::Rapier, "{name}");
+        assert_eq!(run.next_settings().trial.physics.engine, PhysicsEngine::Lanes);
+    }
+    let in_lanes = changed(&mut run, stage(&[saved(0)], &solo), ENGINE_FIELD, "lanes");
+    let kept = kept(&in_lanes.champions, &in_lanes.mode).expect("kept");
+    // The next run has rapier already.
+    run.set_preset("squishy").expect("shipped");
+    let soft = changed(&mut run, stage(&kept.champions, &kept.mode), "youngs_modulus_pa", "90000");
+    assert_eq!(engine_of(&soft), PhysicsEngine::Rapier);
 }
 
 #[test]
