@@ -3,13 +3,14 @@
  *     cc -O2 ode_speed.c -o ode_speed -lode -lm
  *     ode_speed exact|quick < SCENE
  *
- * A scene is a list of numbers: step in s, gravity in m/s2, friction, angular damping per s, joint damping in N·m·s/rad; the number of
+ * A scene is a list of numbers: step in s, gravity in m/s2, friction, joint damping in N·m·s/rad; the number of
  * static boxes, each with its middle and its size; the number of limbs, each with its middle, its size and its mass; for each joint
  * between neighbouring limbs its anchor, the axes of bend and twist, and both limits in rad; the number of steps, and for each step and
  * each joint the torques of bend and twist in N·m. It prints the seconds that the steps took, and the y of the head at the end.
  */
 #include <ode/ode.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -49,7 +50,11 @@ static void touch(void *unused, dGeomID a, dGeomID b) {
 }
 
 int main(int count, char **arguments) {
-    int is_quick = count > 1 && strcmp(arguments[1], "quick") == 0;
+    int is_quick = count == 2 && strcmp(arguments[1], "quick") == 0;
+    if (!is_quick && (count != 2 || strcmp(arguments[1], "exact") != 0)) {
+        fprintf(stderr, "ode_speed exact|quick < SCENE\n");
+        return 2;
+    }
     dInitODE2(0);
     world = dWorldCreate();
     contacts = dJointGroupCreate(0);
@@ -59,7 +64,7 @@ int main(int count, char **arguments) {
     dWorldSetERP(world, 0.25);
     dWorldSetQuickStepNumIterations(world, 20);
     friction = number();
-    dReal air_per_s = number(), damping = number();
+    dReal damping = number();
     dCreatePlane(space, 0, 0, 1, 0);
     for (int boxes = number(); boxes > 0; boxes--) {
         dReal at[3], size[3];
@@ -70,7 +75,10 @@ int main(int count, char **arguments) {
     dBodyID limbs[MOST_LIMBS];
     dJointID joints[MOST_LIMBS];
     int limb_count = number();
-    if (limb_count > MOST_LIMBS) return 1;
+    if (limb_count > MOST_LIMBS) {
+        fprintf(stderr, "more than %d limbs\n", MOST_LIMBS);
+        return 1;
+    }
     for (int limb = 0; limb < limb_count; limb++) {
         dReal at[3], size[3];
         vector(at);
@@ -80,7 +88,6 @@ int main(int count, char **arguments) {
         limbs[limb] = dBodyCreate(world);
         dBodySetMass(limbs[limb], &mass);
         dBodySetPosition(limbs[limb], at[0], at[1], at[2]);
-        dBodySetAngularDamping(limbs[limb], air_per_s * step_s);
         dBodySetAutoDisableFlag(limbs[limb], 0);
         dGeomSetBody(dCreateBox(space, size[0], size[1], size[2]), limbs[limb]);
     }

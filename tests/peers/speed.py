@@ -2,7 +2,7 @@
 
     speed.py PROGRAM CHAMPION.ron
 
-All take 240 steps a second with the champion's body, stairs and commanded torques. PROGRAM is `snakes`. Needs MuJoCo (requirements.txt),
+All take 240 steps a second with the champion's body, stairs and commanded torques. The others simulate no air, and take no records. PROGRAM is `snakes`. Needs MuJoCo (requirements.txt),
 and for ODE a C compiler and Debian's libode-dev. Prints a table in Markdown: simulated seconds per second, medians of five rounds in turn.
 """
 
@@ -10,6 +10,7 @@ import csv
 import json
 import pathlib
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -55,7 +56,7 @@ def scene_of_ode(model, data, torques):
     limbs = [geom for geom in boxes if model.geom_bodyid[geom] != 0]
     ground = model.geom("ground")
     damping = model.dof_damping[-1]
-    numbers = [model.opt.timestep, -model.opt.gravity[2], ground.friction[0], 2.0, damping, len(solids)]
+    numbers = [model.opt.timestep, -model.opt.gravity[2], ground.friction[0], damping, len(solids)]
     for geom in solids:
         numbers += [*data.geom_xpos[geom], *(2.0 * model.geom_size[geom])]
     numbers.append(len(limbs))
@@ -91,7 +92,10 @@ def main(program, champion):
         simulated_s = len(torques) / STEPS_PER_S
         scene = scene_of_ode(model, data, torques)
         ode = folder / "ode_speed"
-        has_ode = subprocess.run(["cc", "-O2", _here / "ode_speed.c", "-o", ode, "-lode", "-lm"], check=False).returncode == 0
+        compiler = ["cc", "-O2", _here / "ode_speed.c", "-o", ode, "-lode", "-lm"]
+        has_ode = shutil.which("cc") is not None and subprocess.run(compiler, check=False).returncode == 0
+        if not has_ode:
+            print("ODE is left out: ode_speed.c could not be compiled", file=sys.stderr)
         rates = {}
 
         def count(name, rate):

@@ -110,7 +110,7 @@ fn random_chains_end_or_stay_finite() {
 
 /// A million of them: `cargo test --release --no-default-features --lib a_million_random_chains -- --ignored`.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes half a minute"]
 fn a_million_random_chains_end_or_stay_finite() {
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u32;
     std::thread::scope(|scope| {
