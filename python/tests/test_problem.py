@@ -51,7 +51,9 @@ def test_results_are_arrays_with_one_value_per_snake():
 def test_the_shipped_climber_lands_and_its_row_does_too():
     path = str(SAVES / "climber.ron")
     record = sns.load_champion(path).to_dict()
-    problem = Problem("climb", settings={"trial.duration_s": record["trial"]["duration_s"]})
+    # The champion's own engine and duration.
+    settings = {"trial.physics.engine": "rapier", "trial.duration_s": record["trial"]["duration_s"]}
+    problem = Problem("climb", settings=settings)
     results = problem.evaluate(problem.genome_of(path))
     assert results.on_landing[0] and results.steps_climbed[0] == problem.steps == 10
     assert results.fitness[0] == pytest.approx(record["recorded"]["fitness"], abs=0.5)
