@@ -21,11 +21,11 @@ pub use plan::{
     Founder, MOST_CHANGES, RunPlan, SettingChange, SettingChanges, may_change_during_run,
 };
 pub use settings::{
-    BodyProtection, CmaEsSettings, Crossover, ENGINE_FIELD, EvolutionSettings, ExplorationSettings,
-    GaSettings, HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings,
-    MccSettings, Mutation, NeatSettings, NoveltySettings, ParentSelection, PoetSettings,
-    QLearningSettings, RestartKind, Settings, StrategyInfo, StrategyKind, XcsRunSettings,
-    ZcsRunSettings, check_effects, fields, with_field, with_fields, with_fields_and_engine,
+    BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
+    HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, MccSettings, Mutation,
+    NeatSettings, NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind,
+    Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields,
+    with_field, with_fields, with_fields_and_engine,
 };
 pub use stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};

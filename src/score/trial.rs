@@ -170,6 +170,9 @@ impl Trial {
         genome.controller.check()
     }
 
+    /// The path of the physics engine in settings.
+    pub const ENGINE_FIELD: &str = "trial.physics.engine";
+
     /// The same trial, with the engine rapier if its own cannot simulate the body of a genome.
     #[must_use]
     pub fn suited_to(mut self, genome: &Genome) -> Self {

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::check::Invalid;
 use crate::genome::BodySpace;
 use crate::schema::Choices;
-use crate::score::{AgentSettings, Fitness};
+use crate::score::{AgentSettings, Fitness, Trial};
 use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
 
 /// Room on the landing beside the longest body, in metres.
@@ -90,7 +90,7 @@ impl Settings {
         };
         let allowed =
             format!("rapier for {kind}, because lanes simulates only rigid limbs in a row");
-        Err(Invalid::new(super::ENGINE_FIELD, engine.choice().name, allowed))
+        Err(Invalid::new(Trial::ENGINE_FIELD, engine.choice().name, allowed))
     }
 }
 

@@ -3,6 +3,7 @@
 use super::Settings;
 use crate::check::Invalid;
 use crate::schema::{find, list, set_text};
+use crate::score::Trial;
 
 /// All settings with their values as text, in the order of their names: `trial.surface.friction`, `1`.
 pub fn fields(settings: &Settings) -> Vec<(String, String)> {
@@ -46,6 +47,20 @@ pub fn with_fields<'a>(
     }
     settings.check()?;
     Ok(settings)
+}
+
+/// The settings with some fields changed as by [`with_fields`], and with the engine rapier where the present one cannot simulate the
+/// changed bodies.
+///
+/// # Errors
+/// Those of [`with_fields`].
+pub fn with_fields_and_engine(
+    settings: &Settings,
+    changes: &[(&str, &str)],
+) -> Result<Settings, Invalid> {
+    let partners = changes.iter().flat_map(|(field, text)| settings.partner_changes(field, text));
+    let engine = partners.filter(|(field, _)| *field == Trial::ENGINE_FIELD);
+    with_fields(settings, changes.iter().copied().chain(engine))
 }
 
 /// Checks that each of these fields has an effect on a run with these settings. A path that is no field, such as that of a

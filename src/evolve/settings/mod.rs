@@ -19,7 +19,7 @@ mod size;
 mod strategy_kind;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
-pub use by_name::{check_effects, fields, with_field, with_fields};
+pub use by_name::{check_effects, fields, with_field, with_fields, with_fields_and_engine};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use creatures::CreatureGaSettings;
 pub use ga::{Crossover, GaSettings, Mutation, ParentSelection};
@@ -30,7 +30,6 @@ pub use map_elites::MapElitesSettings;
 pub use mcc::MccSettings;
 pub use neat::NeatSettings;
 pub use novelty::NoveltySettings;
-pub use partners::{ENGINE_FIELD, with_fields_and_engine};
 pub use poet::PoetSettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::{StrategyInfo, StrategyKind};

@@ -3,11 +3,11 @@
 //! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
 //! needs genomes that grow: each of these goes with certain kinds of controllers, and these kinds with nothing else.
 
-use super::{Settings, StrategyKind, with_fields};
+use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
 use crate::schema::{Choices, find, set_text};
-use crate::score::{Fitness, StairsVariation};
+use crate::score::{Fitness, StairsVariation, Trial};
 use crate::world::PhysicsEngine;
 
 impl StrategyKind {
@@ -36,23 +36,6 @@ impl StrategyKind {
 /// The controllers whose waves follow the blocks of a chain that changes.
 const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
 
-/// The settings with some fields changed as by [`with_fields`], and with the engine rapier where the present one cannot simulate the
-/// changed bodies.
-///
-/// # Errors
-/// Those of [`with_fields`].
-pub fn with_fields_and_engine(
-    settings: &Settings,
-    changes: &[(&str, &str)],
-) -> Result<Settings, Invalid> {
-    let partners = changes.iter().flat_map(|(field, text)| settings.partner_changes(field, text));
-    let engine = partners.filter(|(field, _)| *field == ENGINE_FIELD);
-    with_fields(settings, changes.iter().copied().chain(engine))
-}
-
-/// The field of the physics engine.
-pub const ENGINE_FIELD: &str = "trial.physics.engine";
-
 impl Settings {
     /// The changes of strategy, controller, the evolution of bodies and the physics engine that a change of one of them, or of
     /// the bodies, calls for, as fields and texts: without them they would not go together. Empty if they do.
@@ -67,8 +50,11 @@ impl Settings {
             }
         }
         // An engine that is chosen for bodies it cannot simulate is refused.
-        if field != ENGINE_FIELD && self.check_engine().is_ok() && changed.check_engine().is_err() {
-            changes.push((ENGINE_FIELD, PhysicsEngine::Rapier.choice().name));
+        if field != Trial::ENGINE_FIELD
+            && self.check_engine().is_ok()
+            && changed.check_engine().is_err()
+        {
+            changes.push((Trial::ENGINE_FIELD, PhysicsEngine::Rapier.choice().name));
         }
         changes
     }
@@ -189,6 +175,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::with_fields;
     use crate::schema::PerPart;
 
     #[test]

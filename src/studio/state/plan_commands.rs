@@ -5,9 +5,10 @@ use super::library::{Library, founder_of};
 use super::lineup::champion_of;
 use super::sweep::changes_of;
 use super::what_if::{ChangedStage, WorldChange, dropped, kept, kept_lane, what_if};
-use crate::evolve::{ENGINE_FIELD, StrategyKind};
+use crate::evolve::StrategyKind;
 use crate::genome::ControllerKind;
 use crate::schema::Choices;
+use crate::score::Trial;
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::Show;
 use crate::studio::stage::opening::OpeningChampions;
@@ -24,7 +25,7 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             "Bodies evolve now, to suit the strategy.".to_owned()
         }
         "genome.bodies.vary" => "Bodies no longer evolve, to suit the strategy.".to_owned(),
-        ENGINE_FIELD => {
+        Trial::ENGINE_FIELD => {
             "The physics engine is now rapier: lanes simulates only rigid limbs in a row."
                 .to_owned()
         }

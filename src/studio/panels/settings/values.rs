@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{ENGINE_FIELD, Settings, fields};
+use crate::evolve::{Settings, fields};
 use crate::schema::{Choices, ListedSetting, list};
+use crate::score::Trial;
 use crate::studio::state::current_run::CurrentRun;
 use crate::world::PhysicsEngine;
 
@@ -103,7 +104,7 @@ impl Values {
 fn usual_values() -> BTreeMap<String, String> {
     let all = every_setting().into_iter().map(|of| (of.path, of.value.to_string()));
     let engine = PhysicsEngine::Lanes.choice().name.to_owned();
-    all.chain([(ENGINE_FIELD.to_owned(), engine)]).collect()
+    all.chain([(Trial::ENGINE_FIELD.to_owned(), engine)]).collect()
 }
 
 /// Every possible setting, including those of a separate ground.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{ENGINE_FIELD, RunPlan, Settings, fields, with_fields_and_engine};
+use crate::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
 use crate::score::Trial;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::what_if::ChangedStage;
@@ -93,7 +93,8 @@ fn taken_over(
 
 /// Settings that do not follow a change of preset on the stage, so that the lanes can be compared.
 fn stays_with_a_preset(field: &str) -> bool {
-    let fields = ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj", ENGINE_FIELD];
+    let fields =
+        ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj", Trial::ENGINE_FIELD];
     fields.contains(&field) || field.starts_with("trial.repeats.")
 }
 

@@ -1,7 +1,6 @@
 //! Copies beside the original: made, left beside the next, kept and discarded.
 
 use super::*;
-use crate::evolve::ENGINE_FIELD;
 use crate::save::library::{SavePlace, load_entry};
 use crate::save::shipped_champion;
 use crate::studio::state::current_run::prepared_run;
@@ -97,7 +96,7 @@ fn the_engine_of_a_champion_changes_only_where_its_body_demands_it() {
         assert_eq!(engine_of(&shown), PhysicsEngine::Rapier, "{name}");
         assert_eq!(run.next_settings().trial.physics.engine, PhysicsEngine::Lanes);
     }
-    let in_lanes = changed(&mut run, stage(&[saved(0)], &solo), ENGINE_FIELD, "lanes");
+    let in_lanes = changed(&mut run, stage(&[saved(0)], &solo), Trial::ENGINE_FIELD, "lanes");
     let kept = kept(&in_lanes.champions, &in_lanes.mode).expect("kept");
     // The next run has rapier already.
     run.set_preset("squishy").expect("shipped");
