@@ -43,7 +43,7 @@ impl Settings {
         let mut changes = self.partner_choices(field, text);
         let mut changed = self.clone();
         for (field, text) in std::iter::once((field, text)).chain(changes.iter().copied()) {
-            // What is not allowed is refused where it is applied.
+            // Values that are not allowed are refused where they are applied.
             let path = find(&changed, field);
             if path.and_then(|path| set_text(&mut changed, &path, text)).is_err() {
                 return changes;
