@@ -2,8 +2,9 @@
 
     speed.py PROGRAM CHAMPION.ron
 
-All take 240 steps a second with the champion's body, stairs and commanded torques. The others simulate no air, and take no records. PROGRAM is `snakes`. Needs MuJoCo (requirements.txt),
-and for ODE a C compiler and Debian's libode-dev. Prints a table in Markdown: simulated seconds per second, medians of five rounds in turn.
+All take 240 steps a second with the champion's body, stairs and commanded torques. MuJoCo and ODE simulate no air, and keep no
+records. PROGRAM is `snakes`. Needs MuJoCo (requirements.txt), and for ODE a C compiler and Debian's libode-dev. Prints a table in
+Markdown: simulated seconds per second, medians of five rounds in turn.
 """
 
 import csv
