@@ -52,7 +52,9 @@ impl Wave {
     /// Its value after `turns` periods of the fundamental, summed in double precision, which suffices for the
     /// longest trial.
     pub fn at(&self, turns: f64) -> f32 {
-        let terms = self.harmonics.iter().enumerate().map(|(index, harmonic)| {
+        // A sine is the dearest part of a controller, and half of the terms of a snake that cannot twist have no amplitude.
+        let swings = self.harmonics.iter().enumerate().filter(|(_, of)| of.amplitude != 0.0);
+        let terms = swings.map(|(index, harmonic)| {
             let angle = std::f64::consts::TAU * (index + 1) as f64 * turns;
             f64::from(harmonic.amplitude) * libm::sin(angle + f64::from(harmonic.phase_rad))
         });

@@ -7,7 +7,6 @@ use crate::evolve::{RunPlan, Settings, with_fields};
 use crate::run::compare::PlannedRun;
 use crate::schema::{Choices, choices};
 use crate::score::ExamSuite;
-use crate::world::PhysicsEngine;
 
 choices! {
     /// A family: a controller with the method that trains it, on the stairs of the default world or on mixed ones.
@@ -168,7 +167,8 @@ impl Family {
             },
             Self::JointXcs => FamilyInfo {
                 preset: "xcs",
-                changes: &[("genome.controller", "joint_decisions")],
+                // Four systems share the rules.
+                changes: &[("genome.controller", "joint_decisions"), ("xcs.rules", "2400")],
                 ..standard
             },
             Self::MixedGait => FamilyInfo { changes: &[("genome.controller", "gait")], ..mixed },
@@ -215,8 +215,6 @@ impl Family {
     ) -> Result<RunPlan, Invalid> {
         let info = self.info();
         let mut settings = with_fields(preset, info.changes.iter().copied())?;
-        // The engine of the runs that are published.
-        settings.trial.physics.engine = PhysicsEngine::Rapier;
         settings.trial = ExamSuite::Stairs.undisturbed(&settings.trial).trial;
         settings.trial.duration_s = duration_s.unwrap_or(settings.trial.duration_s);
         let (strategy, controller) = (settings.evolution.strategy, settings.genome.controller);
