@@ -7,9 +7,7 @@ mod xor;
 use super::network::{beat, servos};
 use super::servo::JointServos;
 use super::{Activity, Controller, Observation, Senses};
-use crate::genome::controllers::{
-    LIMB_NEURONS, LimbNeuron, LimbNeurons, NEURON_SOURCES, ServoGenes,
-};
+use crate::genome::controllers::{LIMB_NEURONS, LimbNeurons, NEURON_SOURCES, ServoGenes};
 use crate::world::JointTorque;
 
 /// Lets the neurons of all limbs respond, step after step.
@@ -45,7 +43,23 @@ impl LimbNeuronController {
         let senses = &observation.perception;
         let joint = senses.joints.get(limb).copied().unwrap_or_default();
         let of_limb = senses.limbs.get(limb).copied().unwrap_or_default();
-        let sensed = [
+        let [own_1, own_2, own_3, own_4] = own;
+        let [front_1, front_2, front_3, front_4] = front;
+        let [rear_1, rear_2, rear_3, rear_4] = rear;
+        let [sine, cosine] = beat(periods, limb as f32 * self.genes.lag_rad);
+        [
+            own_1,
+            own_2,
+            own_3,
+            own_4,
+            front_1,
+            front_2,
+            front_3,
+            front_4,
+            rear_1,
+            rear_2,
+            rear_3,
+            rear_4,
             joint.bend,
             joint.bend_rate,
             of_limb.touch,
@@ -54,21 +68,10 @@ impl LimbNeuronController {
             of_limb.pitch,
             of_limb.gap,
             of_limb.step_up,
-        ];
-        let beat = beat(periods, limb as f32 * self.genes.lag_rad);
-        let all = own.into_iter().chain(front).chain(rear).chain(sensed).chain(beat);
-        let mut values = [0.0; NEURON_SOURCES];
-        values.iter_mut().zip(all).for_each(|(value, known)| *value = known);
-        values
+            sine,
+            cosine,
+        ]
     }
-}
-
-/// The outputs of a limb's neurons when the values of their sources are these.
-fn respond(
-    neurons: &[LimbNeuron; LIMB_NEURONS],
-    values: &[f32; NEURON_SOURCES],
-) -> [f32; LIMB_NEURONS] {
-    neurons.map(|neuron| neuron.respond(values))
 }
 
 impl Controller for LimbNeuronController {
@@ -81,7 +84,7 @@ impl Controller for LimbNeuronController {
         for limb in 0..self.outputs.len() {
             let values = self.values(limb, observation, periods);
             if let Some(neurons) = self.genes.of_limb(limb) {
-                self.next[limb] = respond(neurons, &values);
+                self.next[limb] = neurons.map(|neuron| neuron.respond(&values));
             }
         }
         std::mem::swap(&mut self.outputs, &mut self.next);

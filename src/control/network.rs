@@ -4,7 +4,7 @@ use super::perception::Perception;
 use super::servo::JointServos;
 use super::{Activity, Controller, NetworkActivity, NodeColumn, Observation, Senses};
 use crate::genome::controllers::{
-    CentralNetwork, MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork, ServoGenes,
+    CentralNetwork, MODULE_INPUTS, MODULE_OUTPUTS, ModularNetwork, ServoGenes, tanh_each,
 };
 use crate::world::JointTorque;
 
@@ -102,13 +102,15 @@ impl Controller for ModularController {
         for joint in 0..senses.joints.len() {
             let inputs = self.inputs(joint, senses, periods);
             let hidden = &mut self.hidden[joint * neurons..][..neurons];
-            self.genes.hidden.respond(&inputs, hidden);
+            self.genes.hidden.weigh(&inputs, hidden);
         }
+        tanh_each(&mut self.hidden);
         for (hidden, output) in
             self.hidden.chunks_exact(neurons).zip(self.outputs.chunks_exact_mut(outputs))
         {
-            self.genes.outputs.respond(hidden, output);
+            self.genes.outputs.weigh(hidden, output);
         }
+        tanh_each(&mut self.outputs);
         let ServoGenes { bend_range_rad, twist_range_rad, .. } = self.genes.servo;
         let targets = self.outputs.chunks_exact(outputs).map(|output| {
             let twist = output.get(2).copied().unwrap_or(0.0);

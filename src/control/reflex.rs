@@ -3,7 +3,7 @@
 use super::perception::{JointSenses, LimbSenses};
 use super::servo::JointServos;
 use super::{Activity, Controller, Observation, ReflexActivity, ReflexPush, Senses};
-use crate::genome::controllers::{REFLEX_INPUTS, ReflexGait, Wave};
+use crate::genome::controllers::{REFLEX_INPUTS, ReflexGait, Wave, tanh_each};
 use crate::world::JointTorque;
 
 /// Follows a gait with reflexes.
@@ -13,6 +13,8 @@ pub struct ReflexFollower {
     servo: JointServos,
     /// Shift of each joint's phase since the start, in radians.
     shifts_rad: Vec<f64>,
+    /// Share of its reach by which a reflex moves the targets of bend and twist of each joint, from -1 to 1: working memory.
+    shares: Vec<f32>,
 }
 
 impl ReflexFollower {
@@ -20,23 +22,19 @@ impl ReflexFollower {
     pub fn new(genes: ReflexGait) -> Self {
         let servo =
             JointServos::new(genes.gait.stiffness_nm_per_rad, genes.gait.servo_damping_nms_per_rad);
-        Self { servo, shifts_rad: vec![0.0; genes.gait.waves.joints.len()], genes }
+        let joints = genes.gait.waves.joints.len();
+        Self { servo, shifts_rad: vec![0.0; joints], shares: vec![0.0; 2 * joints], genes }
     }
 }
 
-/// Angle by which a reflex moves a target, in radians.
-fn reach_rad(
-    reach_rad: f32,
-    weights: &[f32; REFLEX_INPUTS.len()],
-    own: [f32; 2],
-    around: [f32; 6],
-) -> f32 {
+/// The weighted sum of the senses; its hyperbolic tangent is the share of its reach by which a reflex moves a target.
+fn weigh(weights: &[f32; REFLEX_INPUTS.len()], own: [f32; 2], around: [f32; 6]) -> f32 {
     let inputs = own.into_iter().chain(around).chain([1.0]);
     let mut sum = 0.0;
     for (input, weight) in inputs.zip(weights) {
         sum += input * weight;
     }
-    reach_rad * libm::tanhf(sum)
+    sum
 }
 
 /// The senses of the limbs before and behind a joint that a reflex uses.
@@ -61,14 +59,19 @@ impl Controller for ReflexFollower {
         let periods = observation.periods(waves.frequency_hz);
         let senses = &observation.perception;
         let pairs = || senses.limbs.iter().zip(senses.limbs.iter().skip(1));
-        let joints = waves.joints.iter().zip(&senses.joints).zip(pairs()).zip(&self.shifts_rad);
-        let targets = joints.map(|(((joint, own), (front, rear)), shift_rad)| {
+        let sensed = senses.joints.iter().zip(pairs());
+        for (shares, (own, (front, rear))) in self.shares.chunks_exact_mut(2).zip(sensed) {
             let JointSenses { bend, twist, bend_rate, twist_rate } = *own;
+            let around = around(front, rear);
+            shares[0] = weigh(bend_weights, [bend, bend_rate], around);
+            shares[1] = weigh(twist_weights, [twist, twist_rate], around);
+        }
+        tanh_each(&mut self.shares);
+        let moves = self.shares.chunks_exact(2).zip(&self.shifts_rad);
+        let targets = waves.joints.iter().zip(moves).map(|(joint, (shares, shift_rad))| {
             // Without a shift this is the very number that a gait has.
             let shifted = periods + shift_rad / std::f64::consts::TAU;
-            let around = around(front, rear);
-            let bend = reach_rad(*reach, bend_weights, [bend, bend_rate], around);
-            let twist = reach_rad(*reach, twist_weights, [twist, twist_rate], around);
+            let [bend, twist] = [reach * shares[0], reach * shares[1]];
             [joint.bend.at(shifted) + bend, joint.twist.at(shifted) + twist]
         });
         self.servo.pull(observation, targets, torques);
@@ -95,7 +98,7 @@ impl Controller for ReflexFollower {
             pushes: pushes
                 .map(|((name, value), weight)| ReflexPush { name, value, push: value * weight })
                 .collect(),
-            moved_rad: reach_rad(self.genes.reach_rad, weights, own, around),
+            moved_rad: self.genes.reach_rad * libm::tanhf(weigh(weights, own, around)),
             reach_rad: self.genes.reach_rad,
             shift_rad: self.shifts_rad.get(joint).map_or(0.0, |shift_rad| *shift_rad as f32),
         }))

@@ -146,8 +146,8 @@ impl StairProfile {
         if y_m < self.first_riser_y_m {
             return 0;
         }
-        // A number that is not finite becomes 0 or the greatest.
-        let passed = libm::floorf((y_m - self.first_riser_y_m) / tread_m) as usize;
+        // The fraction is cut off; a number that is not finite becomes 0 or the greatest.
+        let passed = ((y_m - self.first_riser_y_m) / tread_m) as usize;
         passed.saturating_add(1).min(steps)
     }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::tanh::tanh_each;
 use crate::check::{Invalid, within};
 use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
 use crate::genome::network_space::WEIGHT_RANGE;
@@ -30,14 +31,20 @@ impl Layer {
         self.rows.first().map_or(0, |row| row.len().saturating_sub(1))
     }
 
-    /// Writes the output of each neuron, tanh of its weighted sum. Sums are in the order of the inputs, the bias last.
+    /// Writes the output of each neuron, tanh of its weighted sum.
     pub fn respond(&self, inputs: &[f32], outputs: &mut [f32]) {
-        for (output, row) in outputs.iter_mut().zip(&self.rows) {
+        self.weigh(inputs, outputs);
+        tanh_each(outputs);
+    }
+
+    /// Writes the weighted sum of each neuron, in the order of the inputs, the bias last.
+    pub fn weigh(&self, inputs: &[f32], sums: &mut [f32]) {
+        for (result, row) in sums.iter_mut().zip(&self.rows) {
             let mut sum = 0.0;
             for (input, weight) in inputs.iter().zip(row) {
                 sum += input * weight;
             }
-            *output = libm::tanhf(sum + row.last().copied().unwrap_or(0.0));
+            *result = sum + row.last().copied().unwrap_or(0.0);
         }
     }
 

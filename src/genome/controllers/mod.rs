@@ -21,6 +21,7 @@ mod reflex;
 mod rules;
 mod servo;
 mod signal;
+mod tanh;
 mod wave;
 mod wave_rule;
 
@@ -49,6 +50,7 @@ pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use rules::RuleGenes;
 pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
+pub use tanh::tanh_each;
 pub use wave::{Harmonic, JointWaves, Wave, Waves};
 pub use wave_rule::{JointGroup, RULE_SENSES, RuleCondition, WaveRule};
 

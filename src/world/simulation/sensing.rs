@@ -89,11 +89,20 @@ impl Simulation {
     /// Height of the lowest corner of a part, in metres.
     fn lowest_z_m(&self, part: usize) -> f32 {
         let body = &self.physics.bodies[self.parts[part]];
-        let (centre, turn) = (body.translation(), *body.rotation());
+        let axes = self.axes(*body.rotation());
+        self.lowest_z_of_m(part, body.translation(), axes)
+    }
+
+    /// The same of a part whose centre is there, and which has these axes.
+    fn lowest_z_of_m(&self, part: usize, centre: Vector, axes: [Vector; 3]) -> f32 {
         let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
-        let reach_m = [Vector::X, Vector::Y, Vector::Z].map(|axis| self.turned(turn, axis).z);
-        let reach_m = reach_m.into_iter().zip(half_m);
-        centre.z - reach_m.map(|(part, half)| part.abs() * half).sum::<f32>()
+        let reach_m = axes.into_iter().zip(half_m);
+        centre.z - reach_m.map(|(axis, half)| axis.z.abs() * half).sum::<f32>()
+    }
+
+    /// The axes of a body with this rotation, as unit vectors in the world: right, forward, up.
+    fn axes(&self, turn: Rotation) -> [Vector; 3] {
+        [Vector::X, Vector::Y, Vector::Z].map(|axis| self.turned(turn, axis))
     }
 
     /// The senses of the snake as a whole.
@@ -110,9 +119,9 @@ impl Simulation {
 
     fn read_part(&self, part: usize) -> LimbReading {
         let body = &self.physics.bodies[self.parts[part]];
-        let (centre, turn) = (body.translation(), *body.rotation());
-        let [right, forward] = [Vector::X, Vector::Y].map(|axis| self.turned(turn, axis));
-        let lowest_z_m = self.lowest_z_m(part);
+        let (centre, axes) = (body.translation(), self.axes(*body.rotation()));
+        let [right, forward, _] = axes;
+        let lowest_z_m = self.lowest_z_of_m(part, centre, axes);
         let front = centre + forward * (self.body.parts[part].length_m / 2.0);
         let next = self.profile.next_step(front.x, front.y);
         let (is_touching, force_n) = self.sensed_contact(part);
@@ -130,7 +139,14 @@ impl Simulation {
     /// Whether a part touches ground or stairs, and the force of these contacts on it in the last substep, in
     /// N: the sum of [`Self::contact_forces`], without their list.
     pub(super) fn contact_force(&self, part: usize) -> (bool, Vector) {
-        let substep_s = self.substep_s();
+        if self.lanes.is_some() {
+            self.contact_force_in_lanes(part)
+        } else {
+            self.contact_force_in_rapier(part)
+        }
+    }
+
+    fn contact_force_in_lanes(&self, part: usize) -> (bool, Vector) {
         let (mut is_touching, mut impulse) = (false, Vector::ZERO);
         let contacts = self.lanes_contacts().iter().filter(|contact| contact.part == part);
         for contact in contacts.filter(|contact| !matches!(contact.other, Touching::Part(_))) {
@@ -140,6 +156,11 @@ impl Simulation {
                 impulse += contact.normal * pressed_ns + contact.friction_ns;
             }
         }
+        (is_touching, impulse / self.substep_s())
+    }
+
+    fn contact_force_in_rapier(&self, part: usize) -> (bool, Vector) {
+        let (mut is_touching, mut impulse) = (false, Vector::ZERO);
         let collider = self.physics.bodies[self.parts[part]].colliders()[0];
         for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
             if !self.is_world(other_collider(pair, collider)) {
@@ -160,7 +181,7 @@ impl Simulation {
                 impulse -= friction.unwrap_or(Vector::ZERO) * side;
             }
         }
-        (is_touching, impulse / substep_s)
+        (is_touching, impulse / self.substep_s())
     }
 }
 
