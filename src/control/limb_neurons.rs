@@ -111,7 +111,7 @@ impl Controller for LimbNeuronController {
 mod tests {
     use super::*;
     use crate::control::perception::{JointSenses, LimbSenses};
-    use crate::genome::controllers::{NeuronInput, NeuronKind, NeuronSource};
+    use crate::genome::controllers::{LimbNeuron, NeuronInput, NeuronKind, NeuronSource};
     use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;

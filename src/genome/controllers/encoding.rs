@@ -59,6 +59,9 @@ pub trait ControllerEncoding {
     /// Frequency of the motion, in Hz, or an estimate where it has no period.
     fn frequency_hz(&self) -> f32;
 
+    /// Drops what was learned but changes nothing that the snake does. The genes of most controllers have nothing of that kind.
+    fn compact(&mut self) {}
+
     /// Checks every value against the limits of all spaces.
     ///
     /// # Errors

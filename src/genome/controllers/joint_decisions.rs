@@ -117,6 +117,10 @@ impl ControllerEncoding for JointDecisionGenes {
         DECISIONS_PER_S as f32 / 2.0
     }
 
+    fn compact(&mut self) {
+        self.systems = Arc::new(self.systems.iter().map(Xcs::compacted).collect());
+    }
+
     fn check(&self) -> Result<(), Invalid> {
         let inside = |error: Invalid| error.inside("joint_decisions");
         self.servo.check().map_err(inside)?;

@@ -161,6 +161,11 @@ impl ControllerGenes {
         self.encoding().frequency_hz()
     }
 
+    /// Drops what was learned but changes nothing that the snake does: rules that no decision needs.
+    pub fn compact(&mut self) {
+        self.encoding_mut().compact();
+    }
+
     /// Checks every value against the limits of all spaces.
     ///
     /// # Errors

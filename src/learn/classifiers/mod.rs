@@ -18,6 +18,7 @@ mod replay_tests;
 #[cfg(test)]
 mod speed;
 mod xcs;
+mod xcs_compaction;
 mod xcs_deletion;
 mod xcs_discovery;
 mod xcs_episode;

@@ -28,6 +28,7 @@ choices! {
         MixedReflex = "mixed-reflex", "Reflex, mixed stairs", "The reflex gait, on four other staircases in each generation.";
         MixedModular = "mixed-modular", "Modular, mixed stairs", "The modular network, on four other staircases in each generation.";
         MixedLimbNeurons = "mixed-limb-neurons", "Limb neurons, mixed stairs", "Neurons in each limb, on four other staircases in each generation.";
+        MixedRules = "mixed-rules", "Waves by rules, mixed stairs", "Rules that choose among waves, on four other staircases in each generation.";
     }
 }
 
@@ -185,6 +186,20 @@ impl Family {
             Self::MixedLimbNeurons => {
                 FamilyInfo { preset: "mixed-stairs", demands: FamilyInfo::SENSING, ..mixed }
             }
+            Self::MixedRules => FamilyInfo {
+                preset: "mixed-stairs",
+                changes: &[("genome.controller", "rules")],
+                demands: &[
+                    Demand { measure: Measure::SeveralWaves, must: Some(7.0), hard: None },
+                    Demand {
+                        measure: Measure::AboveGait(ExamSuite::Stairs),
+                        must: None,
+                        hard: Some(10.0),
+                    },
+                    Demand { measure: Measure::LostWithoutSenses, must: Some(20.0), hard: None },
+                ],
+                ..mixed
+            },
         }
     }
 

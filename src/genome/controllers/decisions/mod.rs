@@ -7,6 +7,8 @@ pub use policy::Policy;
 pub(super) use policy::hash_xcs;
 pub(crate) use policy::shared;
 
+use std::sync::Arc;
+
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
@@ -153,6 +155,12 @@ impl ControllerEncoding for DecisionGenes {
     /// Half the rate of decisions: that of a posture that changes with each.
     fn frequency_hz(&self) -> f32 {
         DECISIONS_PER_S as f32 / 2.0
+    }
+
+    fn compact(&mut self) {
+        if let Policy::Xcs(rules) = &mut self.policy {
+            *rules = Arc::new(rules.compacted());
+        }
     }
 
     fn check(&self) -> Result<(), Invalid> {

@@ -1,0 +1,128 @@
+//! The rules of a population that its decisions need.
+//!
+//! While it learns, XCS keeps many rules that change no decision: they are on trial, or say the same as others. Of a system that no
+//! longer learns and that people read, they are a burden. Several algorithms make rule sets compact after learning (Wyatt, Bull and
+//! Parmee, "Building Compact Rulesets for Describing Continuous-Valued Problem Spaces Using a Learning Classifier System"); they
+//! judge by samples. Where situations have few bits, all of them can be looked at, so nothing changes.
+
+use super::mask_table::MaskTable;
+use super::xcs::Xcs;
+
+/// Bits of a situation up to which all situations are looked at: 4,096 of them.
+const MOST_BITS: usize = 12;
+
+impl Xcs {
+    /// This system without the rules that no choice needs, the least fit of which go first. In every situation the best action stays
+    /// the best, and the second best stays so, which is what a choice beside the present action takes. Predictions change.
+    /// A system whose situations have more than twelve bits stays as it is.
+    #[must_use]
+    pub fn compacted(&self) -> Self {
+        if self.situation_bits > MOST_BITS {
+            return self.clone();
+        }
+        let mut matched: Vec<Vec<usize>> =
+            (0..1 << self.situation_bits).map(|bits| self.match_set(bits)).collect();
+        let leading: Vec<_> = matched.iter().map(|of| self.leading(of)).collect();
+        let mut situations = vec![Vec::new(); self.rules.len()];
+        for (situation, rules) in matched.iter().enumerate() {
+            rules.iter().for_each(|&rule| situations[rule].push(situation));
+        }
+        let mut order: Vec<usize> = (0..self.rules.len()).collect();
+        order.sort_by(|&a, &b| self.rules[a].fitness.total_cmp(&self.rules[b].fitness));
+        let mut is_needed = vec![true; self.rules.len()];
+        for rule in order {
+            let without = |situation: usize| -> Vec<usize> {
+                matched[situation].iter().copied().filter(|&other| other != rule).collect()
+            };
+            let changes =
+                |&situation: &usize| self.leading(&without(situation)) != leading[situation];
+            if situations[rule].iter().any(changes) {
+                continue;
+            }
+            is_needed[rule] = false;
+            for &situation in &situations[rule] {
+                matched[situation].retain(|&other| other != rule);
+            }
+        }
+        let rules = self.rules.iter().zip(is_needed);
+        let rules: Vec<_> =
+            rules.filter(|(_, is_needed)| *is_needed).map(|(rule, _)| rule.clone()).collect();
+        Self {
+            masks: MaskTable::of(rules.iter().map(|rule| (rule.condition, rule.action))),
+            numerosity: rules.iter().map(|rule| rule.numerosity).sum(),
+            rules,
+            settings: self.settings.clone(),
+            ..*self
+        }
+    }
+
+    /// The best and the second best action of a match set, the lowest among equals.
+    fn leading(&self, matched: &[usize]) -> [Option<usize>; 2] {
+        let mut leading: [Option<(usize, f32)>; 2] = [None; 2];
+        for (action, prediction) in self.predictions(matched).into_iter().enumerate() {
+            let Some(prediction) = prediction else { continue };
+            let is_better =
+                |than: Option<(usize, f32)>| than.is_none_or(|(_, known)| prediction > known);
+            if is_better(leading[0]) {
+                leading = [Some((action, prediction)), leading[0]];
+            } else if is_better(leading[1]) {
+                leading[1] = Some((action, prediction));
+            }
+        }
+        leading.map(|found| found.map(|(action, _)| action))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ActionChoice, EpisodeEnd, XcsSettings};
+    use super::*;
+    use crate::rng::{Purpose, stream};
+    use rand::RngExt;
+
+    /// A system that has learned which of six bits the first two point to, from rewards that scatter.
+    fn learned() -> Xcs {
+        let settings = XcsSettings { population: 400, ..XcsSettings::default() };
+        let mut xcs = Xcs::new(settings, 6, 3).expect("allowed");
+        let mut rng = stream(1, 0, 0, Purpose::Learn);
+        for _ in 0..2000 {
+            let bits = rng.random_range(0..64_u32);
+            let mut episode = xcs.episode();
+            let action = episode.decide(bits, ActionChoice::Explore, &mut rng);
+            let right = bits >> (2 + (bits & 3)) & 1;
+            let chance: f32 = rng.random_range(0.0..200.0);
+            episode.reward(chance + if action == right as usize { 500.0 } else { 0.0 });
+            episode.finish(EpisodeEnd::Terminal, &mut rng);
+        }
+        xcs
+    }
+
+    #[test]
+    fn a_compact_system_decides_alike_in_every_situation_with_fewer_rules() {
+        let whole = learned();
+        let compact = whole.compacted();
+        assert!(compact.rules().len() * 2 < whole.rules().len(), "{}", compact.rules().len());
+        for bits in 0..64 {
+            assert_eq!(compact.frozen_action(bits), whole.frozen_action(bits), "{bits:06b}");
+            let beside_best = |xcs: &Xcs| xcs.leading(&xcs.match_set(bits));
+            assert_eq!(beside_best(&compact), beside_best(&whole), "{bits:06b}");
+        }
+        assert_eq!(compact.check(), Ok(()));
+        assert_eq!(compact.numerosity(), compact.rules().iter().map(|of| of.numerosity).sum());
+        let is_kept = |rule| whole.rules().contains(rule);
+        assert!(compact.rules().iter().all(is_kept), "rules stay as they are");
+        assert_eq!(compact.compacted(), compact, "nothing more can go");
+    }
+
+    #[test]
+    fn a_system_with_too_many_situations_stays_as_it_is() {
+        let mut xcs = Xcs::new(XcsSettings::default(), 13, 2).expect("allowed");
+        let mut rng = stream(1, 0, 0, Purpose::Learn);
+        for bits in 0..50 {
+            let mut episode = xcs.episode();
+            episode.decide(bits, ActionChoice::Explore, &mut rng);
+            episode.finish(EpisodeEnd::Terminal, &mut rng);
+        }
+        assert_eq!(xcs.compacted(), xcs);
+    }
+}
