@@ -107,6 +107,13 @@ impl Xcs {
         matched
     }
 
+    /// The predicted payoff of an action, from the indices of its matching rules, rising; `None` without one.
+    pub(super) fn prediction(&self, matched: impl Iterator<Item = usize>) -> Option<f32> {
+        let mut sum = PredictionSum::default();
+        matched.for_each(|index| sum.add(&self.rules[index]));
+        sum.mean()
+    }
+
     /// The prediction array of a match set.
     pub(super) fn predictions(&self, matched: &[usize]) -> Vec<Option<f32>> {
         let mut sums = vec![PredictionSum::default(); self.actions];

@@ -20,28 +20,43 @@ impl Xcs {
         if self.situation_bits > MOST_BITS {
             return self.clone();
         }
-        let mut matched: Vec<Vec<usize>> =
-            (0..1 << self.situation_bits).map(|bits| self.match_set(bits)).collect();
-        let leading: Vec<_> = matched.iter().map(|of| self.leading(of)).collect();
-        let mut situations = vec![Vec::new(); self.rules.len()];
-        for (situation, rules) in matched.iter().enumerate() {
-            rules.iter().for_each(|&rule| situations[rule].push(situation));
+        let mut situations: Vec<Situation> = (0..1 << self.situation_bits)
+            .map(|bits| {
+                let rules = self.match_set(bits);
+                let predictions = self.predictions(&rules);
+                Situation { leading: leading(&predictions), rules, predictions }
+            })
+            .collect();
+        let mut matched_by = vec![Vec::new(); self.rules.len()];
+        for (index, situation) in situations.iter().enumerate() {
+            situation.rules.iter().for_each(|&rule| matched_by[rule].push(index));
         }
         let mut order: Vec<usize> = (0..self.rules.len()).collect();
         order.sort_by(|&a, &b| self.rules[a].fitness.total_cmp(&self.rules[b].fitness));
         let mut is_needed = vec![true; self.rules.len()];
         for rule in order {
-            let without = |situation: usize| -> Vec<usize> {
-                matched[situation].iter().copied().filter(|&other| other != rule).collect()
+            let action = self.masks.action(rule);
+            // Without a rule, only its own action has another prediction.
+            let of_action = |situation: &Situation| {
+                let others = situation.rules.iter().copied().filter(|&other| other != rule);
+                self.prediction(others.filter(|&other| self.masks.action(other) == action))
             };
-            let changes =
-                |&situation: &usize| self.leading(&without(situation)) != leading[situation];
-            if situations[rule].iter().any(changes) {
+            let changes = |&index: &usize| {
+                let situation = &mut situations[index];
+                let new = of_action(situation);
+                let old = std::mem::replace(&mut situation.predictions[action], new);
+                let changes = leading(&situation.predictions) != situation.leading;
+                situation.predictions[action] = old;
+                changes
+            };
+            if matched_by[rule].iter().any(changes) {
                 continue;
             }
             is_needed[rule] = false;
-            for &situation in &situations[rule] {
-                matched[situation].retain(|&other| other != rule);
+            for &index in &matched_by[rule] {
+                let situation = &mut situations[index];
+                situation.predictions[action] = of_action(situation);
+                situation.rules.retain(|&other| other != rule);
             }
         }
         let rules = self.rules.iter().zip(is_needed);
@@ -55,22 +70,32 @@ impl Xcs {
             ..*self
         }
     }
+}
 
-    /// The best and the second best action of a match set, the lowest among equals.
-    fn leading(&self, matched: &[usize]) -> [Option<usize>; 2] {
-        let mut leading: [Option<(usize, f32)>; 2] = [None; 2];
-        for (action, prediction) in self.predictions(matched).into_iter().enumerate() {
-            let Some(prediction) = prediction else { continue };
-            let is_better =
-                |than: Option<(usize, f32)>| than.is_none_or(|(_, known)| prediction > known);
-            if is_better(leading[0]) {
-                leading = [Some((action, prediction)), leading[0]];
-            } else if is_better(leading[1]) {
-                leading[1] = Some((action, prediction));
-            }
+/// What the rules that are left say of a situation.
+struct Situation {
+    /// The indices of those that match, rising.
+    rules: Vec<usize>,
+    /// The prediction of each action.
+    predictions: Vec<Option<f32>>,
+    /// The best and the second best action of all rules.
+    leading: [Option<usize>; 2],
+}
+
+/// The best and the second best action, the lowest among equals.
+fn leading(predictions: &[Option<f32>]) -> [Option<usize>; 2] {
+    let mut leading: [Option<(usize, f32)>; 2] = [None; 2];
+    for (action, prediction) in predictions.iter().enumerate() {
+        let Some(prediction) = *prediction else { continue };
+        let is_better =
+            |than: Option<(usize, f32)>| than.is_none_or(|(_, known)| prediction > known);
+        if is_better(leading[0]) {
+            leading = [Some((action, prediction)), leading[0]];
+        } else if is_better(leading[1]) {
+            leading[1] = Some((action, prediction));
         }
-        leading.map(|found| found.map(|(action, _)| action))
     }
+    leading.map(|found| found.map(|(action, _)| action))
 }
 
 #[cfg(test)]
@@ -104,8 +129,8 @@ mod tests {
         assert!(compact.rules().len() * 2 < whole.rules().len(), "{}", compact.rules().len());
         for bits in 0..64 {
             assert_eq!(compact.frozen_action(bits), whole.frozen_action(bits), "{bits:06b}");
-            let beside_best = |xcs: &Xcs| xcs.leading(&xcs.match_set(bits));
-            assert_eq!(beside_best(&compact), beside_best(&whole), "{bits:06b}");
+            let first_two = |xcs: &Xcs| leading(&xcs.prediction_array(bits));
+            assert_eq!(first_two(&compact), first_two(&whole), "{bits:06b}");
         }
         assert_eq!(compact.check(), Ok(()));
         let copies: u32 = compact.rules().iter().map(|rule| rule.numerosity).sum();

@@ -24,7 +24,7 @@ pub(super) fn choose_champion(
 ) -> Result<Option<Champion>, Cancelled> {
     let mut champion = best_candidate(evaluated, ranking, evaluator, control, rank)?;
     if let Some(champion) = &mut champion {
-        // People read its rules, and it learns no more.
+        // People read its rules. A run that starts from it learns again what it needs besides.
         champion.genome.controller.compact();
     }
     Ok(champion)
