@@ -20,11 +20,11 @@ impl Xcs {
         if self.situation_bits > MOST_BITS {
             return self.clone();
         }
-        let mut situations: Vec<Situation> = (0..1 << self.situation_bits)
+        let mut situations: Vec<MatchedSituation> = (0..1 << self.situation_bits)
             .map(|bits| {
                 let rules = self.match_set(bits);
                 let predictions = self.predictions(&rules);
-                Situation { leading: leading(&predictions), rules, predictions }
+                MatchedSituation { leading: leading(&predictions), rules, predictions }
             })
             .collect();
         let mut matched_by = vec![Vec::new(); self.rules.len()];
@@ -37,7 +37,7 @@ impl Xcs {
         for rule in order {
             let action = self.masks.action(rule);
             // Without a rule, only its own action has another prediction.
-            let of_action = |situation: &Situation| {
+            let of_action = |situation: &MatchedSituation| {
                 let others = situation.rules.iter().copied().filter(|&other| other != rule);
                 self.prediction(others.filter(|&other| self.masks.action(other) == action))
             };
@@ -72,9 +72,9 @@ impl Xcs {
     }
 }
 
-/// What the rules that are left say of a situation.
-struct Situation {
-    /// The indices of those that match, rising.
+/// A situation, with the rules that match it and are not removed yet.
+struct MatchedSituation {
+    /// Their indices, rising.
     rules: Vec<usize>,
     /// The prediction of each action.
     predictions: Vec<Option<f32>>,
