@@ -285,6 +285,8 @@ impl Experiment {
             // There are thousands of generations. Those that are better than all before are enough.
             champion = champion.filter(|champion| self.is_better(champion));
         }
+        // People read its rules. A run that starts from it learns again what it needs besides.
+        champion.iter_mut().for_each(|champion| champion.genome.controller.compact());
         let mut report = evaluated.report(champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();

@@ -84,15 +84,22 @@ pub fn random_largest(values: &[Option<f32>], rng: &mut impl Rng) -> Option<usiz
 
 /// The lowest index of the largest value; `None` if there is no value.
 pub fn first_largest(values: &[Option<f32>]) -> Option<usize> {
-    let mut best: Option<(usize, f32)> = None;
+    two_largest(values)[0]
+}
+
+/// The indices of the largest and of the second largest value, the lowest among equals; `None` where there is no value.
+pub fn two_largest(values: &[Option<f32>]) -> [Option<usize>; 2] {
+    let mut largest: [Option<(usize, f32)>; 2] = [None; 2];
     for (index, value) in values.iter().enumerate() {
-        if let Some(value) = *value
-            && best.is_none_or(|(_, largest)| value > largest)
-        {
-            best = Some((index, value));
+        let Some(value) = *value else { continue };
+        let is_larger = |than: Option<(usize, f32)>| than.is_none_or(|(_, known)| value > known);
+        if is_larger(largest[0]) {
+            largest = [Some((index, value)), largest[0]];
+        } else if is_larger(largest[1]) {
+            largest[1] = Some((index, value));
         }
     }
-    best.map(|(index, _)| index)
+    largest.map(|found| found.map(|(index, _)| index))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! Parmee, "Building Compact Rulesets for Describing Continuous-Valued Problem Spaces Using a Learning Classifier System"); they
 //! judge by samples. Where situations have few bits, all of them can be looked at, so nothing changes.
 
-use super::mask_table::MaskTable;
+use super::chance::two_largest;
 use super::xcs::Xcs;
 
 /// Bits of a situation up to which all situations are looked at: 4,096 of them.
@@ -24,7 +24,7 @@ impl Xcs {
             .map(|bits| {
                 let rules = self.match_set(bits);
                 let predictions = self.predictions(&rules);
-                MatchedSituation { leading: leading(&predictions), rules, predictions }
+                MatchedSituation { leading: two_largest(&predictions), rules, predictions }
             })
             .collect();
         let mut matched_by = vec![Vec::new(); self.rules.len()];
@@ -33,42 +33,38 @@ impl Xcs {
         }
         let mut order: Vec<usize> = (0..self.rules.len()).collect();
         order.sort_by(|&a, &b| self.rules[a].fitness.total_cmp(&self.rules[b].fitness));
-        let mut is_needed = vec![true; self.rules.len()];
+        let mut gone = Vec::new();
         for rule in order {
             let action = self.masks.action(rule);
             // Without a rule, only its own action has another prediction.
-            let of_action = |situation: &MatchedSituation| {
+            let without = |&index: &usize| {
+                let situation = &mut situations[index];
                 let others = situation.rules.iter().copied().filter(|&other| other != rule);
-                self.prediction(others.filter(|&other| self.masks.action(other) == action))
-            };
-            let changes = |&index: &usize| {
-                let situation = &mut situations[index];
-                let new = of_action(situation);
+                let new = self.prediction(others.filter(|&of| self.masks.action(of) == action));
                 let old = std::mem::replace(&mut situation.predictions[action], new);
-                let changes = leading(&situation.predictions) != situation.leading;
+                let leads_alike = two_largest(&situation.predictions) == situation.leading;
                 situation.predictions[action] = old;
-                changes
+                leads_alike.then_some(new)
             };
-            if matched_by[rule].iter().any(changes) {
+            let Some(predictions) =
+                matched_by[rule].iter().map(without).collect::<Option<Vec<_>>>()
+            else {
                 continue;
-            }
-            is_needed[rule] = false;
-            for &index in &matched_by[rule] {
+            };
+            for (&index, prediction) in matched_by[rule].iter().zip(predictions) {
                 let situation = &mut situations[index];
-                situation.predictions[action] = of_action(situation);
+                situation.predictions[action] = prediction;
                 situation.rules.retain(|&other| other != rule);
             }
+            gone.push(rule);
         }
-        let rules = self.rules.iter().zip(is_needed);
-        let rules: Vec<_> =
-            rules.filter(|(_, is_needed)| *is_needed).map(|(rule, _)| rule.clone()).collect();
-        Self {
-            masks: MaskTable::of(rules.iter().map(|rule| (rule.condition, rule.action))),
-            numerosity: rules.iter().map(|rule| rule.numerosity).sum(),
-            rules,
-            settings: self.settings.clone(),
-            ..*self
+        gone.sort_unstable();
+        let mut compact = self.clone();
+        for &rule in &gone {
+            compact.numerosity -= std::mem::take(&mut compact.rules[rule].numerosity);
         }
+        compact.remove_rules(&gone, []);
+        compact
     }
 }
 
@@ -80,22 +76,6 @@ struct MatchedSituation {
     predictions: Vec<Option<f32>>,
     /// The best and the second best action of all rules.
     leading: [Option<usize>; 2],
-}
-
-/// The best and the second best action, the lowest among equals.
-fn leading(predictions: &[Option<f32>]) -> [Option<usize>; 2] {
-    let mut leading: [Option<(usize, f32)>; 2] = [None; 2];
-    for (action, prediction) in predictions.iter().enumerate() {
-        let Some(prediction) = *prediction else { continue };
-        let is_better =
-            |than: Option<(usize, f32)>| than.is_none_or(|(_, known)| prediction > known);
-        if is_better(leading[0]) {
-            leading = [Some((action, prediction)), leading[0]];
-        } else if is_better(leading[1]) {
-            leading[1] = Some((action, prediction));
-        }
-    }
-    leading.map(|found| found.map(|(action, _)| action))
 }
 
 #[cfg(test)]
@@ -129,7 +109,7 @@ mod tests {
         assert!(compact.rules().len() * 2 < whole.rules().len(), "{}", compact.rules().len());
         for bits in 0..64 {
             assert_eq!(compact.frozen_action(bits), whole.frozen_action(bits), "{bits:06b}");
-            let first_two = |xcs: &Xcs| leading(&xcs.prediction_array(bits));
+            let first_two = |xcs: &Xcs| two_largest(&xcs.prediction_array(bits));
             assert_eq!(first_two(&compact), first_two(&whole), "{bits:06b}");
         }
         assert_eq!(compact.check(), Ok(()));

@@ -22,21 +22,6 @@ pub(super) fn choose_champion(
     control: &RunControl,
     rank: impl Fn(&Champion) -> [f32; 2],
 ) -> Result<Option<Champion>, Cancelled> {
-    let mut champion = best_candidate(evaluated, ranking, evaluator, control, rank)?;
-    if let Some(champion) = &mut champion {
-        // People read its rules. A run that starts from it learns again what it needs besides.
-        champion.genome.controller.compact();
-    }
-    Ok(champion)
-}
-
-fn best_candidate(
-    evaluated: &EvaluatedGeneration<'_>,
-    ranking: &[usize],
-    evaluator: &dyn Evaluator,
-    control: &RunControl,
-    rank: impl Fn(&Champion) -> [f32; 2],
-) -> Result<Option<Champion>, Cancelled> {
     let candidates = &ranking[..ranking.len().min(CANDIDATES)];
     let of = |&index: &usize| evaluated.trials.of(index).that_chooses_champions();
     let Some(trials) = candidates.iter().map(of).collect::<Option<Vec<Trial>>>() else {

@@ -83,6 +83,11 @@ impl FamilyInfo {
         ],
         ..Self::STANDARD
     };
+    /// Demands on waves that rules choose.
+    const SEVERAL_WAVES: Demand =
+        Demand { measure: Measure::SeveralWaves, must: Some(7.0), hard: None };
+    const BETTER_THAN_GAIT: Demand =
+        Demand { measure: Measure::AboveGait(ExamSuite::Stairs), must: None, hard: Some(10.0) };
     /// Demands on a family that senses its stairs and was trained on mixed ones.
     const SENSING: &'static [Demand] = &[
         Demand { measure: Measure::Exam(ExamSuite::Stairs), must: Some(60.0), hard: Some(80.0) },
@@ -149,12 +154,8 @@ impl Family {
                 preset: "waves-by-rules",
                 demands: &[
                     Demand { measure: Measure::Landings, must: Some(5.0), hard: None },
-                    Demand { measure: Measure::SeveralWaves, must: Some(7.0), hard: None },
-                    Demand {
-                        measure: Measure::AboveGait(ExamSuite::Stairs),
-                        must: None,
-                        hard: Some(10.0),
-                    },
+                    FamilyInfo::SEVERAL_WAVES,
+                    FamilyInfo::BETTER_THAN_GAIT,
                 ],
                 ..standard
             },
@@ -190,12 +191,8 @@ impl Family {
                 preset: "mixed-stairs",
                 changes: &[("genome.controller", "rules")],
                 demands: &[
-                    Demand { measure: Measure::SeveralWaves, must: Some(7.0), hard: None },
-                    Demand {
-                        measure: Measure::AboveGait(ExamSuite::Stairs),
-                        must: None,
-                        hard: Some(10.0),
-                    },
+                    FamilyInfo::SEVERAL_WAVES,
+                    FamilyInfo::BETTER_THAN_GAIT,
                     Demand { measure: Measure::LostWithoutSenses, must: Some(20.0), hard: None },
                 ],
                 ..mixed
