@@ -9,10 +9,10 @@ mod library;
 use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use snakes_and_stairs::genome::{Genome, GenomeSpace};
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::save::shipped_champion;
-use snakes_and_stairs::score::{KeyframeHistory, Rollout, Trial, evaluate};
+use snakes_core::genome::{Genome, GenomeSpace};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::shipped_champion;
+use snakes_core::score::{KeyframeHistory, Rollout, Trial, evaluate};
 
 fn random_genome(trial: &Trial) -> Genome {
     let mut rng = stream(1, 1, 0, Purpose::Birth);

@@ -1,7 +1,11 @@
-//! The `snakes` program: see [`snakes_and_stairs::cli`].
+//! The `snakes` program: the command line and the window.
+
+mod cli;
+#[cfg(feature = "studio")]
+mod studio;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    snakes_and_stairs::cli::run(std::env::args_os())
+    cli::run(std::env::args_os())
 }

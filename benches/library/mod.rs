@@ -1,8 +1,8 @@
 //! Benchmarks of listing a large folder of saves and of reading one entry.
 
 use criterion::Criterion;
-use snakes_and_stairs::save::SavesFolder;
-use snakes_and_stairs::save::library::{SavePlace, list, read_entry};
+use snakes_core::save::SavesFolder;
+use snakes_core::save::library::{SavePlace, list, read_entry};
 
 /// Ten thousand files of a few bytes: their contents are not read.
 pub fn listing(criterion: &mut Criterion) {

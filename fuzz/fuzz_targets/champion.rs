@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::save::parse_champion;
-use snakes_and_stairs::score::Rollout;
+use snakes_core::save::parse_champion;
+use snakes_core::score::Rollout;
 
 fuzz_target!(|text: &str| {
     match parse_champion(Path::new("x"), text) {

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume};
-use snakes_and_stairs::genome::ControllerKind;
-use snakes_and_stairs::score::Fitness;
-use snakes_and_stairs::save::{fingerprint, parse_checkpoint};
+use snakes_core::evolve::{RunPlan, Settings, StrategyKind, resume};
+use snakes_core::genome::ControllerKind;
+use snakes_core::score::Fitness;
+use snakes_core::save::{fingerprint, parse_checkpoint};
 
 /// A plan for each strategy, and its fingerprint.
 static PLANS: LazyLock<Vec<(RunPlan, String)>> = LazyLock::new(|| StrategyKind::ALL.map(plan).to_vec());

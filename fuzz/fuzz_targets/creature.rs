@@ -5,10 +5,10 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::genome::{CreatureChange, GenomeSpace, MOST_PARTS};
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::save::parse_champion;
-use snakes_and_stairs::score::Rollout;
+use snakes_core::genome::{CreatureChange, GenomeSpace, MOST_PARTS};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::parse_champion;
+use snakes_core::score::Rollout;
 
 const CHAMPION: &str = include_str!("../corpus/champion/creatures");
 

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::{Settings, with_field};
+use snakes_core::evolve::{Settings, with_field};
 
 static SETTINGS: LazyLock<Settings> = LazyLock::new(Settings::default);
 

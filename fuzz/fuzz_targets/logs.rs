@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::{RunPlan, Settings};
-use snakes_and_stairs::save::{
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::save::{
     fingerprint, parse_changes, parse_evaluations, parse_lineage, parse_records,
 };
 use xxhash_rust::xxh3::xxh3_64;

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::save::{parse_plan, run_name};
+use snakes_core::save::{parse_plan, run_name};
 
 fuzz_target!(|text: &str| match parse_plan(Path::new("x"), text) {
     Ok(plan) => {

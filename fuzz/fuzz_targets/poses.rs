@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::save::parse_champion;
+use snakes_core::save::parse_champion;
 
 const SHIPPED: &str = include_str!("../../saves/first-climber.ron");
 
@@ -20,7 +20,7 @@ fuzz_target!(|input: (u16, u8, &[u8])| {
     if let Ok(loaded) = parse_champion(Path::new("x"), &text) {
         let recording = loaded.recording.expect("it has poses");
         assert_eq!(recording.frames().len(), usize::from(frames));
-        let finite = |pose: &snakes_and_stairs::world::Pose| {
+        let finite = |pose: &snakes_core::world::Pose| {
             pose.translation.is_finite() && pose.rotation.is_normalized()
         };
         assert!(recording.frames().flatten().all(finite));

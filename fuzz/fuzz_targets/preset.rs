@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::evolve::fields;
-use snakes_and_stairs::save::parse_preset;
+use snakes_core::evolve::fields;
+use snakes_core::save::parse_preset;
 
 fuzz_target!(|text: &str| match parse_preset(Path::new("x"), text) {
     Ok(preset) => {

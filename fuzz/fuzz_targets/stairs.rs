@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::save::parse_stairs;
+use snakes_core::save::parse_stairs;
 
 fuzz_target!(|text: &str| match parse_stairs(Path::new("x"), text) {
     Ok(named) => {
         let stairs = named.stairs;
-        assert_eq!(snakes_and_stairs::schema::check(&stairs), Ok(()));
+        assert_eq!(snakes_core::schema::check(&stairs), Ok(()));
         // What is built from an allowed file is finite, and its surface is nowhere below the ground.
         for solid in stairs.solids() {
             assert!(solid.half_m.min_element() > 0.0 && solid.pose.translation.is_finite(), "{solid:?}");

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snakes_and_stairs::cluster::kinds_of_message;
+use snakes_cluster::kinds_of_message;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Err(error) = kinds_of_message(bytes) {

@@ -5,12 +5,12 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use pyo3::prelude::*;
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::run::{
+use snakes_core::genome::Genome;
+use snakes_lab::run::{
     Evaluator, LocalPool, RunControl, THREADS_RANGE, available_cores, evaluate_caught,
 };
-use snakes_and_stairs::score::{Evaluation, Scored, Trial};
-use snakes_and_stairs::world::Disqualification;
+use snakes_core::score::{Evaluation, Scored, Trial};
+use snakes_core::world::Disqualification;
 
 use crate::convert::whole_as;
 use crate::errors::{crashed, no_threads};

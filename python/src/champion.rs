@@ -8,15 +8,15 @@ use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Value, json};
-use snakes_and_stairs::Engine;
-use snakes_and_stairs::evolve;
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::run;
-use snakes_and_stairs::run::headless::HeadlessError;
-use snakes_and_stairs::save::{self, LoadedChampion, RecordedV5, load_log};
-use snakes_and_stairs::schema::Choices;
-use snakes_and_stairs::score::{Rollout, Trial};
-use snakes_and_stairs::world::Disqualification;
+use snakes_core::Engine;
+use snakes_core::evolve;
+use snakes_core::genome::Genome;
+use snakes_lab::run;
+use snakes_lab::run::headless::HeadlessError;
+use snakes_core::save::{self, LoadedChampion, RecordedV5, load_log};
+use snakes_core::schema::Choices;
+use snakes_core::score::{Rollout, Trial};
+use snakes_core::world::Disqualification;
 
 use crate::batch::score_all;
 use crate::convert::{parsed, to_python};
@@ -191,7 +191,7 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(champion: &snakes_and_stairs::evolve::Champion) -> Self {
+    fn of(champion: &snakes_core::evolve::Champion) -> Self {
         let mut rollout = Rollout::new(&champion.genome, &champion.trial);
         let body = rollout.body();
         let mut motion = Self { limbs: body.limbs(), joints: body.joints.len(), ..Self::default() };

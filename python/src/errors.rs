@@ -3,9 +3,9 @@
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
-use snakes_and_stairs::check::Invalid;
-use snakes_and_stairs::run::WorkersError;
-use snakes_and_stairs::save::SaveError;
+use snakes_core::check::Invalid;
+use snakes_lab::run::WorkersError;
+use snakes_core::save::SaveError;
 
 /// A value that is not allowed.
 pub fn invalid(error: Invalid) -> PyErr {

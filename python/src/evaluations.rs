@@ -4,11 +4,11 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::learn::Episode;
-use snakes_and_stairs::save::RecordedV5;
-use snakes_and_stairs::score::{Behaviour, Evaluation, Scored};
-use snakes_and_stairs::world::{Disqualification, Effort, Stairs};
+use snakes_core::genome::Genome;
+use snakes_core::learn::Episode;
+use snakes_core::save::RecordedV5;
+use snakes_core::score::{Behaviour, Evaluation, Scored};
+use snakes_core::world::{Disqualification, Effort, Stairs};
 
 use crate::errors::{crashed, invalid};
 

@@ -28,6 +28,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(champion::replay, module)?)?;
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
     module.add_function(wrap_pyfunction!(evaluations::unpacked_evaluations, module)?)?;
-    module.add("ENGINE_VERSION", snakes_and_stairs::ENGINE_VERSION)?;
+    module.add("ENGINE_VERSION", snakes_core::ENGINE_VERSION)?;
     Ok(())
 }

@@ -6,11 +6,11 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use snakes_and_stairs::evolve::{self, Origin, Settings, fields, with_fields};
-use snakes_and_stairs::genome::{ControllerKind, Genome};
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::save::{load_preset, shipped_presets};
-use snakes_and_stairs::schema;
+use snakes_core::evolve::{self, Origin, Settings, fields, with_fields};
+use snakes_core::genome::{ControllerKind, Genome};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{load_preset, shipped_presets};
+use snakes_core::schema;
 
 use crate::batch::{score_all, threads_of};
 use crate::champion::{Champion, evaluated};

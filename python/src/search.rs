@@ -7,11 +7,11 @@ use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use snakes_and_stairs::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
-use snakes_and_stairs::genome::{Genome, Segment};
-use snakes_and_stairs::run::caught;
-use snakes_and_stairs::score::{Evaluation, FITNESS_RANGE, Scored};
-use snakes_and_stairs::world::Disqualification;
+use snakes_core::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
+use snakes_core::genome::{Genome, Segment};
+use snakes_lab::run::caught;
+use snakes_core::score::{Evaluation, FITNESS_RANGE, Scored};
+use snakes_core::world::Disqualification;
 
 use crate::batch::{score_all, threads_of};
 use crate::champion::{Champion, evaluated};

@@ -1,12 +1,12 @@
 //! One world of an environment: a rollout whose torques come from outside, and the snake's senses.
 
 use pyo3::prelude::*;
-use snakes_and_stairs::control::{ExternalControl, Perception, SenseInfo, SenseKind};
-use snakes_and_stairs::genome::{ControllerKind, Genome, GenomeSpace};
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::caught;
-use snakes_and_stairs::score::{Evaluation, Perturbation, PerturbationRange, Rollout, Trial};
-use snakes_and_stairs::world::{BodyPlan, Disqualification, JointTorque};
+use snakes_core::control::{ExternalControl, Perception, SenseInfo, SenseKind};
+use snakes_core::genome::{ControllerKind, Genome, GenomeSpace};
+use snakes_core::rng::{Purpose, stream};
+use snakes_lab::run::caught;
+use snakes_core::score::{Evaluation, Perturbation, PerturbationRange, Rollout, Trial};
+use snakes_core::world::{BodyPlan, Disqualification, JointTorque};
 
 use crate::errors::{crashed, invalid};
 

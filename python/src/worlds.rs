@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use snakes_and_stairs::genome::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
-use snakes_and_stairs::schema;
-use snakes_and_stairs::score::{Evaluation, PerturbationRange};
+use snakes_core::genome::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
+use snakes_core::schema;
+use snakes_core::score::{Evaluation, PerturbationRange};
 
 use crate::batch::threads_of;
 use crate::convert::{changes_in, whole};

@@ -9,10 +9,10 @@ use indicatif::ProgressBar;
 use super::args::Args;
 use super::error::CliError;
 use super::output::print;
-use crate::evolve::Champion;
-use crate::run::bench::{BenchReport, Workload, bench};
-use crate::run::headless::HeadlessError;
-use crate::save::load_champion;
+use snakes_core::evolve::Champion;
+use snakes_core::save::load_champion;
+use snakes_lab::run::bench::{BenchReport, Workload, bench};
+use snakes_lab::run::headless::HeadlessError;
 
 /// Enough for some twenty rounds of every variant.
 const BENCH_DURATION: Duration = Duration::from_secs(6);

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::error::CliError;
 use super::output::print;
-use crate::genome::joint_tree;
-use crate::save::load_champion;
-use crate::world::BodyPlan;
+use snakes_core::genome::joint_tree;
+use snakes_core::save::load_champion;
+use snakes_core::world::BodyPlan;
 
 /// Prints the blocks and joints of a champion, from the head.
 pub fn body(file: &Path, json: bool) -> Result<(), CliError> {
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_body_is_a_line_of_sums_and_a_line_for_each_block() {
-        let champion = crate::save::shipped_champion().expect("well formed").champion;
+        let champion = snakes_core::save::shipped_champion().expect("well formed").champion;
         let text = table(&champion.body(), false, None);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 3 + 5, "{text}");

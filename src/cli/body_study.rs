@@ -3,8 +3,8 @@
 use super::args::{Args, BodyStudyArgs};
 use super::error::CliError;
 use super::study::{FIRST_SEED, Study, published_settings};
-use crate::run::body_study::{Arm, claims, study_records};
-use crate::run::creature_study::{CreatureArm, creature_claims, creature_records};
+use snakes_lab::run::body_study::{Arm, claims, study_records};
+use snakes_lab::run::creature_study::{CreatureArm, creature_claims, creature_records};
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn body_study(args: &Args, wanted: &BodyStudyArgs) -> Result<(), CliError> {

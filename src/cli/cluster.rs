@@ -10,12 +10,12 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::args::Args;
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, print};
-use crate::cluster::{
+use snakes_cluster::{
     Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, Simulator,
     WorkerOptions, host_name, machines, proof, purge, unique_name, work,
 };
-use crate::run::Evaluator;
-use crate::run::headless::say;
+use snakes_lab::run::Evaluator;
+use snakes_lab::run::headless::say;
 
 fn server(args: &Args) -> BrokerOptions {
     let url = args.nats.clone().unwrap_or_default();

@@ -8,18 +8,18 @@ use super::args::{Args, CompareArgs};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
-use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, Settings, StrategyKind};
-use crate::genome::ControllerKind;
-use crate::plot;
-use crate::run::compare::{PlannedRun, run_all};
-use crate::run::headless::say;
-use crate::run::progress_bar::bar_of;
-use crate::save::{
+use snakes_core::check::{Invalid, within};
+use snakes_core::evolve::{RunPlan, Settings, StrategyKind};
+use snakes_core::genome::ControllerKind;
+use snakes_core::save::{
     Comparison, MAX_COMPARED_RUNS, load_comparison, run_name, settings_fingerprint,
     store_comparison, store_csv, store_picture,
 };
-use crate::schema::Choices;
+use snakes_core::schema::Choices;
+use snakes_lab::plot;
+use snakes_lab::run::compare::{ComparisonTables, PlannedRun, run_all};
+use snakes_lab::run::headless::say;
+use snakes_lab::run::progress_bar::bar_of;
 
 /// The kinds that a flag's list names, in their usual order and each once.
 pub(super) fn kinds<K: Choices + PartialEq>(flag: &str, text: &str) -> Result<Vec<K>, Invalid> {
@@ -123,7 +123,7 @@ pub fn compare(args: &Args, compared: &CompareArgs) -> Result<(), CliError> {
             let allowed =
                 format!("{}, the fingerprint of the preset's settings", comparison.settings);
             let source = Invalid::new("settings", earlier.settings, allowed);
-            return Err(crate::save::SaveError::Invalid { path: ron, source }.into());
+            return Err(snakes_core::save::SaveError::Invalid { path: ron, source }.into());
         }
         comparison = earlier;
     }
@@ -199,7 +199,7 @@ fn show(args: &Args, comparison: &Comparison, files: [PathBuf; 3]) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_fields;
+    use snakes_core::evolve::with_fields;
 
     #[test]
     fn a_list_of_names_is_read_and_an_unknown_one_refused() {

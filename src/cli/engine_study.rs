@@ -5,14 +5,14 @@ use super::error::CliError;
 use super::evaluators::evaluator;
 use super::output::cancel_on_interrupt;
 use super::study::{Study, published_settings};
-use crate::check::within;
-use crate::run::Cancelled;
-use crate::run::engine_study::{
+use snakes_core::check::within;
+use snakes_core::save::library::shipped_champions;
+use snakes_core::world::PhysicsEngine;
+use snakes_lab::run::Cancelled;
+use snakes_lab::run::engine_study::{
     EngineFindings, engine_claims, engine_records, kept_in_other, newborn_statistics,
 };
-use crate::run::headless::{HeadlessError, say};
-use crate::save::library::shipped_champions;
-use crate::world::PhysicsEngine;
+use snakes_lab::run::headless::{HeadlessError, say};
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
 const FIRST_SEED: u64 = 201;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use crate::check::Invalid;
-use crate::export::ExportError;
-use crate::run::headless::HeadlessError;
-use crate::run::mujoco::MujocoError;
-use crate::run::verify::VerifyError;
-use crate::save::SaveError;
+use snakes_core::check::Invalid;
+use snakes_core::save::SaveError;
+use snakes_lab::export::ExportError;
+use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::run::mujoco::MujocoError;
+use snakes_lab::run::verify::VerifyError;
 
 /// An error of the command line, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -32,7 +32,7 @@ pub enum CliError {
     /// The workers on other machines could not be used.
     #[cfg(feature = "cluster")]
     #[error(transparent)]
-    Cluster(crate::cluster::ClusterError),
+    Cluster(snakes_cluster::ClusterError),
     /// This build knows no other machines.
     #[cfg(not(feature = "cluster"))]
     #[error(
@@ -70,7 +70,7 @@ pub enum CliError {
     Film(crate::studio::film::FilmError),
     /// A plot could not be drawn.
     #[error(transparent)]
-    Plot(#[from] crate::plot::PlotError),
+    Plot(#[from] snakes_lab::plot::PlotError),
     /// The studio could not start, or ended with an error.
     #[cfg(feature = "studio")]
     #[error(transparent)]
@@ -131,10 +131,10 @@ impl From<crate::studio::film::FilmError> for CliError {
 }
 
 #[cfg(feature = "cluster")]
-impl From<crate::cluster::ClusterError> for CliError {
-    fn from(error: crate::cluster::ClusterError) -> Self {
+impl From<snakes_cluster::ClusterError> for CliError {
+    fn from(error: snakes_cluster::ClusterError) -> Self {
         match error {
-            crate::cluster::ClusterError::Invalid(invalid) => invalid.into(),
+            snakes_cluster::ClusterError::Invalid(invalid) => invalid.into(),
             other => Self::Cluster(other),
         }
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::args::Args;
 use super::error::CliError;
-use crate::run::Evaluator;
+use snakes_lab::run::Evaluator;
 
 /// The evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
 /// results: the same command in the same place finds what is left of it there.

@@ -10,20 +10,22 @@ use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
-use crate::check::Invalid;
-use crate::export::mjcf;
-use crate::genome::StairsClass;
-use crate::run::exam::{exam_trials, examine};
-use crate::run::headless::HeadlessError;
-use crate::run::markdown::markdown_table;
-use crate::run::mujoco::{CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials};
-use crate::run::progress_bar::with_bar;
-use crate::run::robust::Share;
-use crate::run::{Evaluator, RunControl, short};
-use crate::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
-use crate::schema::Choices;
-use crate::score::{ExamSuite, SuiteResult};
-use crate::world::WorldPlan;
+use snakes_core::check::Invalid;
+use snakes_core::genome::StairsClass;
+use snakes_core::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
+use snakes_core::schema::Choices;
+use snakes_core::score::{ExamSuite, SuiteResult};
+use snakes_core::world::WorldPlan;
+use snakes_lab::export::mjcf;
+use snakes_lab::run::exam::{exam_trials, examine};
+use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::run::markdown::markdown_table;
+use snakes_lab::run::mujoco::{
+    CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials,
+};
+use snakes_lab::run::progress_bar::with_bar;
+use snakes_lab::run::robust::Share;
+use snakes_lab::run::{Evaluator, RunControl, short};
 
 /// Examines champions and prints the results; if `writes`, also into their files.
 pub fn exam(

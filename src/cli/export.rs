@@ -14,10 +14,10 @@ use super::error::CliError;
 use super::film;
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
-use crate::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
-use crate::run::headless::{HeadlessError, say};
-use crate::run::progress_bar::bar_of;
-use crate::run::{BackgroundTask, RunControl};
+use snakes_lab::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
+use snakes_lab::run::headless::{HeadlessError, say};
+use snakes_lab::run::progress_bar::bar_of;
+use snakes_lab::run::{BackgroundTask, RunControl};
 
 /// Positions of the progress bar.
 const PER_MILLE: f64 = 1000.0;

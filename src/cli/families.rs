@@ -11,22 +11,22 @@ use super::error::{CliError, of_size_flag};
 use super::evaluators::{evaluator, trusted};
 use super::exam::chosen;
 use super::output::{cancel_on_interrupt, print};
-use crate::check::{Invalid, within};
-use crate::plot;
-use crate::run::exam::{exam_trials, examine};
-use crate::run::families::{
-    DEFAULT_SUITES, ExaminedChampion, Family, FamilyResults, FinishedRun, PlannedFamilyRun,
-    Results, exam_records, missing, seeds_to_examine, tables, train,
-};
-use crate::run::headless::{HeadlessError, say};
-use crate::run::progress_bar::{bar_of, with_bar};
-use crate::run::{Evaluator, RunControl, with_short_numbers};
-use crate::save::{
+use snakes_core::check::{Invalid, within};
+use snakes_core::save::{
     FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, SaveError, SavesFolder, load_champion, load_families,
     load_preset, store_champion, store_csv, store_exam, store_families, store_picture,
 };
-use crate::schema::Choices;
-use crate::score::ExamSuite;
+use snakes_core::schema::Choices;
+use snakes_core::score::ExamSuite;
+use snakes_lab::plot;
+use snakes_lab::run::exam::{exam_trials, examine};
+use snakes_lab::run::families::{
+    DEFAULT_SUITES, ExaminedChampion, Family, FamilyResults, FinishedRun, PlannedFamilyRun,
+    Results, exam_records, missing, seeds_to_examine, tables, train,
+};
+use snakes_lab::run::headless::{HeadlessError, say};
+use snakes_lab::run::progress_bar::{bar_of, with_bar};
+use snakes_lab::run::{Evaluator, RunControl, with_short_numbers};
 
 /// Seed of the first run unless one is given: no setting was chosen by it or by those after it.
 const FIRST_SEED: u64 = 201;

@@ -7,10 +7,10 @@ use indicatif::ProgressBar;
 use super::args::Args;
 use super::error::CliError;
 use super::output::print;
-use crate::evolve::Champion;
-use crate::plot;
-use crate::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
 use crate::studio::figures;
+use snakes_core::evolve::Champion;
+use snakes_core::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
+use snakes_lab::plot;
 
 /// Size of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);

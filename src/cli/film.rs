@@ -6,11 +6,11 @@ use std::str::FromStr;
 use super::args::{Args, ExportArgs, FilmArgs, size};
 use super::error::{CliError, of_flag};
 use super::replay::{equals_record, named_champions};
-use crate::check::{Invalid, within};
-use crate::export::{ExportFormat, ExportProgress};
-use crate::save::{LoadedChampion, load_run};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
 use crate::studio::{CameraMode, Overlay};
+use snakes_core::check::{Invalid, within};
+use snakes_core::save::{LoadedChampion, load_run};
+use snakes_lab::export::{ExportFormat, ExportProgress};
 
 /// The largest frames that common graphics drivers draw and players show.
 const LARGEST_PIXELS: u32 = 4096;

@@ -3,10 +3,10 @@
 use super::args::Args;
 use super::error::CliError;
 use super::output::print;
-use crate::evolve::fields;
-use crate::run::with_short_numbers;
-use crate::save::shipped_presets;
-use crate::schema::markdown;
+use snakes_core::evolve::fields;
+use snakes_core::save::shipped_presets;
+use snakes_core::schema::markdown;
+use snakes_lab::run::with_short_numbers;
 
 /// Prints the presets that come with the program.
 pub fn print_presets(json: bool) -> Result<(), CliError> {

@@ -3,7 +3,7 @@
 use super::args::{self, Args};
 use super::error::CliError;
 use super::output::print;
-use crate::save::{SavesFolder, store_text};
+use snakes_core::save::{SavesFolder, store_text};
 
 /// Prints the program's manual page, or writes those of all commands into a folder.
 pub fn manual(args: &Args) -> Result<(), CliError> {

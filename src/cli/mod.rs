@@ -41,8 +41,8 @@ use args::{Args, Subcommand};
 pub use error::CliError;
 use output::{cancel_on_interrupt, print};
 
-use crate::run::headless::{self, say};
-use crate::save::run_name;
+use snakes_core::save::run_name;
+use snakes_lab::run::headless::{self, say};
 
 /// Runs the program with the given arguments, the program's name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
@@ -146,7 +146,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         _ => &[],
     };
     let replay::Opened { champions, problems } = replay::opened(files, args.desktop)?;
-    let comparison = args.comparison.as_deref().map(crate::save::load_comparison).transpose();
+    let comparison = args.comparison.as_deref().map(snakes_core::save::load_comparison).transpose();
     let (run, saves) = (args.run_source()?, args.saves_folder());
     // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
     let names_run = args.names_run();

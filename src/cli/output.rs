@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::CliError;
-use crate::run::RunControl;
-use crate::run::headless::HeadlessError;
+use snakes_lab::run::RunControl;
+use snakes_lab::run::headless::HeadlessError;
 
 /// Writes to standard output. A reader that stops early (`snakes presets | head -1`) is no error.
 pub fn print(text: &str) -> Result<(), CliError> {

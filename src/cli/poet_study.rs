@@ -7,18 +7,18 @@ use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::study::published_settings;
-use crate::check::Invalid;
-use crate::evolve::RunPlan;
-use crate::run::headless::{HeadlessError, say};
-use crate::run::poet_study::{
-    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
-};
-use crate::run::progress_bar::bar_of;
-use crate::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
-use crate::save::{
+use snakes_core::check::Invalid;
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::{
     ExistingRun, PoetStudy, SaveError, load_poet_study, settings_fingerprint, store_csv,
     store_poet_study,
 };
+use snakes_lab::run::headless::{HeadlessError, say};
+use snakes_lab::run::poet_study::{
+    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
+};
+use snakes_lab::run::progress_bar::bar_of;
+use snakes_lab::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
 
 /// Seed of the run unless one is given: no setting was chosen by it or by those of the direct searches after it.
 const FIRST_SEED: u64 = 401;

@@ -6,11 +6,11 @@ use super::args::{Args, RenderArgs, size};
 use super::error::{CliError, of_flag};
 use super::output::print;
 use super::replay::{equals_record, named_champions};
-use crate::check::{Invalid, within};
-use crate::plot;
-use crate::save::{LoadedChampion, store_picture};
 use crate::studio::render::{RenderedScene, render};
 use crate::studio::{CameraMode, MAX_LANES, Overlay};
+use snakes_core::check::{Invalid, within};
+use snakes_core::save::{LoadedChampion, store_picture};
+use snakes_lab::plot;
 
 /// The largest picture that every common graphics driver can draw.
 const LARGEST_PIXELS: u32 = 8192;

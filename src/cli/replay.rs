@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::error::CliError;
 use super::output::print;
-use crate::run;
-use crate::run::headless::say;
-use crate::save::LoadedChampion;
+use snakes_core::save::LoadedChampion;
 #[cfg(feature = "studio")]
-use crate::save::load_champion;
+use snakes_core::save::load_champion;
+use snakes_lab::run;
+use snakes_lab::run::headless::say;
 
 /// Replays all files; the first that fails is the error.
 pub fn replay(files: &[PathBuf], json: bool) -> Result<(), CliError> {

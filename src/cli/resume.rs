@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::error::CliError;
 use super::output::print;
-use crate::run::RunSource;
-use crate::save::{RunSummary, SavesFolder};
+use snakes_core::save::{RunSummary, SavesFolder};
+use snakes_lab::run::RunSource;
 
 /// The run to resume in `folder`: its own, or that of the only run's folder in it. Several runs are listed, one per
 /// line.
@@ -44,9 +44,9 @@ fn line(run: &RunSummary, json: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::save::ExistingRun;
-    use crate::save::library::{SavePlace, rename};
+    use snakes_core::evolve::{RunPlan, Settings};
+    use snakes_core::save::ExistingRun;
+    use snakes_core::save::library::{SavePlace, rename};
     use std::path::PathBuf;
 
     /// Adds a run without finished generations, and returns its folder.

@@ -9,13 +9,13 @@ use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
-use crate::check::{Invalid, within};
-use crate::run::headless::HeadlessError;
-use crate::run::progress_bar::with_bar;
-use crate::run::robust::{Robustness, Share, robustness};
-use crate::save::load_champion;
-use crate::schema;
-use crate::score::PerturbationRange;
+use snakes_core::check::{Invalid, within};
+use snakes_core::save::load_champion;
+use snakes_core::schema;
+use snakes_core::score::PerturbationRange;
+use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::run::progress_bar::with_bar;
+use snakes_lab::run::robust::{Robustness, Share, robustness};
 
 /// Runs a champion through perturbed trials and prints the shares.
 pub fn robust(

@@ -3,7 +3,7 @@
 use super::args::{Args, StairsStudyArgs};
 use super::error::CliError;
 use super::study::{FIRST_SEED, Study, published_settings};
-use crate::run::stairs_study::{StairsArm, stairs_claims, stairs_records};
+use snakes_lab::run::stairs_study::{StairsArm, stairs_claims, stairs_records};
 
 /// Makes the runs that the study's file does not have yet, and prints the results.
 pub fn stairs_study(args: &Args, wanted: &StairsStudyArgs) -> Result<(), CliError> {

@@ -7,16 +7,16 @@ use super::compare::seeds_from;
 use super::error::{CliError, of_size_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
-use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, Settings};
-use crate::run::headless::say;
-use crate::run::progress_bar::bar_of;
-use crate::run::study::{PlannedArm, StudyArm, train_arms};
-use crate::save::{
+use snakes_core::check::{Invalid, within};
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::save::{
     MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_preset, load_study,
     settings_fingerprint, store_csv, store_study,
 };
-use crate::world::PhysicsEngine;
+use snakes_core::world::PhysicsEngine;
+use snakes_lab::run::headless::say;
+use snakes_lab::run::progress_bar::bar_of;
+use snakes_lab::run::study::{PlannedArm, StudyArm, train_arms};
 
 /// The settings of a preset, with the engine of the runs that are published.
 ///

@@ -4,15 +4,15 @@ use super::args::Args;
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
-use crate::check::{Invalid, within};
-use crate::evolve::{RunPlan, Settings};
-use crate::plot;
-use crate::run::Cancelled;
-use crate::run::headless::{HeadlessError, say};
-use crate::run::progress_bar::run_generation_with_bar;
-use crate::run::table1::{SeedResult, Table1, run_seed};
-use crate::save::{run_name, store_csv, store_picture};
-use crate::score::Fitness;
+use snakes_core::check::{Invalid, within};
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::save::{run_name, store_csv, store_picture};
+use snakes_core::score::Fitness;
+use snakes_lab::plot;
+use snakes_lab::run::Cancelled;
+use snakes_lab::run::headless::{HeadlessError, say};
+use snakes_lab::run::progress_bar::run_generation_with_bar;
+use snakes_lab::run::table1::{SeedResult, Table1, run_seed};
 
 /// Runs the protocol with `count` seeds from `first_seed` on; prints both tables, and writes CSV and PNG.
 pub fn table1(args: &Args, first_seed: u64, count: u64) -> Result<(), CliError> {

@@ -5,8 +5,8 @@ use indicatif::ProgressBar;
 use super::args::Args;
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, print};
-use crate::engine::{ENGINE_VERSION, Engine, Processors};
-use crate::run::verify::Trajectories;
+use snakes_core::{ENGINE_VERSION, Engine, Processors};
+use snakes_lab::run::verify::Trajectories;
 
 /// Computes the golden trajectories and compares them with the reference.
 pub fn verify(args: &Args) -> Result<(), CliError> {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::save::SaveError;
+use snakes_core::save::SaveError;
 
 /// Reason why the studio could not open or ended with an error.
 #[derive(Debug, thiserror::Error)]

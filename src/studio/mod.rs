@@ -3,8 +3,8 @@
 //! Each concern is one file with one `plugin` function. The folders are ordered, and each uses only those before it:
 //! `commands < ui < stage < state < {workspace, failure, scene} < {pictures, panels} < app`, with [`schedule`] and
 //! [`error`] beside `commands`; `tests/it/architecture.rs` checks it. The studio has no physics of its own: a lane
-//! advances the same [`crate::score::Rollout`] that scores to the time of the shared clock. Evolution runs on its own
-//! threads ([`crate::run::BackgroundRun`]). Panels and keys send a [`commands::Command`]; one system applies them.
+//! advances the same [`snakes_core::score::Rollout`] that scores to the time of the shared clock. Evolution runs on its own
+//! threads ([`snakes_lab::run::BackgroundRun`]). Panels and keys send a [`commands::Command`]; one system applies them.
 //!
 //! [`FrameSet`] orders the systems within a frame.
 
@@ -28,7 +28,7 @@ use bevy::prelude::*;
 use bevy::window::{PresentMode, WindowResolution};
 use bevy::winit::WinitSettings;
 
-use crate::save::shipped_champion;
+use snakes_core::save::shipped_champion;
 
 use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;

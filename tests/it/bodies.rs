@@ -3,12 +3,12 @@
 //!     cargo test --release --no-default-features --test it bodies:: -- --ignored --nocapture
 
 use rayon::prelude::*;
-use snakes_and_stairs::evolve::{Settings, with_fields};
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::save::load_preset;
-use snakes_and_stairs::score::{Evaluation, Rollout, evaluate};
-use snakes_and_stairs::world::Disqualification;
+use snakes_core::evolve::{Settings, with_fields};
+use snakes_core::genome::Genome;
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::load_preset;
+use snakes_core::score::{Evaluation, Rollout, evaluate};
+use snakes_core::world::Disqualification;
 
 /// Seed of the random bodies. No setting was chosen on them.
 const SEED: u64 = 101;

@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use snakes_and_stairs::save::{LoadedChampion, load_champion};
-use snakes_and_stairs::score::evaluate;
+use snakes_core::save::{LoadedChampion, load_champion};
+use snakes_core::score::evaluate;
 
 /// A climber in the setting of the report; it climbs three steps.
 const REPORT: &str = "first-climber.ron";

@@ -4,9 +4,9 @@
 //! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in
 //! all of these builds.
 
-use snakes_and_stairs::Processors;
-use snakes_and_stairs::run::verify::Trajectories;
-use snakes_and_stairs::run::{LocalPool, RunControl};
+use snakes_core::Processors;
+use snakes_lab::run::verify::Trajectories;
+use snakes_lab::run::{LocalPool, RunControl};
 
 use super::program::{folder, json_lines, stdout_of};
 

@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::FileFailurePersistence;
-use snakes_and_stairs::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
-use snakes_and_stairs::genome::{
+use snakes_core::evolve::{RunPlan, Settings, StrategyKind, resume, with_field};
+use snakes_core::genome::{
     BodyChange, ControllerKind, CreatureChange, GenomeSpace, MOST_PARTS, MOST_SEGMENTS,
 };
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::save::{
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{
     fingerprint, parse_champion, parse_changes, parse_checkpoint, parse_evaluations, parse_lineage,
     parse_plan, parse_preset, parse_records, parse_stairs,
 };
-use snakes_and_stairs::score::Fitness;
+use snakes_core::score::Fitness;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// A change to a file's bytes.
@@ -341,7 +341,7 @@ fn every_value_of_a_setting_is_accepted_or_gives_one_line() {
 #[cfg(feature = "cluster")]
 #[test]
 fn every_message_between_machines_is_read_or_gives_one_line() {
-    use snakes_and_stairs::cluster::kinds_of_message;
+    use snakes_cluster::kinds_of_message;
     for file in corpus("wire") {
         assert!(kinds_of_message(&fs::read(&file).expect("read")).is_ok(), "{}", file.display());
     }

@@ -1,8 +1,8 @@
 //! The program without a window, run as a child process.
 
 use serde_json::json;
-use snakes_and_stairs::evolve::StrategyKind;
-use snakes_and_stairs::save::load_preset;
+use snakes_core::evolve::StrategyKind;
+use snakes_core::save::load_preset;
 
 use super::program::{folder, json_lines, run, stdout_of, with_slashes};
 

@@ -12,10 +12,10 @@ use std::time::Duration;
 
 use rand::RngExt;
 use serde_json::{Value, json};
-use snakes_and_stairs::evolve::{RunPlan, Settings};
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::{LocalPool, RecordedRun, RunControl, RunSource};
-use snakes_and_stairs::save::{ExistingRun, SavesFolder};
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{ExistingRun, SavesFolder};
+use snakes_lab::run::{LocalPool, RecordedRun, RunControl, RunSource};
 
 use super::program::{folder, json_lines, run, snakes, with_slashes};
 
@@ -214,7 +214,7 @@ fn evolve_changing(run: &mut RecordedRun, last: u32) {
 fn a_changed_run_killed_at_any_instant_repeats_its_changes() {
     let saves = folder();
     let mut settings: Settings =
-        snakes_and_stairs::save::load_preset("report").expect("shipped").settings;
+        snakes_core::save::load_preset("report").expect("shipped").settings;
     settings.evolution.population = 4;
     settings.evolution.generations = 40;
     settings.trial.duration_s = 0.2;
@@ -295,7 +295,7 @@ fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
     let saves = folder();
     let arguments = "--no-render --preset report --population 4 --generations 2 --duration 0.2 --out out --seed 3";
     let mut settings: Settings =
-        snakes_and_stairs::save::load_preset("report").expect("shipped").settings;
+        snakes_core::save::load_preset("report").expect("shipped").settings;
     settings.evolution.population = 4;
     settings.evolution.generations = 2;
     settings.trial.duration_s = 0.2;

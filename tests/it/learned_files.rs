@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use snakes_and_stairs::save::parse_champion;
+use snakes_core::save::parse_champion;
 
 /// The champion of the corpus that has this name.
 fn champion(name: &str) -> String {

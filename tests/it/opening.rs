@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use snakes_and_stairs::save::load_champion;
-use snakes_and_stairs::score::Rollout;
+use snakes_core::save::load_champion;
+use snakes_core::score::Rollout;
 
 /// How often each file is opened; the median counts.
 const OPENINGS: usize = 20;

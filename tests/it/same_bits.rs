@@ -16,7 +16,7 @@ use std::sync::Mutex;
 use std::thread;
 
 use serde_json::Value;
-use snakes_and_stairs::run::verify::Trajectories;
+use snakes_lab::run::verify::Trajectories;
 
 /// The platform of 64-bit ARM, and what builds and runs its programs here.
 const ARM: &str = "aarch64-unknown-linux-gnu";

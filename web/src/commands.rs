@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use snakes_and_stairs::ENGINE_VERSION;
-use snakes_and_stairs::save::parse_champion;
+use snakes_core::ENGINE_VERSION;
+use snakes_core::save::parse_champion;
 
 use crate::evolution::Evolution;
 use crate::replay::Replay;
@@ -97,7 +97,7 @@ impl Page {
     }
 }
 
-fn champion_of(text: &str) -> Result<snakes_and_stairs::evolve::Champion, String> {
+fn champion_of(text: &str) -> Result<snakes_core::evolve::Champion, String> {
     let loaded = parse_champion(Path::new("champion.ron"), text);
     Ok(loaded.map_err(|error| error.to_string())?.champion)
 }

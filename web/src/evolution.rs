@@ -1,12 +1,12 @@
 //! Evolution from a champion on, one evaluation at a time, so that a page can show its progress and stop it.
 
 use serde_json::{Value, json};
-use snakes_and_stairs::evolve::{
+use snakes_core::evolve::{
     Champion, Founder, Origin, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
 };
-use snakes_and_stairs::genome::{Genome, GenomeSpace};
-use snakes_and_stairs::save::champion_text;
-use snakes_and_stairs::score::{Evaluation, Scored, score};
+use snakes_core::genome::{Genome, GenomeSpace};
+use snakes_core::save::champion_text;
+use snakes_core::score::{Evaluation, Scored, score};
 
 use crate::replay::trial_with;
 

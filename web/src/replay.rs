@@ -1,9 +1,9 @@
 //! The simulation of a champion in the page.
 
 use serde_json::{Value, json};
-use snakes_and_stairs::evolve::Champion;
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::score::{Rollout, Trial};
+use snakes_core::evolve::Champion;
+use snakes_core::genome::Genome;
+use snakes_core::score::{Rollout, Trial};
 
 /// A champion that is simulated.
 pub struct Replay {

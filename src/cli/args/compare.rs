@@ -1,8 +1,8 @@
 //! The flags of `snakes compare`.
 
-use crate::evolve::StrategyKind;
-use crate::genome::ControllerKind;
-use crate::schema::Choices;
+use snakes_core::evolve::StrategyKind;
+use snakes_core::genome::ControllerKind;
+use snakes_core::schema::Choices;
 
 /// The flags of `snakes compare`.
 #[derive(Debug, clap::Args)]

@@ -6,10 +6,10 @@ use clap_complete::Shell;
 
 use super::applicability;
 use super::flags::Args;
-use crate::run::mujoco::MUJOCO;
-use crate::save::{THEMES, built_in_stairs_names, shipped_preset_names};
-use crate::schema::Choices;
-use crate::score::{ExamSuite, Fitness};
+use snakes_core::save::{THEMES, built_in_stairs_names, shipped_preset_names};
+use snakes_core::schema::Choices;
+use snakes_core::score::{ExamSuite, Fitness};
+use snakes_lab::run::mujoco::MUJOCO;
 
 /// The completions of the program for a shell: its subcommands, the flags that have an effect in each, and the names that they
 /// take. The path of an own preset is not completed by all shells, because `--preset` offers names.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::film::FilmArgs;
-use crate::export::ExportFormat;
+use snakes_lab::export::ExportFormat;
 
 /// The flags of `snakes export`.
 #[derive(Debug, clap::Args)]

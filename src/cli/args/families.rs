@@ -1,8 +1,8 @@
 //! The flags of `snakes families`.
 
 use super::flags::suite_help;
-use crate::run::families::{DEFAULT_SUITES, Family};
-use crate::schema::Choices;
+use snakes_core::schema::Choices;
+use snakes_lab::run::families::{DEFAULT_SUITES, Family};
 
 /// The flags of `snakes families`.
 #[derive(Debug, clap::Args)]

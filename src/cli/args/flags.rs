@@ -14,11 +14,11 @@ use super::poet_study::PoetStudyArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
 use super::stairs_study::StairsStudyArgs;
-use crate::run::evaluators::EVALUATORS;
-use crate::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
-use crate::save::built_in_stairs_names;
-use crate::schema::Choices;
-use crate::score::{ExamSuite, Fitness};
+use snakes_core::save::built_in_stairs_names;
+use snakes_core::schema::Choices;
+use snakes_core::score::{ExamSuite, Fitness};
+use snakes_lab::run::evaluators::EVALUATORS;
+use snakes_lab::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 
 /// A five-block snake evolves until it climbs a staircase.
 ///

@@ -8,7 +8,7 @@ use clap::{CommandFactory, FromArgMatches};
 use super::applicability;
 use super::flags::Args;
 use crate::cli::error::CliError;
-use crate::evolve::{Settings, fields};
+use snakes_core::evolve::{Settings, fields};
 
 /// The result of parsing.
 pub enum Parsed {

@@ -1,6 +1,6 @@
 //! The flags of `snakes robust`.
 
-use crate::score::PerturbationRange;
+use snakes_core::score::PerturbationRange;
 
 /// How much the conditions of trials vary.
 #[derive(Debug, clap::Args)]

@@ -4,17 +4,17 @@ use std::path::Path;
 
 use super::flags::{Args, Subcommand};
 use super::values::number;
-use crate::check::Invalid;
 use crate::cli::error::{CliError, of_flag};
 use crate::cli::resume::run_in;
-use crate::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
-use crate::run::RunSource;
-use crate::save::{
+use snakes_core::check::Invalid;
+use snakes_core::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
+use snakes_core::save::{
     DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs,
     shipped_presets,
 };
-use crate::schema::Choices;
-use crate::score::Fitness;
+use snakes_core::schema::Choices;
+use snakes_core::score::Fitness;
+use snakes_lab::run::RunSource;
 
 const WHOLE: &str = "a whole number from 0 up";
 

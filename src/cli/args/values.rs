@@ -4,17 +4,17 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use super::flags::Args;
-use crate::check::{Invalid, within};
 use crate::cli::error::CliError;
 #[cfg(feature = "studio")]
 use crate::cli::error::of_flag;
-use crate::run::evaluators::EVALUATORS;
-use crate::run::headless::HeadlessError;
-use crate::run::{Evaluator, THREADS_RANGE, available_cores};
-#[cfg(feature = "studio")]
-use crate::save::PreferencesFile;
 #[cfg(feature = "studio")]
 use crate::studio::Theme;
+use snakes_core::check::{Invalid, within};
+#[cfg(feature = "studio")]
+use snakes_core::save::PreferencesFile;
+use snakes_lab::run::evaluators::EVALUATORS;
+use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
 /// Reads a number; `allowed` is what the error calls one.
 pub(super) fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {

@@ -4,7 +4,6 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 
-use crate::save::{Preferences, PreferencesFile};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::overlays::Overlays;
@@ -15,6 +14,7 @@ use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use crate::studio::workspace::Workspace;
 use crate::studio::workspace::layout::Layout;
+use snakes_core::save::{Preferences, PreferencesFile};
 
 /// The stored preferences and their file.
 #[derive(Resource, Debug, Clone)]

@@ -8,8 +8,8 @@ use bevy::prelude::*;
 use bevy_egui::egui::accesskit::{Node, NodeId, Role, Toggled};
 use bevy_egui::{EguiContext, EguiOutput, EguiPostUpdateSet, PrimaryEguiContext};
 
-use crate::save::store_text;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::store_text;
 
 /// The output file, if any.
 #[derive(Resource, Debug, Default)]

@@ -15,7 +15,7 @@ use super::{
     Command, ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand,
     WindowCommand,
 };
-use crate::export::ExportFormat;
+use snakes_lab::export::ExportFormat;
 
 /// A menu, and a group in the list of shortcuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

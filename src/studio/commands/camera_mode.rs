@@ -1,6 +1,6 @@
 //! Camera modes.
 
-use crate::check::Invalid;
+use snakes_core::check::Invalid;
 
 /// A way in which the camera looks at the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::plot::Figure;
+use snakes_lab::plot::Figure;
 
 /// A chart to export.
 #[derive(Debug, Clone, PartialEq)]

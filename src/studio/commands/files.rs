@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::export::ExportFormat;
-use crate::save::library::SavePlace;
+use snakes_core::save::library::SavePlace;
+use snakes_lab::export::ExportFormat;
 
 /// A command to the system.
 #[derive(Debug, Clone, PartialEq)]

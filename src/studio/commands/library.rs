@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::save::library::SavePlace;
+use snakes_core::save::library::SavePlace;
 
 /// A command to the library of saves.
 #[derive(Debug, Clone, PartialEq)]

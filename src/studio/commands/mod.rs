@@ -18,10 +18,10 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use crate::genome::{BodyChange, Segment};
-use crate::save::library::SavePlace;
-use crate::score::ExamSuite;
-use crate::world::modulus_at_pa;
+use snakes_core::genome::{BodyChange, Segment};
+use snakes_core::save::library::SavePlace;
+use snakes_core::score::ExamSuite;
+use snakes_core::world::modulus_at_pa;
 
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
@@ -106,7 +106,7 @@ pub(super) enum PlanCommand {
     SetPopulation(u32),
     /// Change one setting.
     SetField {
-        /// Name of the setting: see [`crate::evolve::with_field`].
+        /// Name of the setting: see [`snakes_core::evolve::with_field`].
         field: String,
         /// New value, as text.
         text: String,

@@ -1,6 +1,6 @@
 //! Overlays that can be drawn over the scene.
 
-use crate::check::Invalid;
+use snakes_core::check::Invalid;
 
 /// An overlay of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! References to individuals that the stage can show.
 
-use crate::evolve::IndividualId;
+use snakes_core::evolve::IndividualId;
 
 /// Reference to an individual that the stage can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

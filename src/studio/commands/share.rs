@@ -1,6 +1,6 @@
 //! Commands to share the champions on the stage as a file of another format.
 
-use crate::export::ExportFormat;
+use snakes_lab::export::ExportFormat;
 
 /// A command to share what is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -74,9 +74,9 @@ fn reason(info: &PanicHookInfo<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::run::{BackgroundRun, LocalPool, RunEvent, RunSource};
-    use crate::save::{ExistingRun, SavesFolder};
+    use snakes_core::evolve::{RunPlan, Settings};
+    use snakes_core::save::{ExistingRun, SavesFolder};
+    use snakes_lab::run::{BackgroundRun, LocalPool, RunEvent, RunSource};
     use std::time::Duration;
 
     #[test]

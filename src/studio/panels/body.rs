@@ -5,12 +5,12 @@ mod drawing;
 
 use bevy_egui::egui;
 
-use crate::genome::{BodyChange, Segment};
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::body_editor::EditedBody;
 use crate::studio::ui::text_rows::{cancellable_progress, explain, title, title_and};
 use crate::studio::ui::theme;
+use snakes_core::genome::{BodyChange, Segment};
 
 use budgets::budgets;
 use drawing::drawing;

@@ -9,14 +9,14 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::shown::{ShownChampion, ShownLane};
-use crate::evolve::Champion;
-use crate::run::GenerationReport;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::evolve::Champion;
+use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, LandingTime};
 use columns::{ChampionRowStyle, cells, heads, rows_width};
@@ -273,11 +273,11 @@ fn entry(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::run::{Experiment, LocalPool, RunControl};
-    use crate::save::shipped_champion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::evolve::{RunPlan, Settings};
+    use snakes_core::save::shipped_champion;
+    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     #[test]
     fn the_summary_is_updated_after_a_report_and_in_another_run() {
@@ -395,8 +395,13 @@ mod tests {
         let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
         let pool = LocalPool::new(1).expect("threads");
         let first = experiment.run_generation(&pool, &RunControl::default()).expect("done");
-        let stairs =
-            crate::save::StairsCount { rounds: 1, all: 1, active: 1, solved: 0, challenges: 0 };
+        let stairs = snakes_core::save::StairsCount {
+            rounds: 1,
+            all: 1,
+            active: 1,
+            solved: 0,
+            challenges: 0,
+        };
         let report = |generation: u32| {
             let mut report = GenerationReport { generation, stairs: Some(stairs), ..first.clone() };
             report.champion = report.champion.filter(|_| generation != 2).map(|mut champion| {

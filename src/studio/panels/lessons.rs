@@ -3,7 +3,6 @@
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
-use crate::score::{Evaluation, Fitness};
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
     Asks, FITNESS_OF_THE_LANDED, Found, LESSONS, LessonScene, LessonView, Plays, Progress,
@@ -12,6 +11,7 @@ use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range, x_title, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::score::{Evaluation, Fitness};
 
 /// Draws the list of lessons or the lesson in progress, and collects the user's commands.
 pub(super) fn lessons(

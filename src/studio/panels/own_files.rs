@@ -2,10 +2,10 @@
 
 use bevy_egui::egui;
 
-use crate::save::{KnownFiles, OwnKind};
 use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::save::{KnownFiles, OwnKind};
 
 /// A button that opens a field for a name.
 #[derive(Debug, Default)]

@@ -2,10 +2,10 @@
 
 use bevy_egui::egui::Color32;
 
-use crate::evolve::{IndividualId, Origin};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::ui::theme::Palette;
+use snakes_core::evolve::{IndividualId, Origin};
 
 /// Entry of the champion list that is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl ShownLane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn lanes_side_by_side_have_their_colours_and_ghosts_or_a_snake_alone_none() {

@@ -3,9 +3,9 @@
 use bevy_egui::egui;
 use bevy_egui::egui::{Pos2, Rect, Shape, Stroke};
 
-use crate::save::library::Thumbnail;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
+use snakes_core::save::library::Thumbnail;
 
 /// Maximum vertical stretch, because the stairs are long and low.
 const MAX_STRETCH: f32 = 2.0;
@@ -90,7 +90,7 @@ pub fn sparkline(painter: &egui::Painter, rect: Rect, best: &[Option<f32>], pale
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::library::{EntryDetails, SavePlace, read_entry};
+    use snakes_core::save::library::{EntryDetails, SavePlace, read_entry};
 
     #[test]
     fn the_whole_drawing_fits_into_the_thumbnail() {

@@ -5,14 +5,14 @@
 use bevy::prelude::*;
 
 use super::offscreen::Offscreen;
-use crate::save::{LoadedChampion, Picture};
-use crate::score::Evaluation;
 use crate::studio::error::StudioError;
 use crate::studio::scene;
 use crate::studio::scene::camera;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::{LoadedChampion, Picture};
+use snakes_core::score::Evaluation;
 
 /// Number of faint earlier poses; the first is the initial pose.
 const MOMENTS: u32 = 4;

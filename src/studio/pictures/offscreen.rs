@@ -23,12 +23,12 @@ use bevy::winit::WinitPlugin;
 use wgpu_types::PollType;
 
 use super::screenshot::picture_of;
-use crate::save::Picture;
 use crate::studio::error::StudioError;
 use crate::studio::failure::panic_guard;
 use crate::studio::scene::{self, camera};
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::Picture;
 
 /// An app with the studio's scene, without a window and without a main loop.
 pub(crate) struct Offscreen {

@@ -3,7 +3,6 @@
 use bevy::prelude::*;
 
 use super::offscreen::Offscreen;
-use crate::save::{LoadedChampion, Picture};
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
@@ -13,6 +12,7 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{StageMode, lanes};
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::{LoadedChampion, Picture};
 
 /// The content and style of the picture.
 #[derive(Debug, Clone)]

@@ -7,7 +7,6 @@ use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 
-use crate::save::{Picture, store_picture};
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
 use crate::studio::schedule::FrameSet;
@@ -15,6 +14,7 @@ use crate::studio::state::new_file::offer_picture;
 use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::{Picture, store_picture};
 
 /// A second camera that renders the stage to an image.
 #[derive(Component)]

@@ -11,7 +11,7 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::theme::Theme;
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Greatest y that a middle limb reached in the current run, in metres; `None` without a champion.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]

@@ -10,7 +10,7 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::ui::theme::{Palette, Theme};
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Thick lines: the pieces.
 #[derive(Default, Reflect, GizmoConfigGroup)]

@@ -12,7 +12,7 @@ use super::surface_look::SurfaceLook;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::{Pose, Stairs};
+use snakes_core::world::{Pose, Stairs};
 
 /// The patch of a limb; the head is 0.
 #[derive(Component, Debug)]

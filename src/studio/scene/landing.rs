@@ -9,11 +9,11 @@ use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
 use super::props::recolor;
-use crate::schema::PerPart;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::Stairs;
+use snakes_core::schema::PerPart;
+use snakes_core::world::Stairs;
 
 /// Height of the railing above tread and landing, in metres.
 const RAIL_M: f32 = 1.0;

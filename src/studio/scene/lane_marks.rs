@@ -9,7 +9,7 @@ use super::stairs::{STRIP_ASIDE_M, strip_y_m};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Materials in the colours of the lanes, in their order.
 #[derive(Resource, Debug)]
@@ -104,8 +104,8 @@ fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn marks_are_shown_only_beside_other_lanes_and_ghosts_are_none() {

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use super::mesh_builder::MeshBuilder;
-use crate::export::RoundedBox;
+use snakes_lab::export::RoundedBox;
 
 impl MeshBuilder {
     /// A box of a size, edges included, around a centre. A box that is too thin gets a smaller radius.

@@ -13,7 +13,7 @@ use super::props::{Props, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::{JointPlan, Pose};
+use snakes_core::world::{JointPlan, Pose};
 
 /// Index of a part in its lane's snake.
 #[derive(Component, Debug)]
@@ -186,8 +186,8 @@ fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Tr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
+    use snakes_core::save::shipped_champion;
 
     /// An app with a lane and a ghost of the same snake.
     fn app() -> App {

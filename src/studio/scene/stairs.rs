@@ -10,7 +10,7 @@ use super::surface_texture::TILE_M;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::{StairBox, Stairs};
+use snakes_core::world::{StairBox, Stairs};
 
 /// How far the strip of ground reaches beyond the stairs on both sides, in metres.
 pub(crate) const STRIP_ASIDE_M: f32 = 0.4;
@@ -186,7 +186,7 @@ mod tests {
         for stairs in samples() {
             let solids = stairs.solids();
             for at in &solid(&stairs).positions {
-                let is_on = |of: &crate::world::StairSolid| {
+                let is_on = |of: &snakes_core::world::StairSolid| {
                     (of.pose.inverse() * *at).abs().cmple(of.half_m + 1.0e-4).all()
                 };
                 assert!(solids.iter().any(is_on), "{at} of {stairs:?}");

@@ -10,7 +10,7 @@ use super::props::{Props, box_transform, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Step index of a strip; the lowest is 0.
 #[derive(Component, Debug)]

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use super::text::{TextMeshBuilder, TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Distance between numbers, in metres.
 const NUMBER_EVERY_M: i32 = 5;

@@ -6,7 +6,7 @@
 use bevy::prelude::*;
 
 use crate::studio::ui::theme::Palette;
-use crate::world::Surface;
+use snakes_core::world::Surface;
 
 /// The look of a surface. All fields are shares from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -130,8 +130,8 @@ pub(crate) fn mix(from: f32, to: f32, share: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_presets;
     use crate::studio::ui::theme::Theme;
+    use snakes_core::save::shipped_presets;
 
     fn shipped(name: &str) -> Surface {
         let presets = shipped_presets().expect("well formed");

@@ -6,7 +6,7 @@ use super::surface_look::SurfaceLook;
 use super::surface_texture::Grain;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
-use crate::world::Surface;
+use snakes_core::world::Surface;
 
 /// Cache of materials and textures by their look.
 #[derive(Resource, Debug, Default)]

@@ -224,7 +224,7 @@ fn random(x: u32, y: u32, seed: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::Surface;
+    use snakes_core::world::Surface;
 
     fn grain(change: fn(&mut Surface)) -> Grain {
         let mut surface = Surface::default();

@@ -10,7 +10,7 @@ use super::overlays::Overlays;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::world::SeenPoint;
+use snakes_core::world::SeenPoint;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, draw.in_set(FrameSet::Draw));

@@ -5,7 +5,7 @@
 use std::collections::{BTreeSet, VecDeque};
 
 use super::replay::Replay;
-use crate::world::{ContactPatch, SurfaceDamping, TouchedSurface};
+use snakes_core::world::{ContactPatch, SurfaceDamping, TouchedSurface};
 
 /// Span of simulated time over which readings are taken, in seconds.
 pub(crate) const SPAN_S: f32 = 0.25;

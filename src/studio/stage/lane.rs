@@ -13,9 +13,9 @@ use bevy::prelude::*;
 use super::readings::Readings;
 use super::replay::Replay;
 use super::staged_champion::StagedChampion;
-use crate::run::{Lookahead, caught};
-use crate::score::{Evaluation, KeyframeHistory, Rollout, Trial};
-use crate::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
+use snakes_core::score::{Evaluation, KeyframeHistory, Rollout, Trial};
+use snakes_core::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
+use snakes_lab::run::{Lookahead, caught};
 
 /// A lane, with the rollout that is scored.
 #[derive(Component)]

@@ -15,10 +15,10 @@ use bevy::prelude::*;
 use super::OpeningChampions;
 use super::schedule::FrameSet;
 use super::ui::notifications::Notices;
-use crate::Engine;
-use crate::evolve::RunPlan;
-use crate::run::caught;
-use crate::world::{Disqualification, HealthLimits};
+use snakes_core::Engine;
+use snakes_core::evolve::RunPlan;
+use snakes_core::world::{Disqualification, HealthLimits};
+use snakes_lab::run::caught;
 
 use lane::{Lane, MAX_STEPS_PER_FRAME};
 use playback::Playback;

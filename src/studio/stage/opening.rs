@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use super::staged_champion::StagedChampion;
-use crate::save::LoadedChampion;
+use snakes_core::save::LoadedChampion;
 
 /// A named champion from a file.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use super::contact_meter::ContactMeter;
 use super::replay::Replay;
-use crate::world::{ContactForce, EnergyLost, JointState, JointTorque};
+use snakes_core::world::{ContactForce, EnergyLost, JointState, JointTorque};
 
 /// Contacts, torques and joints after the last step.
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::staged_champion::StagedChampion;
-use crate::score::{Evaluation, KeyframeHistory, Recording, Rollout};
-use crate::world::{Pose, Pull, Simulation, Stairs, Vector};
+use snakes_core::score::{Evaluation, KeyframeHistory, Recording, Rollout};
+use snakes_core::world::{Pose, Pull, Simulation, Stairs, Vector};
 
 /// A replay in progress.
 pub(crate) enum Replay {

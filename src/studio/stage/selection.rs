@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::world::Pull;
+use snakes_core::world::Pull;
 
 /// The lane and limb that panels show in detail, and the limb that the mouse holds.
 #[derive(Resource, Debug, Default)]

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::Engine;
-use crate::check::Invalid;
-use crate::evolve::Champion;
-use crate::save::LoadedChampion;
-use crate::score::{Evaluation, Recording, Rollout, Trial};
-use crate::world::{BodyPlan, Discontinuity};
+use snakes_core::Engine;
+use snakes_core::check::Invalid;
+use snakes_core::evolve::Champion;
+use snakes_core::save::LoadedChampion;
+use snakes_core::score::{Evaluation, Recording, Rollout, Trial};
+use snakes_core::world::{BodyPlan, Discontinuity};
 
 /// A champion on the stage, with its caption.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,10 +9,10 @@ use bevy::time::TimeUpdateStrategy;
 use super::opening::NamedChampion;
 use super::selection::HeldLimb;
 use super::*;
-use crate::evolve::Champion;
-use crate::save::{LoadedChampion, shipped_champion};
-use crate::score::{Recording, evaluate};
-use crate::world::{Pose, Pull, Vector};
+use snakes_core::evolve::Champion;
+use snakes_core::save::{LoadedChampion, shipped_champion};
+use snakes_core::score::{Recording, evaluate};
+use snakes_core::world::{Pose, Pull, Vector};
 
 fn shipped() -> LoadedChampion {
     shipped_champion().expect("well formed")
@@ -106,7 +106,7 @@ fn seeking_gives_the_played_state_bit_for_bit() {
     for target in [steps / 2, steps, 3, steps - 1, 0, steps / 2 + 1] {
         clock(&mut app).seek(f64::from(target) * step_s, 1.0e9);
         frame(&mut app, 0.016);
-        let mut played = crate::score::Rollout::new(&champion.genome, &champion.trial);
+        let mut played = snakes_core::score::Rollout::new(&champion.genome, &champion.trial);
         while played.step() < target {
             assert!(played.advance());
         }
@@ -210,7 +210,7 @@ fn drawn_poses_lie_between_the_last_two_steps() {
     let share = (place - place.floor()) as f32;
     assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
     let champion = shown.staged().champion();
-    let mut rollout = crate::score::Rollout::new(&champion.genome, &champion.trial);
+    let mut rollout = snakes_core::score::Rollout::new(&champion.genome, &champion.trial);
     let mut head = || {
         rollout.advance();
         rollout.poses()[0].translation.y

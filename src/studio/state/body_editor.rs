@@ -5,17 +5,17 @@ use std::time::{Duration, Instant};
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
-use crate::evolve::Champion;
-use crate::genome::{BodyChange, Genome, GenomeSpace, Segment};
-use crate::rng::{Purpose, stream};
-use crate::run::{BackgroundTask, Tuned, caught, tune_controller};
-use crate::score::{Trial, evaluate};
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::notifications::Notices;
-use crate::world::BodyPlan;
+use snakes_core::evolve::Champion;
+use snakes_core::genome::{BodyChange, Genome, GenomeSpace, Segment};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::score::{Trial, evaluate};
+use snakes_core::world::BodyPlan;
+use snakes_lab::run::{BackgroundTask, Tuned, caught, tune_controller};
 
 /// Time after the last change at which the stage shows the body.
 const PREVIEW_AFTER: Duration = Duration::from_millis(500);

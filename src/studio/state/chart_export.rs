@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use crate::plot;
-use crate::plot::Figure;
-use crate::save::{SavesFolder, store_csv, store_picture};
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
+use snakes_core::save::{SavesFolder, store_csv, store_picture};
+use snakes_lab::plot;
+use snakes_lab::plot::Figure;
 
 /// Writes a chart to the exports folder under a free name; the title of a picture has the name of its run, if the
 /// chart is about it. Returns the file's path.
@@ -44,7 +44,7 @@ fn titled(figure: &Figure, run: &str) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{Axis, Chart, Role, Series, Shape};
+    use snakes_lab::plot::{Axis, Chart, Role, Series, Shape};
     use std::sync::Arc;
 
     #[test]

@@ -17,9 +17,9 @@ use bevy::prelude::*;
 
 use super::milestones::Milestones;
 use super::run_context::RunContext;
-use crate::evolve::{Champion, RunPlan, Settings};
-use crate::run::{BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource};
-use crate::save::{ExistingRun, RunSummary};
+use snakes_core::evolve::{Champion, RunPlan, Settings};
+use snakes_core::save::{ExistingRun, RunSummary};
+use snakes_lab::run::{BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource};
 
 use individuals::Ancestors;
 

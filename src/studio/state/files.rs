@@ -13,8 +13,6 @@ use bevy::prelude::*;
 
 use super::library::Library;
 use super::undo::UndoHistory;
-use crate::run::BackgroundTask;
-use crate::save::library::run_of_plan;
 use crate::studio::commands::Command;
 use crate::studio::commands::WindowCommand;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
@@ -23,6 +21,8 @@ use crate::studio::commands::panel::PanelKind;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::Show;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::run_of_plan;
+use snakes_lab::run::BackgroundTask;
 
 use clipboard::{Copied, CopyTask};
 use dialog::DialogAnswer;

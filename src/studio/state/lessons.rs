@@ -13,14 +13,14 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
-use crate::evolve::RunPlan;
-use crate::run::{ParallelRuns, ParallelRunsEvent};
 use crate::studio::commands::LessonCommand;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::evolve::RunPlan;
+use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
 
 use catalogue::{champions, plan};
 use lesson::Side;

@@ -15,11 +15,11 @@ use bevy::prelude::*;
 
 use super::run_context::RunContext;
 use super::undo::{UndoHistory, UndoStep};
-use crate::run::{BackgroundTask, LibraryReader};
-use crate::save::SavesFolder;
-use crate::save::library::{FileStep, SavePlace};
 use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
+use snakes_core::save::SavesFolder;
+use snakes_core::save::library::{FileStep, SavePlace};
+use snakes_lab::run::{BackgroundTask, LibraryReader};
 
 use batch_jobs::BatchJobs;
 use examination::Examination;
@@ -231,7 +231,7 @@ impl Library {
 
     /// A library of these entries without a folder, for tests.
     #[cfg(test)]
-    pub fn of(events: Vec<crate::run::LibraryEvent>) -> Self {
+    pub fn of(events: Vec<snakes_lab::run::LibraryEvent>) -> Self {
         let mut library = Self::new(SavesFolder::find(Some(Path::new("saves"))));
         events.into_iter().for_each(|event| library.learn(event));
         library
@@ -253,12 +253,12 @@ fn name_of(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::{shipped_champion, store_champion};
     use crate::studio::commands::Command;
     use crate::studio::commands::files::FileCommand;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::undo::UndoDirection;
     use crate::studio::ui::notifications::Notices;
+    use snakes_core::save::{shipped_champion, store_champion};
     use tempfile::TempDir;
 
     /// A library with its undo history and messages.

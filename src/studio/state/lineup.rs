@@ -1,11 +1,11 @@
 //! The individuals on the stage: single picks, races of generations, races of leaders.
 
 use super::current_run::CurrentRun;
-use crate::evolve::Champion;
 use crate::studio::commands::pick::Pick;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::stage::{MAX_LANES, Show, evenly};
+use snakes_core::evolve::Champion;
 
 /// Number of generations that race if there are more than lanes: as many as the report shows.
 const CHOSEN_GENERATIONS: usize = 6;
@@ -92,8 +92,8 @@ pub(crate) fn leaders(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::state::current_run::{explored_run, prepared_run};
+    use snakes_core::save::shipped_champion;
 
     fn saved(index: usize) -> StagedChampion {
         StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")

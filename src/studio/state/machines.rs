@@ -8,10 +8,10 @@ use std::time::Duration;
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
-use crate::cluster::{BrokerOptions, Machines, ServerWatch, WatchNews, WatchedRun};
-use crate::save::LONGEST_ADDRESS;
 use crate::studio::commands::MachinesCommand;
 use crate::studio::ui::notifications::Notices;
+use snakes_cluster::{BrokerOptions, Machines, ServerWatch, WatchNews, WatchedRun};
+use snakes_core::save::LONGEST_ADDRESS;
 
 /// The connection with other computers.
 #[derive(Resource, Debug, Default)]

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::genome::Genome;
-use crate::run::{Generation, GenerationReport};
-use crate::score::Evaluation;
 use crate::studio::stage::{MAX_GENERATION, evenly};
+use snakes_core::genome::Genome;
+use snakes_core::score::Evaluation;
+use snakes_lab::run::{Generation, GenerationReport};
 
 /// A generation whose best snake beat all earlier ones.
 #[derive(Debug, Clone)]

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 
-#[cfg(test)]
-use crate::run::LocalPool;
-use crate::run::{Evaluator, RunSource};
-use crate::save::{Comparison, LoadedChampion, PreferencesFile, SavesFolder};
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::{Comparison, LoadedChampion, PreferencesFile, SavesFolder};
+#[cfg(test)]
+use snakes_lab::run::LocalPool;
+use snakes_lab::run::{Evaluator, RunSource};
 
 /// Options of the studio.
 #[derive(Debug, Clone)]

@@ -5,14 +5,14 @@ use super::library::{Library, founder_of};
 use super::lineup::champion_of;
 use super::sweep::changes_of;
 use super::what_if::{ChangedStage, WorldChange, dropped, kept, kept_lane, what_if};
-use crate::evolve::StrategyKind;
-use crate::genome::ControllerKind;
-use crate::schema::Choices;
-use crate::score::Trial;
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::Show;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::evolve::StrategyKind;
+use snakes_core::genome::ControllerKind;
+use snakes_core::schema::Choices;
+use snakes_core::score::Trial;
 
 /// What a choice of strategy or controller changed beside itself, in words.
 fn partner_in_words((field, name): (&str, &str)) -> String {

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use bevy::prelude::*;
 
 use super::options::Options;
-use crate::run::{Evaluator, RunSource};
-use crate::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
+use snakes_core::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
+use snakes_lab::run::{Evaluator, RunSource};
 
 /// Shared by all runs of a session.
 #[derive(Resource, Debug, Clone)]

@@ -12,16 +12,16 @@ use std::sync::Arc;
 use bevy::prelude::*;
 
 use super::new_file::offer_path;
-use crate::evolve::Champion;
-use crate::export::ExportFormat;
-use crate::run::BackgroundTask;
-use crate::score::evaluate;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
+use snakes_core::evolve::Champion;
+use snakes_core::score::evaluate;
+use snakes_lab::export::ExportFormat;
+use snakes_lab::run::BackgroundTask;
 
 use writer::{Leash, Writer, written};
 

@@ -6,16 +6,16 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 
-use crate::evolve::Champion;
-use crate::run::exam::{examine_on_stairs, stairs_trials};
-use crate::run::{BackgroundTask, Cancelled, LocalPool, RunControl, available_cores};
-use crate::score::{ExamEnd, ExamSuite, StairsCell, StairsGrid};
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, ExamCommand, WindowCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::evolve::Champion;
+use snakes_core::score::{ExamEnd, ExamSuite, StairsCell, StairsGrid};
+use snakes_lab::run::exam::{examine_on_stairs, stairs_trials};
+use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, RunControl, available_cores};
 
 /// The exams of this session.
 #[derive(Resource, Debug, Default)]

@@ -1,8 +1,8 @@
 //! Race of one champion over many staircases, in lanes side by side.
 
-use crate::save::built_in_stairs;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{MAX_LANES, Show, StageMode};
+use snakes_core::save::built_in_stairs;
 
 /// The champion on its own stairs and on each of the built-in ones.
 ///
@@ -27,7 +27,7 @@ pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn a_race_has_the_own_stairs_and_all_built_in_ones() {

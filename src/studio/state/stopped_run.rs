@@ -3,10 +3,10 @@
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
-use crate::save::RunSummary;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::RunSummary;
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, list).add_systems(FixedUpdate, offer);
@@ -50,10 +50,10 @@ fn offer_text(run: &RunSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::run::{LocalPool, RunControl, RunSource};
-    use crate::save::{ExistingRun, SavesFolder};
     use crate::studio::state::options::Options;
+    use snakes_core::evolve::{RunPlan, Settings};
+    use snakes_core::save::{ExistingRun, SavesFolder};
+    use snakes_lab::run::{LocalPool, RunControl, RunSource};
 
     #[test]
     fn a_stopped_run_is_offered_by_name_and_place_after_the_start() {

@@ -1,11 +1,11 @@
 //! Sweep: one setting of the world at five values, in five lanes side by side.
 
 use super::wording::world_in_words;
-use crate::evolve::{Settings, fields, with_fields_and_engine};
-use crate::schema::{NumberRange, SettingKind, SettingValue, list};
-use crate::score::Trial;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
+use snakes_core::evolve::{Settings, fields, with_fields_and_engine};
+use snakes_core::schema::{NumberRange, SettingKind, SettingValue, list};
+use snakes_core::score::Trial;
 
 /// Number of values, the present one among them.
 const VALUES: u8 = 5;
@@ -106,8 +106,8 @@ fn settings_of(trial: &Trial) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
-    use crate::world::PhysicsEngine;
+    use snakes_core::save::shipped_champion;
+    use snakes_core::world::PhysicsEngine;
 
     fn champion() -> StagedChampion {
         StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")

@@ -10,7 +10,6 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::following::Following;
-use crate::save::library::shipped_champions;
 use crate::studio::commands::turn::Turn;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -18,6 +17,7 @@ use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::stage::{Show, StageMode, end_s};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::shipped_champions;
 
 /// Shows champions in turn.
 #[derive(Resource, Debug, Default)]
@@ -152,8 +152,8 @@ fn take_turns(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::state::current_run::{explored_run, prepared_run};
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn the_champions_of_all_generations_come_in_turn_without_end() {

@@ -10,10 +10,10 @@ use std::collections::VecDeque;
 use bevy::prelude::*;
 
 use super::wording::changes_in_words;
-use crate::evolve::RunPlan;
-use crate::save::library::FileStep;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::schedule::FrameSet;
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::library::FileStep;
 
 pub(crate) use follow::followed;
 
@@ -264,7 +264,7 @@ fn settle_on_press(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, with_field};
+    use snakes_core::evolve::{Settings, with_field};
 
     fn of_files(label: &str) -> UndoStep {
         UndoStep::Files { label: label.to_owned(), steps: Vec::new() }

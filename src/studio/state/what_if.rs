@@ -7,11 +7,11 @@ use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
 use super::wording::world_in_words;
-use crate::evolve::{RunPlan, Settings, with_fields_and_engine};
-use crate::score::{Rollout, Trial};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
-use crate::world::PhysicsSettings;
+use snakes_core::evolve::{RunPlan, Settings, with_fields_and_engine};
+use snakes_core::score::{Rollout, Trial};
+use snakes_core::world::PhysicsSettings;
 
 /// A change of the world.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! Short descriptions of changed settings, for titles and labels.
 
-use crate::evolve::Settings;
-use crate::schema::{ListedSetting, SettingKind, SettingValue, list};
-use crate::score::Trial;
+use snakes_core::evolve::Settings;
+use snakes_core::schema::{ListedSetting, SettingKind, SettingValue, list};
+use snakes_core::score::Trial;
 
 /// Maximum number of settings named in a description; more are counted.
 const MOST_NAMED: usize = 2;
@@ -60,7 +60,7 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_field;
+    use snakes_core::evolve::with_field;
 
     #[test]
     fn a_changed_angle_is_named_in_degrees() {

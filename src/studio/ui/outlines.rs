@@ -1,6 +1,6 @@
 //! The outlines of a body's limbs before its trial, from above and from the side.
 
-use crate::world::{BodyPlan, Pose, Vector};
+use snakes_core::world::{BodyPlan, Pose, Vector};
 
 /// The corners of all limbs.
 #[derive(Debug)]
@@ -75,7 +75,7 @@ fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn a_chain_is_a_row_of_rectangles() {

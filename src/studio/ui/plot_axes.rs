@@ -6,7 +6,7 @@ use bevy_egui::egui;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotBounds, uniform_grid_spacer};
 
 use super::theme;
-use crate::plot::tick_step;
+use snakes_lab::plot::tick_step;
 
 /// Maximum number of labels along an axis.
 const MAX_LABELS: f64 = 6.0;

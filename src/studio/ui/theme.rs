@@ -10,7 +10,7 @@ use bevy::prelude::{Color, Resource};
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
-use crate::check::Invalid;
+use snakes_core::check::Invalid;
 
 use palette::CORNER;
 

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use crate::save::UI_SCALES;
+use snakes_core::save::UI_SCALES;
 
 /// Minimum size of the window in points of the interface: the stage beside a panel of least width, and the player below
 /// it. A scale that would leave fewer points is not used.

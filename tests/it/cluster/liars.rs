@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::SeqCst;
 use std::thread::JoinHandle;
 
-use snakes_and_stairs::cluster::{
+use snakes_cluster::{
     Broker, BrokerOptions, Compute, Outcome, Shared, Simulator, WorkerOptions, proof, work,
 };
-use snakes_and_stairs::run::RunControl;
+use snakes_lab::run::RunControl;
 
 use super::server::{Run, Server, run_hash, worker};
 use crate::program::{folder, json_lines};

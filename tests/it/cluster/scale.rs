@@ -5,15 +5,15 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
 
-use snakes_and_stairs::cluster::{
+use snakes_cluster::{
     Broker, BrokerOptions, Compute, Coordinator, CoordinatorOptions, Outcome, Shared, proof,
 };
-use snakes_and_stairs::evolve::Settings;
-use snakes_and_stairs::genome::Genome;
-use snakes_and_stairs::rng::{Purpose, stream};
-use snakes_and_stairs::run::{Evaluator, RunControl};
-use snakes_and_stairs::save::shipped_champion;
-use snakes_and_stairs::score::Scored;
+use snakes_core::evolve::Settings;
+use snakes_core::genome::Genome;
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::shipped_champion;
+use snakes_core::score::Scored;
+use snakes_lab::run::{Evaluator, RunControl};
 
 use super::liars::worker_with;
 use super::server::Server;

@@ -3,11 +3,9 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use snakes_and_stairs::cluster::{
-    Broker, BrokerOptions, ServerWatch, WatchNews, WatchedRun, machines, proof,
-};
-use snakes_and_stairs::evolve::{RunPlan, Settings};
-use snakes_and_stairs::run::{Evaluator, Experiment, LocalPool, RunControl};
+use snakes_cluster::{Broker, BrokerOptions, ServerWatch, WatchNews, WatchedRun, machines, proof};
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_lab::run::{Evaluator, Experiment, LocalPool, RunControl};
 
 use super::server::{Server, worker};
 

@@ -41,7 +41,7 @@ fn a_worker_could_not_be_stopped_while_its_server_was_gone() {
     let run = Run::start(place.path(), LONG, &server.url());
     sleep(Duration::from_secs(6));
     let said = stopped(next(), "at work");
-    let host = snakes_and_stairs::cluster::host_name();
+    let host = snakes_cluster::host_name();
     let begins = said.lines().filter(|line| line.starts_with("computing for climb-seed7-"));
     let begins: Vec<&str> = begins.collect();
     assert!(matches!(begins[..], [line] if line.ends_with(&format!(" on {host}"))), "{said}");

@@ -1,9 +1,9 @@
 //! Creatures as models for MuJoCo and URDF.
 
 use serde_json::json;
-use snakes_and_stairs::genome::NodeJoint;
-use snakes_and_stairs::save::load_preset;
-use snakes_and_stairs::world::JointPlan;
+use snakes_core::genome::NodeJoint;
+use snakes_core::save::load_preset;
+use snakes_core::world::JointPlan;
 
 use super::models::{champion_of, compared_in_mujoco, description, export};
 

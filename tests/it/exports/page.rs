@@ -4,12 +4,12 @@ use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
-use snakes_and_stairs::ENGINE_VERSION;
-use snakes_and_stairs::evolve::{Champion, Origin, begin};
-use snakes_and_stairs::export::{ExportOrder, ExportProgress, ExportSource};
-use snakes_and_stairs::run::verify::golden_plans;
-use snakes_and_stairs::save::{champion_text, load_champion, parse_champion, shipped_champion};
-use snakes_and_stairs::score::evaluate;
+use snakes_core::ENGINE_VERSION;
+use snakes_core::evolve::{Champion, Origin, begin};
+use snakes_core::save::{champion_text, load_champion, parse_champion, shipped_champion};
+use snakes_core::score::evaluate;
+use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource};
+use snakes_lab::run::verify::golden_plans;
 
 use super::{peer, peer_script, succeed};
 use crate::program::folder;

@@ -3,9 +3,9 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
-use snakes_and_stairs::evolve::{Settings, with_fields};
-use snakes_and_stairs::score::Trial;
-use snakes_and_stairs::world::{SOFTEST_M4_S2, STIFFEST_M4_S2, WorldPlan, modulus_at_pa};
+use snakes_core::evolve::{Settings, with_fields};
+use snakes_core::score::Trial;
+use snakes_core::world::{SOFTEST_M4_S2, STIFFEST_M4_S2, WorldPlan, modulus_at_pa};
 
 use super::models::{champion, compared_in_mujoco, description, export, log_between, random_trial};
 

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::json;
-use snakes_and_stairs::export::columns;
-use snakes_and_stairs::save::load_champion;
+use snakes_core::save::load_champion;
+use snakes_lab::export::columns;
 
 use super::{peer_python, peer_script, succeed};
 use crate::program::{folder, stdout_of};

@@ -72,8 +72,8 @@ impl Picture {
         let width = self.width as u32;
         let height = self.pixels.len() as u32 / width;
         let rgb = self.pixels.iter().flatten().copied().collect();
-        let picture = snakes_and_stairs::save::Picture { width, height, rgb };
-        snakes_and_stairs::save::store_picture(path, &picture).expect("written");
+        let picture = snakes_core::save::Picture { width, height, rgb };
+        snakes_core::save::store_picture(path, &picture).expect("written");
     }
 
     /// The pixels of a rectangle, row by row, as red, green, blue.

@@ -5,7 +5,6 @@ mod changes;
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use crate::save::library::plain_name;
 use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::OpeningChampions;
@@ -21,6 +20,7 @@ use crate::studio::state::sweep::sweep;
 use crate::studio::state::turns::Turns;
 use crate::studio::state::what_if::{another_beside, kept};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::plain_name;
 
 /// State of the stage.
 #[derive(SystemParam)]

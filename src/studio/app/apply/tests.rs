@@ -1,8 +1,6 @@
 //! Commands as the user gives them, frame by frame.
 
 use super::*;
-use crate::save::library::SavePlace;
-use crate::save::shipped_champion;
 use crate::studio::commands::StageCommand;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::pick::Pick;
@@ -18,6 +16,8 @@ use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::following::Following;
 use crate::studio::state::turns::Turns;
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::library::SavePlace;
+use snakes_core::save::shipped_champion;
 
 /// An app that executes commands, with an empty stage.
 fn app() -> App {
@@ -32,7 +32,7 @@ fn app() -> App {
             name: "climber".to_owned(),
             loaded,
         }]))
-        .insert_resource(Library::new(crate::save::SavesFolder::find(None)))
+        .insert_resource(Library::new(snakes_core::save::SavesFolder::find(None)))
         .init_resource::<Files>()
         .init_resource::<Notices>()
         .init_resource::<StageMode>()

@@ -2,9 +2,9 @@
 
 use bevy_egui::egui;
 
-use crate::genome::{BodySpace, MOST_SEGMENTS};
 use crate::studio::state::body_editor::EditedBody;
 use crate::studio::ui::theme;
+use snakes_core::genome::{BodySpace, MOST_SEGMENTS};
 
 /// Share beyond a budget that rounding makes.
 const TOLERANCE: f64 = 1.0e-3;

@@ -2,10 +2,10 @@
 
 use bevy_egui::egui;
 
-use crate::plot::Role;
 use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
-use crate::world::BodyPlan;
+use snakes_core::world::BodyPlan;
+use snakes_lab::plot::Role;
 
 /// Largest height of both views together, in points.
 const HEIGHT: f32 = 130.0;

@@ -1,12 +1,12 @@
 //! Tests of the body panel.
 
 use super::*;
-use crate::save::shipped_champion;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::save::shipped_champion;
 
 struct Edit {
     editor: BodyEditor,

@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::evolve::Champion;
-use crate::run::Lookahead;
-use crate::save::LoadedChampion;
-use crate::save::library::Thumbnail;
+use snakes_core::evolve::Champion;
+use snakes_core::save::LoadedChampion;
+use snakes_core::save::library::Thumbnail;
+use snakes_lab::run::Lookahead;
 
 /// Climbs that are known or being computed.
 #[derive(Default)]
@@ -102,9 +102,9 @@ impl Climbs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::lane::Lane;
     use crate::studio::stage::staged_champion::StagedChampion;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn time_and_picture_are_those_of_the_replay_and_a_snake_below_has_no_time() {

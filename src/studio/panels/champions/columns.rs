@@ -3,10 +3,10 @@
 use bevy_egui::egui;
 
 use super::climbs::LandingTime;
-use crate::evolve::Champion;
-use crate::save::library::Thumbnail;
 use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::ui::theme;
+use snakes_core::evolve::Champion;
+use snakes_core::save::library::Thumbnail;
 
 /// Widths of the columns fitness, time and energy, in points.
 const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];

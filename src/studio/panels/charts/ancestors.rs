@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, Parents, Settings};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::{Ancestor, Ancestry, FitnessSpread};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::padded_range;
+use snakes_core::evolve::{IndividualId, Parents, Settings};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::{Ancestor, Ancestry, FitnessSpread};
 
 /// Maximum number of other snakes, limited by drawing time.
 const MAX_OTHERS: usize = 3000;
@@ -155,8 +155,8 @@ fn note_on_start(ancestry: &Ancestry) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, StrategyKind};
-    use crate::run::{Experiment, LocalPool, RunControl};
+    use snakes_core::evolve::{RunPlan, StrategyKind};
+    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     /// Chart after three generations of a strategy, and the generation of the best snake.
     fn shown(strategy: StrategyKind) -> (ChartView, u32) {

@@ -4,13 +4,13 @@ use bevy_egui::egui;
 
 use super::archive_pictures::ArchivePictures;
 use super::legend::click_hint;
-use crate::evolve::{Archive, ArchiveAxis, Elite};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{number, y_title};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::evolve::{Archive, ArchiveAxis, Elite};
 
 /// Draws the archive `height` points high and collects the user's commands. `unit` is the unit of the fitness.
 pub(crate) fn archive_map(
@@ -170,10 +170,10 @@ fn hover_text(archive: &Archive, cell: u32, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Descriptor;
     use crate::studio::state::current_run::explored_run;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::evolve::Descriptor;
 
     /// Commands sent by a click in the middle of a cell, and whether the hover text calls it empty.
     fn clicked(archive: &Archive, cell: u32) -> (Vec<Command>, bool) {

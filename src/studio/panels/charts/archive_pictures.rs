@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use bevy_egui::egui;
 
-use crate::evolve::{Archive, EliteGenes};
-use crate::plot::Role;
-use crate::score::AgentSettings;
 use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
-use crate::world::BodyPlan;
+use snakes_core::evolve::{Archive, EliteGenes};
+use snakes_core::score::AgentSettings;
+use snakes_core::world::BodyPlan;
+use snakes_lab::plot::Role;
 
 /// Smallest width of a cell with a picture, in points: in a smaller one it would be a smudge.
 const LEAST_WIDTH: f32 = 16.0;

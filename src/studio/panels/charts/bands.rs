@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::fitness::generations;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, Settings};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::GenerationReport;
-use crate::save::SpeciesCount;
 use crate::studio::commands::pick::Pick;
+use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::save::SpeciesCount;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::GenerationReport;
 
 /// Maximum number of generations that are drawn. Layers keep their height over a part of each, which takes two points.
 const MAX_DRAWN: usize = 600;

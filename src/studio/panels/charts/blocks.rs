@@ -1,7 +1,7 @@
 //! Numbers of blocks of evolving bodies, and the growth of the best body.
 
 use super::bands::{Bands, BestNumbers};
-use crate::run::GenerationReport;
+use snakes_lab::run::GenerationReport;
 
 /// Numbers of blocks by generation.
 pub(super) static BLOCKS: Bands = Bands {

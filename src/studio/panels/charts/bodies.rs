@@ -4,12 +4,12 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, Settings};
-use crate::genome::{BodyChange, Genome};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::{Ancestor, Ancestry, GenerationReport};
 use crate::studio::commands::pick::Pick;
-use crate::world::BodyPlan;
+use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::genome::{BodyChange, Genome};
+use snakes_core::world::BodyPlan;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::{Ancestor, Ancestry, GenerationReport};
 
 /// Maximum number of bodies that are drawn; the earliest are left out.
 const MAX_BODIES: usize = 24;
@@ -242,9 +242,9 @@ fn rows(settings: &Settings, structures: &[Structure]) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Parents, RunPlan, StrategyKind};
-    use crate::genome::ControllerKind;
-    use crate::rng::{Purpose, stream};
+    use snakes_core::evolve::{Parents, RunPlan, StrategyKind};
+    use snakes_core::genome::ControllerKind;
+    use snakes_core::rng::{Purpose, stream};
 
     fn settings() -> Settings {
         let mut settings = Settings::default();

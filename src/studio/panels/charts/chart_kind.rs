@@ -1,6 +1,6 @@
 //! The kinds of charts: their names, and what is said while one is empty.
 
-use crate::evolve::StrategyKind;
+use snakes_core::evolve::StrategyKind;
 
 /// Kind of chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -2,7 +2,7 @@
 
 use egui_plot::PlotPoint;
 
-use crate::plot::{Chart, Shape};
+use snakes_lab::plot::{Chart, Shape};
 
 /// Maximum number of points of a drawn line: more than one per pixel of the screen's width.
 pub(super) const MAX_POINTS: usize = 1500;

@@ -11,12 +11,12 @@ use super::downsample::DrawnSeries;
 use super::layer_labels::layer_labels;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::plot::{Chart, Role, Series, Shape, beside_line};
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, grid, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
+use snakes_lab::plot::{Chart, Role, Series, Shape, beside_line};
 
 /// Maximum distance between a click and a point, in screen points.
 const CLICK_DISTANCE: f32 = 16.0;

@@ -3,11 +3,11 @@
 use std::ops::RangeInclusive;
 
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, Settings};
-use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
-use crate::run::{GenerationReport, Statistics};
-use crate::score::Fitness;
 use crate::studio::commands::pick::Pick;
+use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::score::Fitness;
+use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+use snakes_lab::run::{GenerationReport, Statistics};
 
 /// Minimum length of the axis: the six generations of the original experiment.
 const MIN_GENERATIONS: f64 = 6.0;
@@ -140,8 +140,8 @@ pub(super) fn axis_title(fitness: Fitness) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::RunPlan;
-    use crate::run::{Experiment, LocalPool, RunControl};
+    use snakes_core::evolve::RunPlan;
+    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     #[test]
     fn the_axes_cover_all_generations_and_the_landing_once_it_is_near() {

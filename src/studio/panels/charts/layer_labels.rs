@@ -3,9 +3,9 @@
 use bevy_egui::egui;
 use egui_plot::{PlotPoint, PlotTransform};
 
-use crate::plot::{Chart, Role};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
+use snakes_lab::plot::{Chart, Role};
 
 /// Space around a number, in points.
 const PADDING: f32 = 2.0;

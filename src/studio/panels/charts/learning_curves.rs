@@ -5,16 +5,16 @@ use std::sync::Arc;
 use bevy_egui::egui;
 use egui_plot::{FilledArea, HoverPosition, Line, PlotPoints};
 
-use crate::evolve::StrategyKind;
-use crate::genome::ControllerKind;
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::Quartiles;
-use crate::run::compare::ComparisonRow;
-use crate::save::{CURVE_POINTS, Comparison};
 use crate::studio::ui::plot_axes::{
     axis_name, bounds, fixed_plot, grid, number, padded_range, x_title, y_title,
 };
 use crate::studio::ui::theme;
+use snakes_core::evolve::StrategyKind;
+use snakes_core::genome::ControllerKind;
+use snakes_core::save::{CURVE_POINTS, Comparison};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::Quartiles;
+use snakes_lab::run::compare::{ComparisonRow, ComparisonTables};
 
 /// An open comparison, with the selected controller.
 #[derive(Debug)]
@@ -238,10 +238,10 @@ impl CurvesPanel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::{ComparedBest, ComparedRun};
-    use crate::score::Fitness;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::save::{ComparedBest, ComparedRun};
+    use snakes_core::score::Fitness;
 
     fn comparison() -> Comparison {
         let mut comparison = Comparison::new("climb", String::new(), 300, Fitness::Climb);

@@ -4,8 +4,8 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Sense, Stroke};
 
 use super::view::ChartView;
-use crate::plot::{Series, Shape};
 use crate::studio::ui::theme;
+use snakes_lab::plot::{Series, Shape};
 
 /// Draws the legend, which wraps between names. Marks are labelled in the chart.
 pub(super) fn legend(ui: &mut egui::Ui, view: &ChartView) {

@@ -29,14 +29,14 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::shown::ShownLane;
-use crate::plot::Figure;
-use crate::save::Comparison;
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
+use snakes_core::save::Comparison;
+use snakes_lab::plot::Figure;
 
 use archive_map::archive_map;
 use archive_pictures::ArchivePictures;

@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::Settings;
-use crate::genome::Feature;
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::Ancestor;
-use crate::schema::DisplayUnit;
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
+use snakes_core::evolve::Settings;
+use snakes_core::genome::Feature;
+use snakes_core::schema::DisplayUnit;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::Ancestor;
 
 /// Maximum number of lines that can be distinguished.
 const MAX_PARENTS: usize = 40;
@@ -124,9 +124,9 @@ fn columns(chart: &Chart, values: &[Vec<f32>]) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, StrategyKind};
-    use crate::genome::ControllerKind;
-    use crate::run::{Experiment, LocalPool, RunControl};
+    use snakes_core::evolve::{RunPlan, StrategyKind};
+    use snakes_core::genome::ControllerKind;
+    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     #[test]
     fn every_value_has_a_hover_text_and_replays_its_parent() {

@@ -6,13 +6,13 @@ use bevy_egui::egui;
 use egui_plot::{HoverPosition, Line, PlotPoint, PlotPoints, Points};
 
 use super::legend::click_hint;
-use crate::evolve::{Front, FrontMember};
-use crate::score::Trial;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, number, padded_range, x_title, y_title};
 use crate::studio::ui::theme;
+use snakes_core::evolve::{Front, FrontMember};
+use snakes_core::score::Trial;
 
 /// Draws a front that has members, `height` points high, and collects the user's commands.
 pub(crate) fn front_plot(

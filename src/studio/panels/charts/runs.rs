@@ -6,15 +6,15 @@ use bevy_egui::egui;
 
 use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::RunPlan;
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::Statistics;
-use crate::save::StatisticsRecord;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::plot_axes::padded_range;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::StatisticsRecord;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::Statistics;
 
 /// Colours of the other runs, in the order of their selection.
 const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];

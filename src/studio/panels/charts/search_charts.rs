@@ -1,8 +1,8 @@
 //! Archive and front as figures for export. Their panels draw them on the screen.
 
-use crate::evolve::{Archive, ArchiveAxis, Elite, Front};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use crate::studio::ui::plot_axes::padded_range;
+use snakes_core::evolve::{Archive, ArchiveAxis, Elite, Front};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 
 /// Figure of the MAP-Elites archive. `unit` is the unit of the fitness.
 pub(super) fn archive(archive: &Archive, unit: &str) -> Figure {

@@ -1,8 +1,8 @@
 //! Species of networks, and the growth of the best one.
 
 use super::bands::{Bands, BestNumbers};
-use crate::genome::ControllerGenes;
-use crate::run::GenerationReport;
+use snakes_core::genome::ControllerGenes;
+use snakes_lab::run::GenerationReport;
 
 /// Species by generation.
 pub(super) static SPECIES: Bands = Bands {

@@ -4,13 +4,13 @@ use std::ops::RangeInclusive;
 
 use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, Settings};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::Generation;
-use crate::score::Evaluation;
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::{number, padded_range, step};
-use crate::world::Disqualification;
+use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::score::Evaluation;
+use snakes_core::world::Disqualification;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::Generation;
 
 /// Minimum and maximum number of bars.
 const BAR_COUNTS: RangeInclusive<f64> = 6.0..=30.0;

@@ -2,12 +2,12 @@
 //! between them as arrows. A click replays the snake of a staircase. Below it, how many new challenges were solved.
 
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::evolve::{IndividualId, StairsNode, StairsTree, StrategyKind, Transfer};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::GenerationReport;
-use crate::save::StairsCount;
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::padded_range;
+use snakes_core::evolve::{IndividualId, StairsNode, StairsTree, StrategyKind, Transfer};
+use snakes_core::save::StairsCount;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::GenerationReport;
 
 /// Maximum number of the latest transfers that are drawn; more would hide the tree.
 const MOST_ARROWS: usize = 60;
@@ -192,9 +192,9 @@ fn table(tree: &StairsTree) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Agent;
-    use crate::genome::{GenomeShape, GenomeSpace, StairsGenome};
-    use crate::rng::{Purpose, stream};
+    use snakes_core::evolve::Agent;
+    use snakes_core::genome::{GenomeShape, GenomeSpace, StairsGenome};
+    use snakes_core::rng::{Purpose, stream};
 
     fn tree() -> StairsTree {
         let shape = GenomeShape { joints: 4, duration_s: 1.0 };

@@ -4,7 +4,6 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
-use crate::evolve::{IndividualId, Settings};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
@@ -12,6 +11,7 @@ use crate::studio::panels::shown::ShownChampion;
 use crate::studio::state::current_run::{
     bodies_run, compared_run, explored_run, prepared_run, species_run,
 };
+use snakes_core::evolve::{IndividualId, Settings};
 
 /// Result of `act` and the commands sent, in a panel of this width.
 fn with<T>(
@@ -198,11 +198,11 @@ fn a_clicked_snake_is_found_with_the_fitness_of_its_hover_text() {
 }
 
 /// Reports of a long run, copied from the last report of a short one.
-fn long_reports(generations: u32) -> Vec<crate::run::GenerationReport> {
+fn long_reports(generations: u32) -> Vec<snakes_lab::run::GenerationReport> {
     let run = explored_run();
     let last = run.reports().last().expect("explored");
     let of = |generation| {
-        let mut report = crate::run::GenerationReport { generation, ..last.clone() };
+        let mut report = snakes_lab::run::GenerationReport { generation, ..last.clone() };
         if let Some(statistics) = &mut report.statistics {
             statistics.best += f64::from(generation % 100) * 0.01;
         }

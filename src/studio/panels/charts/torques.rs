@@ -4,14 +4,14 @@
 use std::sync::Arc;
 
 use super::view::{ChartHit, ChartView, HitShape, Version};
-use crate::evolve::IndividualId;
-use crate::genome::{Genome, JointCommands};
-use crate::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use crate::run::Lookahead;
-use crate::score::{KeyframeHistory, Rollout, Trial};
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::plot_axes::padded_range;
+use snakes_core::evolve::IndividualId;
+use snakes_core::genome::{Genome, JointCommands};
+use snakes_core::score::{KeyframeHistory, Rollout, Trial};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::run::Lookahead;
 
 /// Maximum number of points that can be distinguished on a line.
 const MAX_POINTS: usize = 600;

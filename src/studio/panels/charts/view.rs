@@ -4,9 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::downsample::{DrawnSeries, drawn};
-use crate::evolve::IndividualId;
-use crate::plot::Figure;
 use crate::studio::commands::pick::Pick;
+use snakes_core::evolve::IndividualId;
+use snakes_lab::plot::Figure;
 
 /// Chart that is computed once and cached until its data changes.
 #[derive(Debug, Clone)]

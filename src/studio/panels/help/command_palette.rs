@@ -2,11 +2,11 @@
 
 use bevy_egui::egui;
 
-use crate::save::shipped_presets;
 use crate::studio::commands::actions::{Situation, actions};
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
 use crate::studio::ui::theme;
+use snakes_core::save::shipped_presets;
 
 /// The palette with its search text.
 #[derive(Debug, Default)]

@@ -5,7 +5,6 @@ use std::path::Path;
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::MenuBar;
 
-use crate::save::library::run_of_plan;
 use crate::studio::commands::Command;
 use crate::studio::commands::actions::{Action, Menu, Situation, actions};
 use crate::studio::commands::files::{FileCommand, FileQuestion};
@@ -14,6 +13,7 @@ use crate::studio::state::files::RecentFiles;
 use crate::studio::state::shares::ShareProgress;
 use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
 use crate::studio::ui::theme;
+use snakes_core::save::library::run_of_plan;
 
 /// Says whether the setting that a command toggles is on; `None` for other commands.
 type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn the_share_menu_has_every_format_until_a_file_is_being_written() {
-        use crate::export::ExportFormat;
+        use snakes_lab::export::ExportFormat;
         type State = (Situation, Option<ShareProgress>, Vec<Command>);
         let mut harness = Harness::new_ui_state(
             |ui, (now, share, commands): &mut State| {

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::save::library::SavePlace;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::stage::MAX_LANES;
 use crate::studio::state::library::{Library, LibraryItem};
+use snakes_core::save::library::SavePlace;
 
 /// Action on the selected saves.
 #[derive(Debug)]

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use bevy_egui::egui;
 
 use super::actions::{LibraryAction, LibraryActionKind};
-use crate::save::library::{RunDetails, SavePlace};
-use crate::schema::Choices;
 use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::text_rows::{explain, row};
 use crate::studio::ui::theme;
+use snakes_core::save::library::{RunDetails, SavePlace};
+use snakes_core::schema::Choices;
 
 /// Draws a button for each action. Returns the action that was clicked.
 pub fn buttons(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {

@@ -7,9 +7,6 @@ use bevy_egui::egui::Key as Press;
 
 use super::LibraryPanel;
 use super::actions::send;
-use crate::check::Invalid;
-use crate::save::library::{SavePlace, check_entry_name};
-use crate::save::{check_notes, check_run_name};
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
@@ -17,6 +14,9 @@ use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::check::Invalid;
+use snakes_core::save::library::{SavePlace, check_entry_name};
+use snakes_core::save::{check_notes, check_run_name};
 
 /// Name being edited.
 #[derive(Debug)]

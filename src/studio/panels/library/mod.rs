@@ -18,7 +18,6 @@ use std::path::PathBuf;
 
 use bevy_egui::egui::{self, EventFilter, Sense, WidgetInfo, WidgetType};
 
-use crate::save::library::{EXPORTS, SavePlace};
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
@@ -27,6 +26,7 @@ use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use actions::send;
+use snakes_core::save::library::{EXPORTS, SavePlace};
 
 use actions::{LibraryAction, LibraryActionKind, actions};
 use fields::{NotesField, PathPrompt, RenameField};

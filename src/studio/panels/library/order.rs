@@ -165,7 +165,7 @@ impl SortInput {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::SavesFolder;
+    use snakes_core::save::SavesFolder;
 
     fn library() -> (tempfile::TempDir, Library) {
         let folder = tempfile::tempdir().expect("a folder");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::save::library::SavePlace;
+use snakes_core::save::library::SavePlace;
 
 /// Set of selected saves, with cursor and anchor.
 #[derive(Debug, Default)]

@@ -10,12 +10,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
-use crate::run::LibraryEvent;
-use crate::save::EntryNotes;
-use crate::save::library::{EntryDetails, EntryProblem, LibraryEntry, RunDetails, read_entry};
 use crate::studio::commands::{PlanCommand, RunCommand};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::EntryNotes;
+use snakes_core::save::library::{
+    EntryDetails, EntryProblem, LibraryEntry, RunDetails, read_entry,
+};
+use snakes_lab::run::LibraryEvent;
 
 fn entry(place: SavePlace, day: u64) -> LibraryEntry {
     let notes = Ok(EntryNotes::default());

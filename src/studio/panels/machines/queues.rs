@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::{command_line, entry};
-use crate::cluster::Machines;
 use crate::studio::state::machines::KnownServer;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
+use snakes_cluster::Machines;
 
 /// Draws the runs, the one of this window first.
 pub(super) fn queues(

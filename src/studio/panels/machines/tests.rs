@@ -1,11 +1,11 @@
 //! The machines panel in each state of the connection.
 
 use super::*;
-use crate::cluster::{Machines, RunNotice, RunQueue, WorkerNotice};
 use crate::studio::state::current_run::prepared_run;
 use crate::{ENGINE_VERSION, Processors};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_cluster::{Machines, RunNotice, RunQueue, WorkerNotice};
 
 const URL: &str = "nats://192.168.1.5:4222";
 const PROOF: &str = "0123456789abcdef";

@@ -3,9 +3,9 @@
 use bevy_egui::egui;
 
 use super::entry;
-use crate::cluster::{Machines, WorkerNotice};
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
+use snakes_cluster::{Machines, WorkerNotice};
 
 /// Minimum width of the table, in points.
 const TABLE_WIDTH: f32 = 620.0;

@@ -1,8 +1,8 @@
 //! Events of a rollout for the time line: the first touch of the stairs, steps climbed and lost, the landing.
 
-use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
-use crate::world::Stairs;
+use snakes_core::score::KeyframeHistory;
+use snakes_core::world::Stairs;
 
 /// Something that happened to a snake.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,9 +104,9 @@ fn changes(levels: &[u32], sample_s: f64) -> Vec<ClimbEvent> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
     use ClimbEventKind::{Climbed, Landed, Lost, Touched};
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn steps_climbed_and_lost_are_marked_but_not_a_hop_at_an_edge() {

@@ -3,7 +3,6 @@
 use bevy_egui::egui;
 
 use super::strip_marks::landing_flag;
-use crate::score::KeyframeHistory;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -11,7 +10,8 @@ use crate::studio::stage::ranking::{RankedLane, ranking};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
-use crate::world::Stairs;
+use snakes_core::score::KeyframeHistory;
+use snakes_core::world::Stairs;
 
 /// Time at which the middle block first passed each riser, in simulated seconds, as far as the snake has come by
 /// `time_s`. The last step is the landing.

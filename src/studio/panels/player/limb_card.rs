@@ -7,7 +7,7 @@ use crate::studio::stage::contact_meter::SPAN_S;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::theme;
-use crate::world::JointState;
+use snakes_core::world::JointState;
 
 /// A line of the card.
 struct Reading {
@@ -219,10 +219,10 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn a_limb_that_has_just_left_the_ground_says_which_readings_are_of_the_moment() {

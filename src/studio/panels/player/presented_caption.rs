@@ -206,10 +206,10 @@ fn width_of(ui: &egui::Ui, text: &str, size: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::save::shipped_champion;
 
     /// The shipped climber in this lane, at this time.
     fn lane(number: usize, name: &str, time_s: f64) -> Lane {

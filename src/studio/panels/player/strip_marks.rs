@@ -7,7 +7,7 @@ use bevy_egui::egui::{Color32, Rect, Shape, Stroke};
 use super::climb_events::{ClimbEvent, ClimbEventKind};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
-use crate::world::JointPlan;
+use snakes_core::world::JointPlan;
 
 /// Half the size of a mark, in points.
 const HALF: f32 = 3.5;

@@ -3,7 +3,6 @@
 use bevy_egui::egui;
 
 use super::torque_strip::TorqueStrip;
-use crate::score::Fitness;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
 use crate::studio::panels::own_stairs_button::own_stairs_button;
 use crate::studio::stage::end_s;
@@ -13,6 +12,7 @@ use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::icons::{Icon, icon_button};
 use crate::studio::ui::theme;
+use snakes_core::score::Fitness;
 
 /// What the time line shows of the time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -274,10 +274,10 @@ fn more_readings(ui: &mut egui::Ui, readings: &[(&str, String, &str)]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::save::shipped_champion;
 
     const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
 

@@ -8,10 +8,10 @@ use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke};
 use super::climb_events::{ClimbEvent, events};
 use super::strip_marks::{draw_events, event_at, legend};
 use super::timeline::TimelineSpan;
-use crate::score::KeyframeHistory;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
-use crate::world::{BodyPlan, JointTorque};
+use snakes_core::score::KeyframeHistory;
+use snakes_core::world::{BodyPlan, JointTorque};
 
 /// The strip with its cached lines.
 #[derive(Default)]

@@ -7,15 +7,15 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::settings::Sheet;
-use crate::evolve::{EvolutionSettings, RunPlan};
-use crate::genome::GenomeSpace;
-use crate::run::THREADS_RANGE;
-use crate::schema::Section;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
 use crate::studio::ui::number_field::NumberField;
 use crate::studio::ui::text_rows::{explain, row, title_and};
 use crate::studio::ui::theme;
+use snakes_core::evolve::{EvolutionSettings, RunPlan};
+use snakes_core::genome::GenomeSpace;
+use snakes_core::schema::Section;
+use snakes_lab::run::THREADS_RANGE;
 
 use progress::progress;
 

@@ -2,10 +2,10 @@
 
 use bevy_egui::egui;
 
-use crate::evolve::{EvolutionSettings, Settings, StrategyKind};
-use crate::run::GenerationReport;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::ui::theme;
+use snakes_core::evolve::{EvolutionSettings, Settings, StrategyKind};
+use snakes_lab::run::GenerationReport;
 
 /// Number of latest generations used to measure the speed.
 const MEASURED_GENERATIONS: usize = 5;
@@ -154,9 +154,9 @@ fn duration_text(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::RunPlan;
-    use crate::run::{Experiment, LocalPool, RunControl};
-    use crate::world::Disqualification;
+    use snakes_core::evolve::RunPlan;
+    use snakes_core::world::Disqualification;
+    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     /// Report of a small generation with the given duration.
     fn report(elapsed_s: f64) -> GenerationReport {

@@ -1,11 +1,11 @@
 //! Tests of the run panel.
 
 use super::*;
-use crate::evolve::{HalvingSettings, StrategyKind};
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
 use crate::studio::state::current_run::prepared_run as run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::evolve::{HalvingSettings, StrategyKind};
 
 /// Commands sent after `act`.
 fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
@@ -43,7 +43,7 @@ fn the_first_button_pauses_a_running_run() {
 #[test]
 fn the_founder_of_the_next_run_can_be_removed() {
     let mut run = run();
-    let champion = crate::save::shipped_champion().expect("well formed").champion;
+    let champion = snakes_core::save::shipped_champion().expect("well formed").champion;
     run.start_next_from(&champion, "climber").expect("it fits");
     let commands = sent(&run, |harness| {
         assert!(harness.query_by_label("Starts from \"climber\"").is_some());

@@ -4,11 +4,11 @@ use bevy_egui::egui;
 
 use super::rule_row::{RuleRow, rule_list};
 use super::value_bar::ValueBar;
-use crate::control::{ActiveRule, DecisionActivity};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
+use snakes_core::control::{ActiveRule, DecisionActivity};
 
 /// Width of the names of postures, in points.
 const POSTURE_NAMES: f32 = theme::GAP * 20.5;

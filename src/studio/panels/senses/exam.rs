@@ -5,13 +5,13 @@ mod stairs_map;
 use bevy_egui::egui;
 
 use super::super::own_stairs_button::own_stairs_button;
-use crate::score::{ExamSuite, StairsGrid};
 use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
 use crate::studio::ui::text_rows::{cancellable_progress, explain};
 use crate::studio::ui::theme;
+use snakes_core::score::{ExamSuite, StairsGrid};
 
 use stairs_map::{MapPlace, StairsMap, legend};
 

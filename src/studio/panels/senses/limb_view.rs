@@ -4,10 +4,10 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Stroke};
 
 use super::network_graph::network_graph;
-use crate::control::{ActiveLimb, LimbActivity};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
+use snakes_core::control::{ActiveLimb, LimbActivity};
 
 /// Height of a row of the table, in points.
 const ROW: f32 = theme::GAP * 2.5;

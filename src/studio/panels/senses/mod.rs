@@ -16,9 +16,6 @@ mod wave_view;
 use bevy_egui::egui;
 
 use super::on_stage::OnStage;
-use crate::control::{ActiveSenses, Activity, SenseOrgan};
-use crate::genome::ControllerKind;
-use crate::score::Rollout;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -27,6 +24,9 @@ use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
+use snakes_core::control::{ActiveSenses, Activity, SenseOrgan};
+use snakes_core::genome::ControllerKind;
+use snakes_core::score::Rollout;
 
 use exam::exam;
 use readouts::readouts;

@@ -3,11 +3,11 @@
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Color32, Pos2, Stroke};
 
-use crate::control::{NetworkActivity, NetworkNode, NodeColumn};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
+use snakes_core::control::{NetworkActivity, NetworkNode, NodeColumn};
 
 /// Height of an input with its name, in points.
 const NAMED_ROW: f32 = theme::GAP * 1.75;
@@ -203,7 +203,7 @@ const MOST_LISTED: usize = 6;
 /// Describes a node with its strongest links.
 fn strongest(ui: &mut egui::Ui, network: &NetworkActivity, index: usize, said: &str) {
     ui.label(egui::RichText::new(said).strong());
-    let is_of = |link: &&crate::control::NetworkLink| link.from == index || link.to == index;
+    let is_of = |link: &&snakes_core::control::NetworkLink| link.from == index || link.to == index;
     let mut links: Vec<_> = network.links.iter().filter(is_of).collect();
     links.sort_by(|a, b| b.weight.abs().total_cmp(&a.weight.abs()));
     for link in links.iter().take(MOST_LISTED) {

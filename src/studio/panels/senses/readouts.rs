@@ -5,11 +5,11 @@ use bevy_egui::egui::Color32;
 
 use super::SensesView;
 use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
-use crate::control::{ActiveSenses, Perception, SenseKind};
-use crate::score::Rollout;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::title;
 use crate::studio::ui::theme;
+use snakes_core::control::{ActiveSenses, Perception, SenseKind};
+use snakes_core::score::Rollout;
 
 /// The senses of the snake as a whole.
 const OF_SNAKE: [SenseKind; 4] =

@@ -3,10 +3,10 @@
 use bevy_egui::egui;
 
 use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
-use crate::control::ReflexActivity;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_core::control::ReflexActivity;
 
 /// Draws the reflexes.
 pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {

@@ -1,16 +1,16 @@
 //! The panel with snakes of several controllers.
 
 use super::*;
-use crate::evolve::with_fields;
-use crate::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
-use crate::genome::{ControllerGenes, Genome};
-use crate::learn::classifiers::{Zcs, ZcsSettings};
-use crate::rng::{Purpose, stream};
-use crate::save::{LoadedChampion, load_preset, shipped_champion};
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::stage::staged_champion::StagedChampion;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use snakes_core::evolve::with_fields;
+use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
+use snakes_core::genome::{ControllerGenes, Genome};
+use snakes_core::learn::classifiers::{Zcs, ZcsSettings};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{LoadedChampion, load_preset, shipped_champion};
 use std::sync::Arc;
 
 /// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.

@@ -4,12 +4,12 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Align2, FontId, Rect, Stroke};
 
 use super::rule_row::{RuleRow, rule_list};
-use crate::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
-use crate::genome::controllers::{JointGroup, Wave};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
+use snakes_core::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
+use snakes_core::genome::controllers::{JointGroup, Wave};
 
 /// Height of the row of joints and of a wave, in points.
 const JOINTS_HEIGHT: f32 = theme::GAP * 4.5;

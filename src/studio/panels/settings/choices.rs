@@ -4,9 +4,9 @@ use bevy_egui::egui;
 
 use super::form::{Sheet, Shown};
 use super::number::Control;
-use crate::schema::Choice;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::theme;
+use snakes_core::schema::Choice;
 
 impl Sheet {
     /// A drop-down list. Returns the new choice.

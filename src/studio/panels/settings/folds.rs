@@ -7,10 +7,10 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::form::Sheet;
-use crate::schema::{ListedSetting, Section};
 use crate::studio::commands::{Command, WindowCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::theme;
+use snakes_core::schema::{ListedSetting, Section};
 
 /// Which advanced settings are in sight.
 #[derive(Debug, Default)]
@@ -99,10 +99,10 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::Trial;
     use crate::studio::state::current_run::prepared_run;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+    use snakes_core::score::Trial;
 
     type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
 

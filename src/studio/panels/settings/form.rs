@@ -15,11 +15,11 @@ use super::folds::Folds;
 use super::sections_of;
 use super::validation::Check;
 use super::values::Values;
-use crate::schema::{ListedSetting, Section, Setting, SettingKind};
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::theme;
+use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind};
 
 /// Values being dragged or typed in a panel's controls.
 #[derive(Debug, Default)]

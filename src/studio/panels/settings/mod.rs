@@ -1,4 +1,4 @@
-//! Controls of settings, generated from the rows of [`crate::schema`].
+//! Controls of settings, generated from the rows of [`snakes_core::schema`].
 //!
 //! [`Sheet`] draws sections and keeps the values being dragged or typed.
 
@@ -13,7 +13,7 @@ mod slider;
 mod validation;
 mod values;
 
-use crate::schema::{ListedSetting, Section};
+use snakes_core::schema::{ListedSetting, Section};
 
 pub use form::Sheet;
 pub use values::every_setting;

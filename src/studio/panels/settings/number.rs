@@ -8,10 +8,10 @@ use super::columns::{Columns, Part, VALUE_WIDTH};
 use super::form::{Sheet, Shown};
 use super::scale::{NUMBERS_HEIGHT, Scale};
 use super::values::{list_of, numbers, rounded};
-use crate::schema::NumberRange;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::number_field::select_all_on_focus;
 use crate::studio::ui::theme;
+use snakes_core::schema::NumberRange;
 
 /// Width of the switch between one value and one per part, in points.
 const SWITCH_WIDTH: f32 = 52.0;

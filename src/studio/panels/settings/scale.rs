@@ -2,8 +2,8 @@
 
 use bevy_egui::egui;
 
-use crate::schema::NumberRange;
 use crate::studio::ui::theme;
+use snakes_core::schema::NumberRange;
 
 /// Share of the rail of a logarithmic slider that stands for zero, which has no place on a logarithmic scale.
 const ZERO_SHARE: f32 = 0.1;
@@ -173,7 +173,7 @@ fn round_step(width: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::{SettingKind, list};
+    use snakes_core::schema::{SettingKind, list};
 
     fn scale(least: f32, most: f32, logarithmic_from: Option<f32>) -> Scale {
         Scale { least, most, logarithmic_from, is_angle: false }
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn every_slider_has_a_few_marks_and_the_place_that_egui_gives_its_value() {
-        for listed in list(&crate::evolve::Settings::default()) {
+        for listed in list(&snakes_core::evolve::Settings::default()) {
             let SettingKind::Number(range) = listed.setting.kind else { continue };
             let range = listed.setting.shown_range(&range);
             let Some(ends) = range.slider else { continue };

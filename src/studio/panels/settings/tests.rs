@@ -8,10 +8,10 @@ use egui_kittest::kittest::Queryable;
 
 use super::values::list_of;
 use super::*;
-use crate::evolve::{Settings, fields, with_field, with_fields};
-use crate::schema::{NumberRange, Parts, SettingKind, list};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
+use snakes_core::evolve::{Settings, fields, with_field, with_fields};
+use snakes_core::schema::{NumberRange, Parts, SettingKind, list};
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -330,7 +330,7 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
 #[test]
 fn sliders_contain_the_values_of_the_built_in_presets() {
     let mut beyond = Vec::new();
-    for preset in crate::save::shipped_presets().expect("well formed") {
+    for preset in snakes_core::save::shipped_presets().expect("well formed") {
         let values = fields(&preset.settings);
         for listed in every_setting() {
             let (full, entry) = (listed.path, listed.setting);

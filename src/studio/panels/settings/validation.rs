@@ -1,9 +1,9 @@
 //! Checks and normalises text typed into a setting.
 
 use super::values::numbers;
-use crate::check::Invalid;
-use crate::evolve::{Settings, with_field};
-use crate::schema::{ListedSetting, Setting, SettingKind, SettingValue};
+use snakes_core::check::Invalid;
+use snakes_core::evolve::{Settings, with_field};
+use snakes_core::schema::{ListedSetting, Setting, SettingKind, SettingValue};
 
 /// A setting being typed, with all others.
 #[derive(Clone, Copy)]
@@ -122,11 +122,11 @@ fn in_words(invalid: &Invalid, all: &[ListedSetting]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schema::list;
+    use snakes_core::schema::list;
 
     fn typed(field: &str, text: &str) -> Result<String, String> {
         let mut settings = Settings::default();
-        settings.trial.agent.limb_width_m = crate::schema::PerPart::Each(vec![1.0; 5]);
+        settings.trial.agent.limb_width_m = snakes_core::schema::PerPart::Each(vec![1.0; 5]);
         let all = list(&settings);
         let listed = all.iter().find(|listed| listed.path == field).expect("a setting");
         Check { settings: &settings, field, setting: &listed.setting, all: &all }.typed(text)

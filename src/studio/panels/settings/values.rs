@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{Settings, fields};
-use crate::schema::{Choices, ListedSetting, list};
-use crate::score::Trial;
 use crate::studio::state::current_run::CurrentRun;
-use crate::world::PhysicsEngine;
+use snakes_core::evolve::{Settings, fields};
+use snakes_core::schema::{Choices, ListedSetting, list};
+use snakes_core::score::Trial;
+use snakes_core::world::PhysicsEngine;
 
 /// Settings of the next run and of its preset.
 #[derive(Debug, Default)]

@@ -2,13 +2,13 @@
 
 use bevy_egui::egui;
 
-use crate::evolve::{Settings, fields};
-use crate::save::NamedStairs;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::known_files;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::theme;
-use crate::world::Stairs;
+use snakes_core::evolve::{Settings, fields};
+use snakes_core::save::NamedStairs;
+use snakes_core::world::Stairs;
 
 /// The name of stairs that are none of these.
 const OTHER: &str = "none of these";

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
-use crate::world::{BUILDING_CODES, Stairs, TRUE_MM_PER_M};
+use snakes_core::world::{BUILDING_CODES, Stairs, TRUE_MM_PER_M};
 
 /// Draws the mean step in true size, and a line for each building code.
 pub(super) fn codes(ui: &mut egui::Ui, stairs: &Stairs) {

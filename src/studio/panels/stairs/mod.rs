@@ -10,7 +10,6 @@ use bevy_egui::egui;
 
 use super::own_files::OwnName;
 use super::undo_buttons::undo_buttons;
-use crate::schema::check;
 use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::{Command, PlanCommand, WindowCommand};
 use crate::studio::stage::lane::Lane;
@@ -18,7 +17,8 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::text_rows::{explain, title_and};
 use crate::studio::ui::theme;
-use crate::world::Stairs;
+use snakes_core::schema::check;
+use snakes_core::world::Stairs;
 
 pub(super) use choice::stairs_choice;
 use choice::{name_of, replacement};

@@ -3,10 +3,10 @@
 use bevy_egui::egui;
 
 use super::StairsEdit;
-use crate::plot::Role;
-use crate::score::AgentSettings;
 use crate::studio::ui::theme;
-use crate::world::{BUILDING_CODES, BuildingCode, Stairs};
+use snakes_core::score::AgentSettings;
+use snakes_core::world::{BUILDING_CODES, BuildingCode, Stairs};
+use snakes_lab::plot::Role;
 
 /// Greatest height of the drawing, in points.
 const MOST_HEIGHT: f32 = 220.0;

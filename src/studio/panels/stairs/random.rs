@@ -2,9 +2,9 @@
 
 use bevy_egui::egui;
 
-use crate::genome::{StairsClass, StairsGenome};
-use crate::schema::{Choice, Choices};
 use crate::studio::ui::theme;
+use snakes_core::genome::{StairsClass, StairsGenome};
+use snakes_core::schema::{Choice, Choices};
 
 /// The class and the seed that were chosen.
 #[derive(Debug)]

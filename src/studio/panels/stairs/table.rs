@@ -5,7 +5,7 @@ use bevy_egui::egui;
 use super::StairsEdit;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
-use crate::world::Stairs;
+use snakes_core::world::Stairs;
 
 /// Change of a value for each point that its field is dragged, in metres.
 const SPEED_M: f32 = 0.01;

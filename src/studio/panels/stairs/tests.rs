@@ -4,8 +4,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
-use crate::genome::StairsClass;
 use crate::studio::state::current_run::prepared_run;
+use snakes_core::genome::StairsClass;
 
 /// A next run, the panel, and the commands that it sent.
 struct Editing {

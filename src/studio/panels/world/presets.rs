@@ -2,11 +2,11 @@
 
 use bevy_egui::egui;
 
-use crate::save::{KnownFiles, Preset};
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::{OwnName, known_files};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::theme;
+use snakes_core::save::{KnownFiles, Preset};
 
 /// The selection with its text field.
 #[derive(Debug, Default)]

@@ -9,7 +9,7 @@ use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
-use crate::world::TouchedSurface;
+use snakes_core::world::TouchedSurface;
 
 use lane_column::LaneColumn;
 pub(crate) use lane_column::in_percent;

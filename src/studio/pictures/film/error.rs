@@ -1,10 +1,10 @@
 //! The errors of films.
 
-use crate::check::Invalid;
-use crate::export::ExportError;
-use crate::plot::PlotError;
-use crate::save::SaveError;
 use crate::studio::error::StudioError;
+use snakes_core::check::Invalid;
+use snakes_core::save::SaveError;
+use snakes_lab::export::ExportError;
+use snakes_lab::plot::PlotError;
 
 /// A film could not be made. Nothing is left under its name then.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! A film that is being written, whatever its format.
 
 use super::error::FilmError;
-use crate::save::Picture;
+use snakes_core::save::Picture;
 
 /// A film that is being written. Dropped before it is finished, it leaves nothing behind.
 pub trait FilmFile {

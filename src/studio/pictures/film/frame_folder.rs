@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::FilmError;
 use super::film_file::FilmFile;
-use crate::save::{Picture, UnfinishedFolder};
+use snakes_core::save::{Picture, UnfinishedFolder};
 
 /// A folder of numbered pictures that is being filled.
 pub struct FrameFolder {

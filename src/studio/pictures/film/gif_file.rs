@@ -10,9 +10,9 @@ use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::error::FilmError;
 use super::film_file::FilmFile;
-use crate::check::within;
-use crate::export::ExportError;
-use crate::save::{Picture, UnfinishedFile};
+use snakes_core::check::within;
+use snakes_core::save::{Picture, UnfinishedFile};
+use snakes_lab::export::ExportError;
 
 /// Allowed frames per second. Browsers show a frame of less than 0.02 s for 0.1 s.
 pub const GIF_FPS: RangeInclusive<u32> = 1..=50;

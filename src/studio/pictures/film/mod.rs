@@ -16,9 +16,9 @@ mod video;
 
 use std::path::Path;
 
-use crate::check::{Invalid, within};
-use crate::export::{ExportFormat, ExportProgress};
 use crate::studio::stage::evenly;
+use snakes_core::check::{Invalid, within};
+use snakes_lab::export::{ExportFormat, ExportProgress};
 
 pub use error::FilmError;
 pub(crate) use frame_folder::frame_folder_of;

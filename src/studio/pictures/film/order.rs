@@ -1,9 +1,9 @@
 //! The content and style of a film.
 
-use crate::save::LoadedChampion;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::ui::theme::Theme;
+use snakes_core::save::LoadedChampion;
 
 /// The content and style of a film.
 #[derive(Debug, Clone)]

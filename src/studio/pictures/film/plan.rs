@@ -5,13 +5,13 @@ use bevy::prelude::*;
 use super::camera_path::camera_path;
 use super::error::FilmError;
 use super::order::{FilmOrder, FilmPart};
-use crate::check::within;
-use crate::plot::FilmTitle;
 use crate::studio::error::StudioError;
 use crate::studio::pictures::render::in_view;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{StageMode, end_s, lanes};
+use snakes_core::check::within;
+use snakes_lab::plot::FilmTitle;
 
 /// Time for which a part with a title stands still at its beginning and at its end, in seconds of the film.
 const HOLD_S: f64 = 1.2;

@@ -8,14 +8,14 @@ use bevy::prelude::*;
 use super::error::FilmError;
 use super::order::FilmOrder;
 use super::plan::{FilmPlan, lanes_of};
-use crate::plot;
-use crate::plot::{FilmBand, FilmTitle};
-use crate::save::Picture;
 use crate::studio::pictures::offscreen::Offscreen;
 use crate::studio::pictures::render::over_heads;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::ranking::ranking;
+use snakes_core::save::Picture;
+use snakes_lab::plot;
+use snakes_lab::plot::{FilmBand, FilmTitle};
 
 /// Maximum number of frames that are drawn and not returned yet.
 const IN_FLIGHT: usize = 3;
@@ -171,11 +171,11 @@ fn written_on(mut picture: Picture, frame: &PendingFrame) -> Result<Picture, Fil
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::{load_champion, shipped_champion};
     use crate::studio::commands::camera_mode::CameraMode;
     use crate::studio::commands::overlay::Overlay;
     use crate::studio::pictures::film::order::FilmPart;
     use crate::studio::ui::theme::Theme;
+    use snakes_core::save::{load_champion, shipped_champion};
 
     /// Whether there is no Vulkan driver. The test is skipped then, unless it is required.
     fn lacks_a_driver() -> bool {

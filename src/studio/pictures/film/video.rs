@@ -6,10 +6,10 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 
 use super::error::FilmError;
 use super::film_file::FilmFile;
-use crate::check::Invalid;
-use crate::export::ExportError;
-use crate::run::BackgroundTask;
-use crate::save::{Picture, UnfinishedFile};
+use snakes_core::check::Invalid;
+use snakes_core::save::{Picture, UnfinishedFile};
+use snakes_lab::export::ExportError;
+use snakes_lab::run::BackgroundTask;
 
 /// The program that writes the film, found in PATH.
 const FFMPEG: &str = "ffmpeg";

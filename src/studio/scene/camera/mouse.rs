@@ -18,7 +18,7 @@ use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::{HeldLimb, Selection};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::viewport::StageArea;
-use crate::world::{Pose, Pull, StairSolid, Vector};
+use snakes_core::world::{Pose, Pull, StairSolid, Vector};
 
 /// Presses of the mouse button that later presses and releases are compared with.
 #[derive(Resource, Debug, Default)]

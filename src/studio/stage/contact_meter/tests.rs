@@ -1,10 +1,10 @@
 //! Readings of contacts and of energy, from the shipped champion on several surfaces.
 
 use super::*;
-use crate::save::{load_preset, shipped_champion};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::world::Vector;
+use snakes_core::save::{load_preset, shipped_champion};
+use snakes_core::world::Vector;
 
 /// The shipped champion, on the surface of a preset if one is named.
 fn lane(preset: Option<&str>) -> Lane {

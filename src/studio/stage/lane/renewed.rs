@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Lane, Readings, Replay, StagedChampion};
-use crate::score::Rollout;
+use snakes_core::score::Rollout;
 
 impl Lane {
     /// Whether what this lane has computed is also of use for a lane with this champion.

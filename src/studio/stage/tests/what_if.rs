@@ -1,8 +1,8 @@
 //! Copies that leave the original in the middle of its replay.
 
 use super::*;
-use crate::evolve::{Settings, with_field};
-use crate::score::{Rollout, Trial};
+use snakes_core::evolve::{Settings, with_field};
+use snakes_core::score::{Rollout, Trial};
 
 /// Step at which the copies of these tests leave the original.
 const MOMENT: u32 = 312;

@@ -1,9 +1,9 @@
 //! Tests of the editor of bodies.
 
 use super::*;
-use crate::save::shipped_champion;
 use crate::studio::state::current_run::prepared_run;
-use crate::world::PhysicsEngine;
+use snakes_core::save::shipped_champion;
+use snakes_core::world::PhysicsEngine;
 
 fn climber() -> StagedChampion {
     StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")

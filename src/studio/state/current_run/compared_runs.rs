@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::evolve::RunPlan;
-use crate::run::BackgroundTask;
-use crate::save::{GenerationRecord, RunSummary, SavesFolder, load_log};
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::{GenerationRecord, RunSummary, SavesFolder, load_log};
+use snakes_lab::run::BackgroundTask;
 
 /// Known runs, and those compared with the current one.
 #[derive(Debug, Default)]

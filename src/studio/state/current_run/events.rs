@@ -4,9 +4,9 @@ use bevy::prelude::*;
 
 use super::CurrentRun;
 use super::live_changes::{news_of, refusal_in_words};
-use crate::run::{OpenedRun, RunEvent};
-use crate::save::ExistingRun;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::ExistingRun;
+use snakes_lab::run::{OpenedRun, RunEvent};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, start_at_once).add_systems(FixedUpdate, take_in);
@@ -95,14 +95,14 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{RunPlan, Settings};
-    use crate::run::RunSource;
-    use crate::save::SavesFolder;
     use crate::studio::schedule::RESULTS_HZ;
     use crate::studio::state::current_run::{RunStatus, prepared_run};
     use crate::studio::state::options::Options;
     use crate::studio::state::run_context::RunContext;
     use bevy::time::TimeUpdateStrategy;
+    use snakes_core::evolve::{RunPlan, Settings};
+    use snakes_core::save::SavesFolder;
+    use snakes_lab::run::RunSource;
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 

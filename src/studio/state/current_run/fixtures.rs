@@ -1,14 +1,14 @@
 //! Runs for tests of panels.
 
 use super::*;
-use crate::evolve::{RunPlan, StrategyKind};
-use crate::genome::ControllerKind;
-use crate::run::{Experiment, LocalPool, RunControl};
-use crate::save::{Rung, SavesFolder, shipped_champion, store_csv};
-use crate::score::evaluate;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::options::Options;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::evolve::{RunPlan, StrategyKind};
+use snakes_core::genome::ControllerKind;
+use snakes_core::save::{Rung, SavesFolder, shipped_champion, store_csv};
+use snakes_core::score::evaluate;
+use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
 /// A run with the report's settings that has not started.
 pub fn prepared_run() -> CurrentRun {

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::CurrentRun;
-use crate::evolve::{Champion, IndividualId, Origin, Parents};
-use crate::genome::Genome;
-use crate::run::{Ancestor, caught};
-use crate::score::{Evaluation, Trial, evaluate};
+use snakes_core::evolve::{Champion, IndividualId, Origin, Parents};
+use snakes_core::genome::Genome;
+use snakes_core::score::{Evaluation, Trial, evaluate};
+use snakes_lab::run::{Ancestor, caught};
 
 /// Individuals with descendants, by place.
 pub(super) type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 
 use super::{CurrentRun, RunStatus};
-use crate::check::within;
-use crate::evolve::{
+use snakes_core::check::within;
+use snakes_core::evolve::{
     Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
 };
-use crate::run::THREADS_RANGE;
-use crate::schema::{Setting, list};
+use snakes_core::schema::{Setting, list};
+use snakes_lab::run::THREADS_RANGE;
 
 impl CurrentRun {
     /// Whether a run is in progress whose settings could change.
@@ -171,8 +171,8 @@ fn setting_of(field: &str) -> Option<Setting> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::state::current_run::prepared_run;
+    use snakes_core::save::shipped_champion;
 
     #[test]
     fn a_change_is_described_in_words() {

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::CurrentRun;
-use crate::check::Invalid;
-use crate::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
-use crate::save::{KnownFiles, NamedStairs, Preset, load_preset};
+use snakes_core::check::Invalid;
+use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
+use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
     /// Seed of the next run.

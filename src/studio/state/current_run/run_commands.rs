@@ -1,12 +1,12 @@
 //! Executes commands to the current run.
 
 use super::CurrentRun;
-use crate::save::library::{SavePlace, read_notes};
 use crate::studio::commands::chart_export::ChartFormat;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::chart_export;
 use crate::studio::state::new_file::{offer_path, offer_picture};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::{SavePlace, read_notes};
 
 impl CurrentRun {
     /// Name of the run for people: the name that the user gave it, if any, with its preset and seed.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{CurrentRun, RunStatus};
-use crate::run::{Evaluator, RunSource};
-use crate::save::{ExistingRun, run_name};
+use snakes_core::save::{ExistingRun, run_name};
+use snakes_lab::run::{Evaluator, RunSource};
 
 impl CurrentRun {
     /// The evaluator of the next generation.

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::CurrentRun;
-use crate::evolve::{Champion, IndividualId};
-use crate::run::GenerationReport;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::milestones::{GenerationMember, Milestone, members_to_show};
+use snakes_core::evolve::{Champion, IndividualId};
+use snakes_lab::run::GenerationReport;
 
 impl CurrentRun {
     /// The generations that were better than all before them, the first first.

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use arboard::{Clipboard, ImageData};
 use bevy::platform::cell::SyncCell;
 
-use crate::run::BackgroundTask;
-use crate::save::{Picture, load_picture};
+use snakes_core::save::{Picture, load_picture};
+use snakes_lab::run::BackgroundTask;
 
 /// Content for the clipboard.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -102,7 +102,7 @@ fn rgba(path: &Path) -> Result<ImageData<'static>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::store_picture;
+    use snakes_core::save::store_picture;
 
     #[test]
     fn a_picture_is_copied_with_its_colours_and_opaque() {

@@ -9,8 +9,8 @@ use bevy::tasks::block_on;
 use rfd::{AsyncFileDialog, FileHandle};
 
 use super::portal;
-use crate::run::BackgroundTask;
 use crate::studio::commands::files::FileQuestion;
+use snakes_lab::run::BackgroundTask;
 
 /// The paths chosen in a dialog, none if it was cancelled; or why there is no dialog.
 pub type DialogAnswer = Result<Vec<PathBuf>, String>;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::save::MAX_RECENT;
 use crate::studio::commands::files::FileQuestion;
+use snakes_core::save::MAX_RECENT;
 
 /// Files that were opened or imported lately, the latest first.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

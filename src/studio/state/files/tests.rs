@@ -1,9 +1,9 @@
 //! Tests of the answers of dialogs, with a folder of saves and without any window.
 
 use super::*;
-use crate::save::SavesFolder;
-use crate::save::library::SavePlace;
-use crate::save::{shipped_champion, store_champion};
+use snakes_core::save::SavesFolder;
+use snakes_core::save::library::SavePlace;
+use snakes_core::save::{shipped_champion, store_champion};
 
 /// Files and a library in an empty folder, and a champion elsewhere.
 struct Tried {

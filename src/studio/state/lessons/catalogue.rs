@@ -5,13 +5,13 @@ mod ladder;
 mod report;
 mod senses;
 
-use crate::evolve::{Champion, RunPlan, Settings, with_fields};
-use crate::genome::BodyChange;
-use crate::save::library::{SavePlace, load_entry};
-use crate::save::load_preset;
-use crate::score::evaluate;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::body_editor::changed_body;
+use snakes_core::evolve::{Champion, RunPlan, Settings, with_fields};
+use snakes_core::genome::BodyChange;
+use snakes_core::save::library::{SavePlace, load_entry};
+use snakes_core::save::load_preset;
+use snakes_core::score::evaluate;
 
 use super::lesson::{Lesson, Side};
 

@@ -1,7 +1,7 @@
 //! Results of a lesson's runs.
 
-use crate::evolve::Champion;
-use crate::run::GenerationReport;
+use snakes_core::evolve::Champion;
+use snakes_lab::run::GenerationReport;
 
 /// Results of a lesson's run.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! The parts of a lesson: texts, scenes, and their lanes or runs.
 
 use super::prediction::{Asks, Question};
-use crate::genome::BodyChange;
+use snakes_core::genome::BodyChange;
 
 /// A guided experiment.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 //! Playbacks of a scene's snake to its end, each at one speed.
 
-use crate::score::Evaluation;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::ChampionSource;
+use snakes_core::score::Evaluation;
 
 /// Playbacks of one snake to its end.
 #[derive(Debug, Default)]

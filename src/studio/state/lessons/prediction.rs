@@ -3,7 +3,7 @@
 use super::found::Found;
 use super::lesson::LessonScene;
 use super::plays::Plays;
-use crate::score::{Evaluation, Fitness};
+use snakes_core::score::{Evaluation, Fitness};
 
 /// Ends within this distance count as equally far, in metres.
 pub(super) const EQUAL_M: f32 = 1.0;
@@ -219,7 +219,7 @@ mod tests {
         let close = progress(None, &[25.2, 26.0, 25.9]);
         assert_eq!(close.true_answer(Asks::Furthest), Some(3));
         let mut out = progress(None, &[25.2, 26.0, 25.9]);
-        out.lanes[0].1.disqualified = Some(crate::world::Disqualification::TooFast);
+        out.lanes[0].1.disqualified = Some(snakes_core::world::Disqualification::TooFast);
         assert_eq!(out.true_answer(Asks::Furthest), Some(1), "a disqualified snake ends nowhere");
     }
 

@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 
 use super::*;
-use crate::evolve::Champion;
-use crate::run::{Experiment, LocalPool, RunControl};
-use crate::save::load_preset;
-use crate::score::{Evaluation, evaluate};
 use crate::studio::state::current_run::prepared_run;
+use snakes_core::evolve::Champion;
+use snakes_core::save::load_preset;
+use snakes_core::score::{Evaluation, evaluate};
+use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
 /// Results of a scene, computed once.
 pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {

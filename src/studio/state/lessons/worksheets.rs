@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use super::plays::Play;
 use super::tests::result;
 use super::*;
-use crate::score::Evaluation;
+use snakes_core::score::Evaluation;
 
 /// Contents of a worksheet beside the texts of its lesson.
 struct Sheet {

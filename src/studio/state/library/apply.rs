@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use super::Library;
 use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
 use super::load::{champion_of, generation_of};
-use crate::run::{BackgroundTask, LibraryReader};
-use crate::save::library::{SavePlace, delete, duplicate, export, import, rename, set_notes_text};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::lineup::evenly_chosen;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::{
+    SavePlace, delete, duplicate, export, import, rename, set_notes_text,
+};
+use snakes_lab::run::{BackgroundTask, LibraryReader};
 
 impl Library {
     /// Executes a command, and returns the champions to show on the stage.

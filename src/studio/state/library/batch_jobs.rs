@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::{Library, name_of};
-use crate::run::BackgroundTask;
-use crate::save::SaveError;
-use crate::save::library::{FileStep, SavePlace, read_notes};
 use crate::studio::state::new_file::offer_path;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::SaveError;
+use snakes_core::save::library::{FileStep, SavePlace, read_notes};
+use snakes_lab::run::BackgroundTask;
 
 /// Maximum number of files that are deleted, copied or restored within a frame: each takes some milliseconds, because
 /// it is flushed to the disk.

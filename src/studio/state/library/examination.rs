@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::{Library, name_of};
-use crate::run::exam::{exam_trials, examine};
-use crate::run::{BackgroundTask, LocalPool, RunControl, TaskProgress};
-use crate::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
-use crate::score::ExamSuite;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
+use snakes_core::score::ExamSuite;
+use snakes_lab::run::exam::{exam_trials, examine};
+use snakes_lab::run::{BackgroundTask, LocalPool, RunControl, TaskProgress};
 
 /// Notices about an exam replace each other.
 const SUBJECT: &str = "exam";
@@ -139,10 +139,10 @@ fn examined(
 
 #[cfg(test)]
 mod tests {
-    use crate::save::load_champion;
-    use crate::score::ExamSuite;
     use crate::studio::commands::library::LibraryCommand;
     use crate::studio::state::library::tests::Tried;
+    use snakes_core::save::load_champion;
+    use snakes_core::score::ExamSuite;
 
     #[test]
     fn an_exam_shows_its_progress_and_can_be_cancelled() {

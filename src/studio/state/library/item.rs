@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::genome::ControllerKind;
-use crate::save::EntryNotes;
-use crate::save::library::{
+use snakes_core::genome::ControllerKind;
+use snakes_core::save::EntryNotes;
+use snakes_core::save::library::{
     ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
 
@@ -240,7 +240,7 @@ pub fn date(since_1970: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::library::read_entry;
+    use snakes_core::save::library::read_entry;
 
     #[test]
     fn dates_are_those_of_the_calendar() {

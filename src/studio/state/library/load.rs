@@ -4,10 +4,10 @@ use std::path::Path;
 
 use xxhash_rust::xxh3::xxh3_64;
 
-use crate::evolve::Champion;
-use crate::save::library::{SavePlace, load_entry};
-use crate::save::{LoadedChampion, load_generation};
 use crate::studio::stage::staged_champion::StagedChampion;
+use snakes_core::evolve::Champion;
+use snakes_core::save::library::{SavePlace, load_entry};
+use snakes_core::save::{LoadedChampion, load_generation};
 
 /// Maximum length of a name on the stage, in characters.
 const MAX_LABEL: usize = 40;

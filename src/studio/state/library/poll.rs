@@ -4,8 +4,6 @@ use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
 
 use super::{Library, LibraryItem};
-use crate::run::{BackgroundTask, LibraryEvent};
-use crate::save::library::LibraryEntry;
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
@@ -13,6 +11,8 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::LibraryEntry;
+use snakes_lab::run::{BackgroundTask, LibraryEvent};
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Library>()
@@ -152,10 +152,10 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
-    use crate::save::EntryNotes;
-    use crate::save::SavesFolder;
-    use crate::save::library::{EntryProblem, SavePlace};
     use crate::studio::state::current_run::prepared_run;
+    use snakes_core::save::EntryNotes;
+    use snakes_core::save::SavesFolder;
+    use snakes_core::save::library::{EntryProblem, SavePlace};
 
     #[test]
     fn during_a_run_only_its_entry_is_sorted_again_and_only_after_it_is_read() {

@@ -1,12 +1,12 @@
 //! The states of the connection, and the run that follows them.
 
 use super::*;
-use crate::cluster::RunQueue;
-use crate::evolve::{RunPlan, Settings};
-use crate::run::{LocalPool, RunSource};
-use crate::save::{ExistingRun, SavesFolder};
 use crate::studio::state::options::Options;
 use crate::studio::state::run_context::RunContext;
+use snakes_cluster::RunQueue;
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::save::{ExistingRun, SavesFolder};
+use snakes_lab::run::{LocalPool, RunSource};
 use std::sync::Arc;
 
 /// A run that is held before its first generation, and the folder of its saves.

@@ -1,8 +1,8 @@
 //! The champions that are shared from the stage, and the command of the process that writes their file.
 
 use super::*;
-use crate::save::shipped_champion;
 use crate::studio::stage::staged_champion::StagedChampion;
+use snakes_core::save::shipped_champion;
 
 fn staged() -> StagedChampion {
     StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")

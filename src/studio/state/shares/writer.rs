@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::process::{ChildStdin, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::evolve::Champion;
-use crate::run::BackgroundTask;
-use crate::save::ChampionCopies;
+use snakes_core::evolve::Champion;
+use snakes_core::save::ChampionCopies;
+use snakes_lab::run::BackgroundTask;
 
 /// Holds the standard input of the process, whose end makes it cancel.
 #[derive(Debug, Default)]

@@ -1,9 +1,9 @@
 //! Exams as the user begins, cancels and watches them.
 
 use super::*;
-use crate::save::shipped_champion;
-use crate::score::Trial;
 use crate::studio::stage::StageMode;
+use snakes_core::save::shipped_champion;
+use snakes_core::score::Trial;
 
 /// The built-in champion.
 fn staged() -> StagedChampion {
@@ -96,7 +96,7 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
     let refused = exams.apply(&ExamCommand::Examine, Some(&flat)).expect_err("no stairs");
     assert!(refused.contains("without stairs"), "{refused}");
     assert!(exams.apply(&ExamCommand::Examine, None).is_err(), "nothing is on the stage");
-    loaded.engine = crate::Engine { version: 1, ..crate::Engine::THIS };
+    loaded.engine = snakes_core::Engine { version: 1, ..snakes_core::Engine::THIS };
     let other = StagedChampion::from_file(&loaded, 0, "old");
     assert!(no_exam_because(&other).expect("refused").contains("engine 1"));
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
-use crate::score::Trial;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::what_if::ChangedStage;
 use crate::studio::state::wording::world_in_words;
+use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
+use snakes_core::score::Trial;
 
 /// The champions to show after the plan changed from `from` to `to`: the settings of the world that differ also change
 /// on the stage. `None` if nothing changes there.
@@ -101,10 +101,10 @@ fn stays_with_a_preset(field: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
     use crate::studio::stage::staged_champion::StagedChampion;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use crate::studio::state::what_if::{WorldChange, another_beside, dropped, what_if};
+    use snakes_core::save::shipped_champion;
 
     /// The stage with these champions, whose changes are tried from the start.
     fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {

@@ -1,10 +1,10 @@
 //! Copies beside the original: made, left beside the next, kept and discarded.
 
 use super::*;
-use crate::save::library::{SavePlace, load_entry};
-use crate::save::shipped_champion;
 use crate::studio::state::current_run::prepared_run;
-use crate::world::PhysicsEngine;
+use snakes_core::save::library::{SavePlace, load_entry};
+use snakes_core::save::shipped_champion;
+use snakes_core::world::PhysicsEngine;
 
 /// The stage with these champions, whose changes are tried from the start.
 fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {

@@ -9,9 +9,9 @@ use bevy_egui::egui::ecolor::{
 };
 use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
 
-use crate::evolve::StrategyKind;
-use crate::plot;
-use crate::plot::{BAND_OPACITY, Role, role_color};
+use snakes_core::evolve::StrategyKind;
+use snakes_lab::plot;
+use snakes_lab::plot::{BAND_OPACITY, Role, role_color};
 
 /// Colours and light intensities of a theme.
 #[derive(Debug)]

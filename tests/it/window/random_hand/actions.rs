@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
-use snakes_and_stairs::rng::{Purpose, stream};
+use snakes_core::rng::{Purpose, stream};
 
 use crate::window::places::{Area, Place};
 

@@ -9,9 +9,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use snakes_and_stairs::save::{
-    PreferencesFile, SavedProgress, load_champion, load_plan, load_preset,
-};
+use snakes_core::save::{PreferencesFile, SavedProgress, load_champion, load_plan, load_preset};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::program::snakes;

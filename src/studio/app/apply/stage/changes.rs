@@ -4,8 +4,6 @@
 //! after it take the same, so that their effects can be compared, until the user goes to another moment.
 
 use super::StageParams;
-use crate::run::caught;
-use crate::score::Rollout;
 use crate::studio::commands::PlanCommand;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::{Show, StageMode};
@@ -15,6 +13,8 @@ use crate::studio::state::plan_commands::apply_to_plan;
 use crate::studio::state::undo::{PlanStep, UndoDirection, UndoHistory, followed, stepped};
 use crate::studio::state::what_if::ChangedStage;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::score::Rollout;
+use snakes_lab::run::caught;
 
 /// The moment from which a change is tried.
 struct TriedMoment {

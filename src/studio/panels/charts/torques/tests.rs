@@ -1,14 +1,14 @@
 //! Tests of the torques chart: signals, waves, and the snake that it shows.
 
 use super::*;
-use crate::evolve::{Champion, Parents};
-use crate::genome::{ControllerGenes, ControllerKind};
-use crate::rng::{Purpose, stream};
-use crate::save::shipped_champion;
 use crate::studio::state::current_run::explored_run;
+use snakes_core::evolve::{Champion, Parents};
+use snakes_core::genome::{ControllerGenes, ControllerKind};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::shipped_champion;
 
 fn subject(kind: ControllerKind, individual: u32, trial: &Trial) -> Subject {
-    let space = crate::genome::GenomeSpace { controller: kind, ..Default::default() };
+    let space = snakes_core::genome::GenomeSpace { controller: kind, ..Default::default() };
     let mut rng = stream(1, 1, individual, Purpose::Birth);
     let genome = Arc::new(space.random_genome(trial.genome_shape(), &mut rng));
     let name = name_of(1, individual);

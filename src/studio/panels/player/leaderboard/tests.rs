@@ -1,11 +1,11 @@
 //! The leaderboard: ranking, buttons, split times.
 
 use super::*;
-use crate::evolve::{RunPlan, Settings};
-use crate::save::shipped_champion;
 use crate::studio::stage::staged_champion::StagedChampion;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::save::shipped_champion;
 
 #[test]
 fn a_click_focuses_a_lane_and_buttons_keep_or_discard_a_change() {

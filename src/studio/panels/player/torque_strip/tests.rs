@@ -1,10 +1,10 @@
 //! The strip under the pointer.
 
 use super::*;
-use crate::save::shipped_champion;
 use crate::studio::stage::staged_champion::StagedChampion;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::save::shipped_champion;
 
 const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
 

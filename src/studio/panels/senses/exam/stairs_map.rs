@@ -3,11 +3,11 @@
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
-use crate::score::{ExamSuite, StairsCell, StairsGrid, Trial};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::end_in_words;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::palette::{ramp, text_on};
+use snakes_core::score::{ExamSuite, StairsCell, StairsGrid, Trial};
 
 /// A map and where it is drawn.
 pub(super) struct StairsMap<'m> {

@@ -1,13 +1,13 @@
 //! The section before, during and after an exam.
 
 use super::*;
-use crate::evolve::with_fields;
-use crate::rng::{Purpose, stream};
-use crate::save::{LoadedChampion, load_preset, shipped_champion};
-use crate::score::ExamEnd;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::evolve::with_fields;
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{LoadedChampion, load_preset, shipped_champion};
+use snakes_core::score::ExamEnd;
 
 type Section<'a> = Harness<'a, Vec<Command>>;
 

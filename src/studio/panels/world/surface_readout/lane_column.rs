@@ -6,7 +6,7 @@ use super::{LOST, ReadoutLine, SLIP};
 use crate::studio::stage::contact_meter::SurfaceReading;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme;
-use crate::world::TouchedSurface;
+use snakes_core::world::TouchedSurface;
 
 /// Height of the bar, in points.
 const BAR_HEIGHT: f32 = theme::GAP;

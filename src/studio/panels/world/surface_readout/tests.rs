@@ -2,13 +2,13 @@
 
 use super::lane_column::{in_joules, in_m_s, in_mm, in_watts};
 use super::*;
-use crate::save::{LoadedChampion, shipped_champion};
-use crate::score::Recording;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::world::Surface;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::save::{LoadedChampion, shipped_champion};
+use snakes_core::score::Recording;
+use snakes_core::world::Surface;
 
 fn shipped() -> LoadedChampion {
     shipped_champion().expect("well formed")

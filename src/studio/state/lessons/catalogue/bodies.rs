@@ -1,9 +1,9 @@
 //! The lesson about bodies that evolve with their gaits.
 
-use crate::genome::BodyChange;
 use crate::studio::state::lessons::lesson::{
     Lesson, LessonScene, furthest, lane, lane_of_body, later_bodies, run,
 };
+use snakes_core::genome::BodyChange;
 
 /// Why bodies need protection.
 pub(super) const PROTECTION: Lesson = Lesson {

@@ -1,9 +1,9 @@
 //! Tests of operations on the files of saves.
 
 use super::*;
-use crate::save::library::SavePlace;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::tests::Tried;
+use snakes_core::save::library::SavePlace;
 
 /// A library of this many saves, and their places.
 fn of_many(count: usize) -> (Tried, Vec<SavePlace>) {
@@ -113,7 +113,7 @@ fn a_message_names_a_run_by_its_own_name() {
     std::fs::create_dir(&kept).expect("made");
     let steps = [FileStep::Deleted { from: from.clone(), kept: kept.clone() }];
     assert_eq!(listed_steps(DELETED, &steps), "deleted climb-seed1-0123abcd");
-    crate::save::library::rename(&SavePlace::Run(kept.clone()), "Ice: 1/2").expect("named");
+    snakes_core::save::library::rename(&SavePlace::Run(kept.clone()), "Ice: 1/2").expect("named");
     assert_eq!(listed_steps(DELETED, &steps), "deleted Ice: 1/2");
     let restored = [FileStep::Restored { wanted: from, to: kept }];
     let said = undone_in_words(UndoDirection::Back, "deleted Ice: 1/2", &restored);

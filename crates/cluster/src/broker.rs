@@ -1,0 +1,261 @@
+//! The connection to a NATS server, and the streams on it.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
+use async_nats::jetstream::context::ConsumerInfoErrorKind;
+use async_nats::jetstream::stream::{Config, DiscardPolicy, RetentionPolicy, StorageType, Stream};
+use async_nats::jetstream::{self, Context};
+use async_nats::{Client, ConnectOptions};
+use tokio::runtime::{Builder, Handle, Runtime};
+
+use super::address::BrokerOptions;
+use super::connection::{ServerConnection, Trouble};
+use super::error::ClusterError;
+use super::names::{
+    ACKNOWLEDGEMENT_WAIT, MESSAGE_AGE, RESULT_STREAM, RESULT_SUBJECTS, WORK_STREAM, WORK_SUBJECTS,
+    result_subject, worker_consumer,
+};
+use snakes_core::save::load_text;
+
+/// A connection. It is made again whenever it is lost.
+#[derive(Debug)]
+pub struct Broker {
+    options: BrokerOptions,
+    connection: Arc<ServerConnection>,
+    runtime: Handle,
+    /// Present until this is dropped.
+    owned_runtime: Option<Runtime>,
+    client: Client,
+    jetstream: Context,
+}
+
+/// The messages that are fetched.
+#[derive(Debug, Clone)]
+pub enum PullSource {
+    /// Batches for workers with this proof.
+    Work(String),
+    /// Results of this run.
+    Results(String),
+}
+
+/// How long a server may take to answer.
+const ANSWER_WAIT: Duration = Duration::from_secs(5);
+/// Maximum number of waiting requests for work: one for each thread in the room.
+const MOST_WAITING: i64 = 20_000;
+/// Maximum number of batches that workers have at the same time.
+const MOST_OUTSTANDING: i64 = 20_000;
+
+impl Broker {
+    /// Connects, and makes the streams that are not there yet.
+    ///
+    /// # Errors
+    /// The server cannot be reached, refuses the credentials, or has no JetStream.
+    pub fn connect(options: &BrokerOptions, name: &str) -> Result<Self, ClusterError> {
+        options.check()?;
+        let runtime = Builder::new_multi_thread()
+            .worker_threads(1)
+            .thread_name("cluster")
+            .enable_all()
+            .build()?;
+        let connection = Arc::new(ServerConnection::new(&options.url));
+        let (client, jetstream) = runtime.block_on(connect(options, name, &connection))?;
+        let handle = runtime.handle().clone();
+        let broker = Self {
+            options: options.clone(),
+            connection,
+            runtime: handle,
+            owned_runtime: Some(runtime),
+            client,
+            jetstream,
+        };
+        broker.check_jetstream()?;
+        let streams = broker.runtime.block_on(broker.make_streams());
+        streams.map_err(|trouble| broker.refused("a stream", &trouble))?;
+        Ok(broker)
+    }
+
+    /// The address.
+    pub fn url(&self) -> &str {
+        &self.options.url
+    }
+
+    /// The command that starts a worker for this server.
+    pub(super) fn worker_command(&self) -> String {
+        format!("snakes worker {}", self.options.flags())
+    }
+
+    /// The flags that name this server on a command line.
+    pub(super) fn flags(&self) -> String {
+        self.options.flags()
+    }
+
+    /// The state of the connection.
+    pub(super) fn connection(&self) -> &ServerConnection {
+        &self.connection
+    }
+
+    /// The runtime of the connection.
+    pub(super) fn runtime(&self) -> &Handle {
+        &self.runtime
+    }
+
+    pub(super) fn client(&self) -> &Client {
+        &self.client
+    }
+
+    pub(super) fn jetstream(&self) -> &Context {
+        &self.jetstream
+    }
+
+    /// The largest message that the server takes, in bytes.
+    pub(super) fn largest_message(&self) -> usize {
+        // The rest is for headers.
+        self.client.server_info().max_payload.saturating_sub(4096)
+    }
+
+    fn check_jetstream(&self) -> Result<(), ClusterError> {
+        match self.client.server_info().jetstream {
+            true => Ok(()),
+            false => Err(ClusterError::NoJetStream { url: self.url().to_owned() }),
+        }
+    }
+
+    /// Makes the streams that are not there.
+    pub(super) async fn make_streams(&self) -> Result<(), Trouble> {
+        self.work_stream().await?;
+        self.result_stream().await.map(drop)
+    }
+
+    /// The stream of batches, which is made if it is not there.
+    pub(super) async fn work_stream(&self) -> Result<Stream, Trouble> {
+        let config = stream_config(WORK_STREAM, WORK_SUBJECTS);
+        let stream = self.jetstream.get_or_create_stream(config).await;
+        stream.map_err(|error| Trouble::of(&error))
+    }
+
+    /// The stream of results, which is made if it is not there.
+    pub(super) async fn result_stream(&self) -> Result<Stream, Trouble> {
+        let config = stream_config(RESULT_STREAM, RESULT_SUBJECTS);
+        let stream = self.jetstream.get_or_create_stream(config).await;
+        stream.map_err(|error| Trouble::of(&error))
+    }
+
+    /// A consumer, and whether it had to be made because it was not there. All workers with the same proof share one, and
+    /// each run has its own.
+    pub(super) async fn consumer(
+        &self,
+        source: &PullSource,
+    ) -> Result<(PullConsumer, bool), Trouble> {
+        let (stream, config) = match source {
+            PullSource::Work(proof) => (self.work_stream().await?, work_config(proof)),
+            PullSource::Results(run) => (self.result_stream().await?, result_config(run)),
+        };
+        let name = config.durable_name.clone().unwrap_or_default();
+        let is_missing = match stream.consumer_info(&name).await {
+            Ok(_) => false,
+            Err(error) if error.kind() == ConsumerInfoErrorKind::NotFound => true,
+            Err(error) => return Err(Trouble::of(&error)),
+        };
+        let consumer = stream.get_or_create_consumer(&name, config).await;
+        Ok((consumer.map_err(|error| Trouble::of(&error))?, is_missing))
+    }
+
+    pub(super) fn refused(&self, task: &'static str, trouble: &Trouble) -> ClusterError {
+        ClusterError::Refused { url: self.url().to_owned(), task, problem: trouble.to_string() }
+    }
+}
+
+impl Drop for Broker {
+    /// A task on the runtime may hold the broker last, and must not wait for its own end.
+    fn drop(&mut self) {
+        if let Some(runtime) = self.owned_runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+async fn connect(
+    options: &BrokerOptions,
+    name: &str,
+    connection: &Arc<ServerConnection>,
+) -> Result<(Client, Context), ClusterError> {
+    let mut connect = ConnectOptions::new();
+    if let Some(path) = &options.creds {
+        let text = load_text(path)?;
+        let seed = text.trim();
+        connect = match seed.starts_with('S') && !seed.contains('\n') {
+            true => connect.nkey(seed.to_owned()),
+            false => connect.credentials(&text).map_err(|error| ClusterError::Credentials {
+                path: path.clone(),
+                problem: error.to_string(),
+            })?,
+        };
+    }
+    if let Some(path) = &options.tls_ca {
+        // The client's own error does not name the file.
+        if !load_text(path)?.contains("-----BEGIN CERTIFICATE-----") {
+            return Err(ClusterError::NoCertificate(path.clone()));
+        }
+        connect = connect.add_root_certificates(path.clone()).require_tls(true);
+    }
+    let connection = Arc::clone(connection);
+    let connect = connect
+        .name(name)
+        .connection_timeout(ANSWER_WAIT)
+        .request_timeout(Some(ANSWER_WAIT))
+        .ping_interval(Duration::from_secs(5))
+        .reconnect_delay_callback(|attempts| {
+            Duration::from_millis(100 * attempts.clamp(1, 10) as u64)
+        })
+        .event_callback(move |event| {
+            connection.on_event(&event);
+            std::future::ready(())
+        });
+    let addresses: Vec<&str> = options.url.split(',').collect();
+    let client = connect.connect(addresses).await.map_err(|error| ClusterError::Unreachable {
+        url: options.url.clone(),
+        problem: options.why_unreachable(&error),
+    })?;
+    let jetstream = jetstream::new(client.clone());
+    Ok((client, jetstream))
+}
+
+fn stream_config(name: &str, subjects: &str) -> Config {
+    Config {
+        name: name.to_owned(),
+        subjects: vec![subjects.to_owned()],
+        retention: RetentionPolicy::WorkQueue,
+        storage: StorageType::File,
+        discard: DiscardPolicy::New,
+        max_age: MESSAGE_AGE,
+        duplicate_window: Duration::from_secs(120),
+        ..Config::default()
+    }
+}
+
+/// The consumer of batches that all workers with this proof share.
+fn work_config(proof: &str) -> pull::Config {
+    pull::Config {
+        durable_name: Some(worker_consumer(proof)),
+        filter_subject: format!("snakes.work.{proof}.>"),
+        ack_policy: AckPolicy::Explicit,
+        ack_wait: ACKNOWLEDGEMENT_WAIT,
+        max_ack_pending: MOST_OUTSTANDING,
+        max_waiting: MOST_WAITING,
+        ..pull::Config::default()
+    }
+}
+
+/// The consumer of a run's results.
+fn result_config(run: &str) -> pull::Config {
+    pull::Config {
+        durable_name: Some(run.to_owned()),
+        filter_subject: result_subject(run),
+        ack_policy: AckPolicy::Explicit,
+        ack_wait: Duration::from_secs(30),
+        max_ack_pending: MOST_OUTSTANDING,
+        ..pull::Config::default()
+    }
+}

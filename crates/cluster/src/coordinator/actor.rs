@@ -1,0 +1,329 @@
+//! The input and output of a coordinator: one thread that feeds the ledger and does what it says.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::Sender;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
+use tokio::task::JoinHandle;
+
+use super::ledger::{AuditTask, CallId, Checker, Ledger, LedgerAction};
+use super::traffic::{News, answer_shared, fetch_results, hear_notices};
+use super::{CoordinatorOptions, SharedTexts, Status};
+use crate::broker::{Broker, PullSource};
+use crate::compute::{Compute, outcome_of_texts};
+use crate::connection::Trouble;
+use crate::error::ClusterError;
+use crate::hello::{RunNotice, host_name, random_number};
+use crate::names::{
+    NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, result_subject,
+    work_subject,
+};
+use crate::outcome::Outcome;
+use crate::store::publish_until_stored;
+use crate::wire::{ResultBatch, TaskKind, WIRE_FORMAT, WorkBatch, line_of};
+use snakes_core::{ENGINE_VERSION, Processors};
+use snakes_lab::run::headless::say;
+
+/// A message to the coordinator's thread.
+#[derive(Debug)]
+pub enum CoordinatorCommand {
+    /// A call of the evaluator begins.
+    Open {
+        /// Its number.
+        call: CallId,
+        /// The kind of its tasks.
+        kind: TaskKind,
+        /// Hash of what they share.
+        shared: u64,
+        /// The tasks, by index.
+        tasks: Vec<Arc<str>>,
+        /// Takes the index and the outcome of each.
+        sender: Sender<(usize, Outcome)>,
+    },
+    /// It holds or continues.
+    Pause(CallId, bool),
+    /// It ends.
+    Close(CallId),
+    /// A thread of the coordinator asks for a task.
+    TakeLocal(Sender<Option<LocalTask>>),
+    /// It computed one.
+    Local(u64, Outcome),
+    /// A check was answered with this outcome, or not at all.
+    Audited(u64, Option<Arc<str>>),
+    /// The coordinator ends.
+    End,
+}
+
+/// A task for a thread of the coordinator: key, kind, hash of what it shares, text.
+pub type LocalTask = (u64, TaskKind, u64, Arc<str>);
+
+/// See the module.
+pub struct Actor {
+    broker: Arc<Broker>,
+    options: CoordinatorOptions,
+    ledger: Ledger,
+    calls: BTreeMap<CallId, Sender<(usize, Outcome)>>,
+    shared: Arc<SharedTexts>,
+    status: Arc<Mutex<Status>>,
+    commands: UnboundedSender<CoordinatorCommand>,
+    news: Receiver<News>,
+    /// When a message last came from the server.
+    heard: Instant,
+    tasks: Vec<JoinHandle<()>>,
+}
+
+/// Interval at which late batches and silent workers are looked for.
+const TICK: Duration = Duration::from_millis(250);
+/// If nothing was heard from the server for this long, the silence of the workers is not theirs. This run's own notices
+/// come back each second.
+const DEAFNESS: Duration = NOTICE_INTERVAL.saturating_mul(3);
+/// How long a worker may take to answer a check, besides the time of its evaluation.
+const AUDIT_WAIT: Duration = Duration::from_secs(20);
+/// Maximum number of messages that wait for the ledger.
+const MOST_WAITING: usize = 1024;
+
+impl Actor {
+    /// Makes the run's consumer and removes batches of a predecessor.
+    ///
+    /// # Errors
+    /// The server refuses the run.
+    pub fn start(
+        broker: Arc<Broker>,
+        options: &CoordinatorOptions,
+        shared: Arc<SharedTexts>,
+        status: Arc<Mutex<Status>>,
+        commands: UnboundedSender<CoordinatorCommand>,
+    ) -> Result<Self, ClusterError> {
+        let prepared = broker.runtime().block_on(async {
+            let stream = broker.work_stream().await?;
+            let left = stream.purge().filter(work_subject(&options.proof, &options.run)).await;
+            left.map_err(|error| Trouble::of(&error))?;
+            broker.consumer(&PullSource::Results(options.run.clone())).await?;
+            // Before this run tells of itself: workers answer.
+            let heard = async |subject| {
+                let heard = broker.client().subscribe(subject).await;
+                heard.map_err(|error| Trouble::of(&error))
+            };
+            Ok((heard(WORKER_NOTICES).await?, heard(RUN_NOTICES).await?))
+        });
+        let (workers, runs) =
+            prepared.map_err(|trouble: Trouble| broker.refused("the run", &trouble))?;
+        // The numbers of a predecessor's batches are far away. Neither number can change a result.
+        let seed = random_number();
+        let rng = ChaCha8Rng::seed_from_u64(seed);
+        let ledger = Ledger::new(
+            &options.run,
+            &options.proof,
+            broker.largest_message(),
+            (seed >> 24) << 20,
+            rng,
+        );
+        let (sender, news) = channel(MOST_WAITING);
+        let runtime = broker.runtime();
+        let tasks = vec![
+            runtime.spawn(fetch_results(Arc::clone(&broker), options.run.clone(), sender.clone())),
+            runtime.spawn(hear_notices(workers, runs, sender)),
+            runtime.spawn(answer_shared(
+                Arc::clone(&broker),
+                options.run.clone(),
+                Arc::clone(&shared),
+            )),
+        ];
+        let calls = BTreeMap::new();
+        let options = options.clone();
+        let heard = Instant::now();
+        Ok(Self { broker, options, ledger, calls, shared, status, commands, news, heard, tasks })
+    }
+
+    fn act(&mut self, actions: Vec<LedgerAction>) {
+        for action in actions {
+            match action {
+                LedgerAction::Publish(batch) => self.publish(batch),
+                LedgerAction::Deliver(call, index, outcome) => {
+                    // A call that was cancelled does not listen any more.
+                    if let Some(sender) = self.calls.get(&call) {
+                        let _ = sender.send((index, outcome));
+                    }
+                }
+                LedgerAction::Audit(task) => self.audit(task),
+                LedgerAction::Say(line) => say(&line),
+                LedgerAction::Taint(line) => {
+                    self.status().taint.get_or_insert(line);
+                }
+            }
+        }
+    }
+
+    fn publish(&mut self, batch: WorkBatch) {
+        let bytes = batch.encode();
+        if bytes.len() > self.broker.largest_message() {
+            let actions = self.ledger.on_too_large(&batch);
+            return self.act(actions);
+        }
+        let id = format!("{}.{}", batch.run, batch.batch);
+        let subject = work_subject(&self.options.proof, &batch.run);
+        let broker = Arc::clone(&self.broker);
+        self.tasks.retain(|task| !task.is_finished());
+        self.tasks.push(self.broker.runtime().spawn(async move {
+            publish_until_stored(&broker, "work cannot be stored", &subject, &id, &bytes).await;
+        }));
+    }
+
+    fn audit(&mut self, audit: AuditTask) {
+        let commands = self.commands.clone();
+        let key = audit.task.key;
+        let answer = move |line| {
+            let _ = commands.send(CoordinatorCommand::Audited(key, line));
+        };
+        let runtime = self.broker.runtime();
+        match audit.checker {
+            Checker::Coordinator => {
+                let compute: Arc<dyn Compute> = Arc::clone(&self.options.compute);
+                let text = self.shared.get(audit.shared).unwrap_or_default();
+                runtime.spawn_blocking(move || {
+                    let outcome = outcome_of_texts(&compute, audit.kind, &text, &audit.task.text);
+                    answer(Some(outcome.line().into()));
+                });
+            }
+            Checker::Worker(worker) => {
+                let work = WorkBatch {
+                    run: self.options.run.clone(),
+                    batch: 0,
+                    kind: audit.kind,
+                    shared: audit.shared,
+                    tasks: vec![audit.task],
+                };
+                let client = self.broker.client().clone();
+                runtime.spawn(async move {
+                    let request = async_nats::Request::new()
+                        .payload(work.encode().into())
+                        .timeout(Some(AUDIT_WAIT));
+                    let reply = client.send_request(audit_subject(&worker), request).await;
+                    let results = reply.ok().and_then(|of| ResultBatch::decode(&of.payload).ok());
+                    let outcome = results.and_then(|results| results.outcomes.into_iter().next());
+                    answer(outcome.filter(|of| of.key == key).map(|outcome| outcome.text));
+                });
+            }
+        }
+    }
+
+    fn status(&self) -> std::sync::MutexGuard<'_, Status> {
+        self.status.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn update_status(&self) {
+        let (workers, threads) = (self.ledger.staff().workers(), self.ledger.staff().threads());
+        let audits = self.ledger.audits();
+        let mut status = self.status();
+        (status.workers, status.threads, status.audits) = (workers, threads, audits);
+    }
+
+    fn on_command(&mut self, command: CoordinatorCommand) -> bool {
+        let now = Instant::now();
+        let actions = match command {
+            CoordinatorCommand::Open { call, kind, shared, tasks, sender } => {
+                self.calls.insert(call, sender);
+                self.ledger.open(call, kind, shared, tasks, now)
+            }
+            CoordinatorCommand::Pause(call, is_paused) => self.ledger.pause(call, is_paused, now),
+            CoordinatorCommand::Close(call) => {
+                self.calls.remove(&call);
+                self.ledger.close(call);
+                Vec::new()
+            }
+            CoordinatorCommand::TakeLocal(sender) => {
+                let _ = sender.send(self.ledger.take_for_local());
+                Vec::new()
+            }
+            CoordinatorCommand::Local(key, outcome) => self.ledger.on_local(key, outcome),
+            CoordinatorCommand::Audited(key, line) => self.ledger.on_audit(key, line, now),
+            CoordinatorCommand::End => return false,
+        };
+        self.act(actions);
+        self.update_status();
+        true
+    }
+
+    fn on_news(&mut self, news: News) {
+        let now = Instant::now();
+        self.heard = now;
+        let actions = match news {
+            News::Results(results) => self.ledger.on_results(results, now),
+            News::Notice(notice) => self.ledger.on_notice(notice, now),
+            News::ServerIsHeard => Vec::new(),
+            News::StoreLost => self.ledger.on_store_lost(now),
+        };
+        self.act(actions);
+        self.update_status();
+    }
+
+    fn on_tick(&mut self) {
+        let now = Instant::now();
+        if now.duration_since(self.heard) > DEAFNESS {
+            self.ledger.excuse_silence(now);
+        }
+        let actions = self.ledger.on_tick(now);
+        self.act(actions);
+        self.update_status();
+    }
+
+    async fn tell(&self) {
+        let notice = RunNotice {
+            format: WIRE_FORMAT,
+            run: self.options.run.clone(),
+            host: host_name(),
+            engine: ENGINE_VERSION,
+            processors: Processors::THIS,
+            proof: self.options.proof.clone(),
+            pending: self.ledger.pending() as u64,
+            results: self.ledger.results(),
+            set_aside: self.ledger.staff().set_aside_names(),
+        };
+        let _ = self.broker.client().publish(RUN_NOTICES, line_of(&notice).into()).await;
+    }
+}
+
+/// Runs a coordinator until it is told to end. Then its batches and its consumer are removed from the server.
+pub fn run_actor(
+    broker: &Broker,
+    mut actor: Actor,
+    mut commands: UnboundedReceiver<CoordinatorCommand>,
+) {
+    broker.runtime().block_on(async {
+        let mut ticks = tokio::time::interval(TICK);
+        let mut notices = tokio::time::interval(NOTICE_INTERVAL);
+        loop {
+            tokio::select! {
+                command = commands.recv() => {
+                    let Some(command) = command else { break };
+                    if !actor.on_command(command) {
+                        break;
+                    }
+                }
+                news = actor.news.recv() => if let Some(news) = news { actor.on_news(news) },
+                _ = ticks.tick() => actor.on_tick(),
+                _ = notices.tick() => actor.tell().await,
+            }
+        }
+        actor.tasks.iter().for_each(JoinHandle::abort);
+        if !actor.broker.connection().is_lost() {
+            let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
+        }
+    });
+}
+
+/// Removes what the run leaves on the server.
+async fn clean_up(actor: &Actor) {
+    if let Ok(stream) = actor.broker.work_stream().await {
+        let subject = work_subject(&actor.options.proof, &actor.options.run);
+        let _ = stream.purge().filter(subject).await;
+    }
+    if let Ok(stream) = actor.broker.result_stream().await {
+        let _ = stream.purge().filter(result_subject(&actor.options.run)).await;
+        let _ = stream.delete_consumer(&actor.options.run).await;
+    }
+}

@@ -1,0 +1,244 @@
+//! The workers: which are there, which have been proven, and the results that are held of the others.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::LedgerAction;
+use crate::hello::{WorkerNotice, own_engine};
+use crate::names::SILENCE;
+use crate::wire::TaskText;
+
+/// Maximum number of workers. Others are not heard.
+const MOST_MEMBERS: usize = 20_000;
+/// Maximum number of workers whose arrival is told to the user.
+const MOST_TOLD: usize = 50;
+
+/// Whether results of a worker count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// None of its results has been checked. They are held.
+    New,
+    /// A result of it had the bits that this machine computes. Its results count.
+    Proven,
+    /// It computes with another engine. It gets no batches of this run.
+    Foreign,
+    /// It sent a wrong result. Nothing that it sends counts.
+    SetAside,
+}
+
+/// A worker.
+#[derive(Debug, Clone)]
+pub struct StaffMember {
+    /// Its latest notice.
+    pub notice: Option<WorkerNotice>,
+    /// Whether its results count.
+    pub standing: Standing,
+    /// Results that count as soon as it is proven.
+    pub held: Vec<TaskText>,
+    /// Number of its results that counted.
+    pub results: u64,
+    seen: Instant,
+    is_being_proven: bool,
+    /// Whether its arrival was told to the user.
+    is_told: bool,
+}
+
+/// All workers, by name.
+#[derive(Debug, Default)]
+pub struct Staff(BTreeMap<String, StaffMember>);
+
+impl StaffMember {
+    fn new(now: Instant) -> Self {
+        Self {
+            notice: None,
+            standing: Standing::New,
+            held: Vec::new(),
+            results: 0,
+            seen: now,
+            is_being_proven: false,
+            is_told: false,
+        }
+    }
+
+    /// Name of its computer.
+    pub fn host(&self) -> &str {
+        self.notice.as_ref().map_or("an unknown computer", |notice| &notice.host)
+    }
+
+    fn works(&self) -> bool {
+        matches!(self.standing, Standing::New | Standing::Proven)
+            && self.notice.as_ref().is_some_and(|notice| !notice.leaves)
+    }
+}
+
+impl Staff {
+    /// Number of workers whose results may count.
+    pub fn workers(&self) -> usize {
+        self.0.values().filter(|member| member.works()).count()
+    }
+
+    /// Number of their threads.
+    pub fn threads(&self) -> usize {
+        let works = self.0.values().filter(|member| member.works());
+        works.filter_map(|member| Some(member.notice.as_ref()?.threads as usize)).sum()
+    }
+
+    /// Names of the workers that were set aside.
+    pub fn set_aside_names(&self) -> Vec<String> {
+        let is_it = |(_, member): &(&String, &StaffMember)| member.standing == Standing::SetAside;
+        self.0.iter().filter(is_it).map(|(name, _)| name.clone()).collect()
+    }
+
+    /// A worker told of itself.
+    pub fn on_notice(
+        &mut self,
+        notice: WorkerNotice,
+        proof: &str,
+        now: Instant,
+    ) -> Vec<LedgerAction> {
+        let name = notice.worker.clone();
+        let is_new = !self.0.contains_key(&name);
+        if is_new && self.0.len() >= MOST_MEMBERS {
+            return Vec::new();
+        }
+        let is_told = self.0.len() < MOST_TOLD;
+        let member = self.0.entry(name.clone()).or_insert_with(|| StaffMember::new(now));
+        member.seen = now;
+        let mut actions = Vec::new();
+        if notice.proof != proof && member.standing != Standing::Foreign {
+            member.standing = Standing::Foreign;
+            actions.push(LedgerAction::Say(format!(
+                "worker {name} on {} computes with {}, this run with {}: it gets no work",
+                notice.host,
+                notice.engine_words(),
+                own_engine(proof)
+            )));
+        } else if is_new && is_told && !notice.leaves {
+            let threads = notice.threads;
+            let plural = if threads == 1 { "" } else { "s" };
+            let line = format!("worker {name} on {}: {threads} thread{plural}", notice.host);
+            actions.push(LedgerAction::Say(line));
+            member.is_told = true;
+        }
+        let left = notice.leaves && member.notice.as_ref().is_some_and(|before| !before.leaves);
+        if left {
+            actions.push(LedgerAction::Say(format!("worker {name} on {} left", notice.host)));
+        }
+        member.notice = Some(notice);
+        actions
+    }
+
+    /// Forgets workers that have been silent for long, but not those that were set aside. Returns for each a line about its
+    /// loss, if its arrival was told and it did not leave, and the tasks of which results of it were held.
+    pub fn forget_silent(&mut self, now: Instant) -> Vec<(Option<String>, Vec<u64>)> {
+        let is_silent = |_: &String, member: &mut StaffMember| {
+            now.duration_since(member.seen) > SILENCE && member.standing != Standing::SetAside
+        };
+        let forgotten: BTreeMap<String, StaffMember> = self.0.extract_if(.., is_silent).collect();
+        let lines = forgotten.into_iter().map(|(name, member)| {
+            let line = (member.is_told && member.works()).then(|| {
+                format!(
+                    "worker {name} on {} lost: no sign of it for {} s; others compute what it had",
+                    member.host(),
+                    SILENCE.as_secs()
+                )
+            });
+            (line, member.held.iter().map(|outcome| outcome.key).collect())
+        });
+        lines.collect()
+    }
+
+    /// No worker could be heard until now: their silence counts from now on.
+    pub fn excuse_silence(&mut self, now: Instant) {
+        self.0.values_mut().for_each(|member| member.seen = now);
+    }
+
+    /// Whether results of a worker count. One that nobody has heard of is new.
+    pub fn standing(&self, worker: &str) -> Standing {
+        self.0.get(worker).map_or(Standing::New, |member| member.standing)
+    }
+
+    /// Holds a result.
+    pub fn hold(&mut self, worker: &str, outcome: TaskText, now: Instant) {
+        if self.0.len() >= MOST_MEMBERS && !self.0.contains_key(worker) {
+            return;
+        }
+        let new = || StaffMember::new(now);
+        let member = self.0.entry(worker.to_owned()).or_insert_with(new);
+        if !member.held.iter().any(|held| held.key == outcome.key) {
+            member.held.push(outcome);
+        }
+    }
+
+    /// Whether a result of a task is held.
+    pub fn holds(&self, key: u64) -> bool {
+        self.0.values().flat_map(|member| &member.held).any(|held| held.key == key)
+    }
+
+    /// Drops a held result that is not needed any more.
+    pub fn drop_held(&mut self, worker: &str, key: u64) {
+        if let Some(member) = self.0.get_mut(worker) {
+            member.held.retain(|held| held.key != key);
+        }
+    }
+
+    /// For each new worker with results, one of them, if none is being checked.
+    pub fn to_be_proven(&self, rng: &mut ChaCha8Rng) -> Vec<(String, TaskText)> {
+        let mut chosen = Vec::new();
+        for (name, member) in &self.0 {
+            let waits = member.standing == Standing::New && !member.is_being_proven;
+            if waits && !member.held.is_empty() {
+                let one = &member.held[rng.random_range(0..member.held.len())];
+                chosen.push((name.clone(), one.clone()));
+            }
+        }
+        chosen
+    }
+
+    /// A result of this worker is being checked.
+    pub fn begin_proof(&mut self, worker: &str) {
+        if let Some(member) = self.0.get_mut(worker) {
+            member.is_being_proven = true;
+        }
+    }
+
+    /// The worker is proven, unless it was set aside before. Returns the results that were held.
+    pub fn prove(&mut self, worker: &str) -> Vec<TaskText> {
+        let Some(member) = self.0.get_mut(worker) else { return Vec::new() };
+        if member.standing == Standing::New {
+            member.standing = Standing::Proven;
+        }
+        std::mem::take(&mut member.held)
+    }
+
+    /// A result of this worker counted.
+    pub fn count_result(&mut self, worker: &str) {
+        if let Some(member) = self.0.get_mut(worker) {
+            member.results += 1;
+        }
+    }
+
+    /// Sets a worker aside, and returns it as it was; none if it is set aside already.
+    pub fn set_aside(&mut self, worker: &str) -> Option<StaffMember> {
+        let member = self.0.get_mut(worker)?;
+        if member.standing == Standing::SetAside {
+            return None;
+        }
+        let before = member.clone();
+        member.standing = Standing::SetAside;
+        member.held.clear();
+        Some(before)
+    }
+
+    /// A proven worker other than this one, chosen at random.
+    pub fn other_proven(&self, worker: &str, rng: &mut ChaCha8Rng) -> Option<String> {
+        let is_it = |(name, member): &(&String, &StaffMember)| {
+            member.standing == Standing::Proven && member.works() && *name != worker
+        };
+        let others: Vec<&String> = self.0.iter().filter(is_it).map(|(name, _)| name).collect();
+        (!others.is_empty()).then(|| others[rng.random_range(0..others.len())].clone())
+    }
+}

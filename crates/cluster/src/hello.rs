@@ -1,0 +1,183 @@
+//! What workers and coordinators tell of themselves once a second.
+
+use serde::{Deserialize, Serialize};
+
+use super::names::check_name;
+use super::wire::{WireError, parse_line};
+use snakes_core::check::within;
+use snakes_core::save::hash_of;
+use snakes_core::schema::Choices;
+use snakes_core::{ENGINE_VERSION, Processors};
+
+/// The largest notice, in bytes.
+const LARGEST_NOTICE: usize = 4096;
+
+/// What a worker tells of itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WorkerNotice {
+    /// Format of the messages.
+    pub format: u32,
+    /// Its name, which no other worker has.
+    pub worker: String,
+    /// Name of its computer.
+    pub host: String,
+    /// Version of its engine.
+    pub engine: u32,
+    /// Its processors.
+    pub processors: Processors,
+    /// The hash of its bits in some short cases.
+    pub proof: String,
+    /// Number of its threads.
+    pub threads: u32,
+    /// Number of its evaluations since it started.
+    pub evaluations: u64,
+    /// Evaluations per second, over the last five seconds.
+    pub per_s: f32,
+    /// Number of batches that it received after another worker had had them.
+    pub redelivered: u64,
+    /// Whether it has been stopped and leaves.
+    pub leaves: bool,
+}
+
+/// What a coordinator tells of its run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunNotice {
+    /// Format of the messages.
+    pub format: u32,
+    /// Name of the run.
+    pub run: String,
+    /// Name of its computer.
+    pub host: String,
+    /// Version of its engine.
+    pub engine: u32,
+    /// Its processors.
+    pub processors: Processors,
+    /// The hash of its bits in some short cases.
+    pub proof: String,
+    /// Number of tasks without a result.
+    pub pending: u64,
+    /// Number of results so far.
+    pub results: u64,
+    /// Workers that were set aside because they sent other bits.
+    pub set_aside: Vec<String>,
+}
+
+/// An engine in words, with its proof.
+fn engine_words(engine: u32, processors: Processors, proof: &str) -> String {
+    format!("engine {engine} on {} ({proof})", processors.choice().name)
+}
+
+/// The engine of this program in words.
+pub fn own_engine(proof: &str) -> String {
+    engine_words(ENGINE_VERSION, Processors::THIS, proof)
+}
+
+/// The name of this computer, as far as it may stand in messages.
+pub fn host_name() -> String {
+    let name = gethostname::gethostname();
+    let plain = name.to_string_lossy();
+    let plain: String =
+        plain.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(40).collect();
+    if plain.is_empty() { "computer".to_owned() } else { plain }
+}
+
+/// A name for a worker of this computer that no other worker has.
+pub fn unique_name() -> String {
+    format!("{}-{:08x}", host_name(), random_number() as u32)
+}
+
+/// A number that differs between processes, for what cannot change a result: the keys of the standard library's hashes are
+/// random.
+pub fn random_number() -> u64 {
+    use std::hash::{BuildHasher, RandomState};
+    RandomState::new().hash_one(std::process::id())
+}
+
+impl WorkerNotice {
+    /// Reads a notice and checks every value.
+    ///
+    /// # Errors
+    /// It is damaged, too large, or a value is not allowed.
+    pub fn read(bytes: &[u8]) -> Result<Self, WireError> {
+        let notice: Self = parse_line(text_of(bytes)?)?;
+        check_name("worker", &notice.worker)?;
+        check_name("host", &notice.host)?;
+        hash_of("proof", &notice.proof)?;
+        within("threads", notice.threads, 1..=1024)?;
+        within("per_s", notice.per_s, 0.0..=1.0e9)?;
+        Ok(notice)
+    }
+
+    /// Its engine in words.
+    pub fn engine_words(&self) -> String {
+        engine_words(self.engine, self.processors, &self.proof)
+    }
+}
+
+impl RunNotice {
+    /// Reads a notice and checks every value.
+    ///
+    /// # Errors
+    /// It is damaged, too large, or a value is not allowed.
+    pub fn read(bytes: &[u8]) -> Result<Self, WireError> {
+        let notice: Self = parse_line(text_of(bytes)?)?;
+        check_name("run", &notice.run)?;
+        check_name("host", &notice.host)?;
+        hash_of("proof", &notice.proof)?;
+        notice.set_aside.iter().try_for_each(|worker| check_name("set_aside", worker))?;
+        Ok(notice)
+    }
+
+    /// Its engine in words.
+    pub fn engine_words(&self) -> String {
+        engine_words(self.engine, self.processors, &self.proof)
+    }
+}
+
+fn text_of(bytes: &[u8]) -> Result<&str, WireError> {
+    if bytes.len() > LARGEST_NOTICE {
+        return Err(WireError::TooLarge);
+    }
+    std::str::from_utf8(bytes).map_err(|error| WireError::Damaged(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{WIRE_FORMAT, line_of};
+
+    /// A notice of a worker with the engine of this program.
+    fn notice() -> WorkerNotice {
+        WorkerNotice {
+            format: WIRE_FORMAT,
+            worker: "w-1".to_owned(),
+            host: host_name(),
+            engine: ENGINE_VERSION,
+            processors: Processors::THIS,
+            proof: "0123456789abcdef".to_owned(),
+            threads: 4,
+            evaluations: 10,
+            per_s: 2.5,
+            redelivered: 0,
+            leaves: false,
+        }
+    }
+
+    #[test]
+    fn a_notice_is_read_as_it_was_written_and_a_hostile_one_is_refused() {
+        let text = line_of(&notice());
+        assert_eq!(WorkerNotice::read(text.as_bytes()), Ok(notice()));
+        for (from, to, problem) in [
+            ("w-1", "w.>", "worker is \"w.>\""),
+            ("\"threads\":4", "\"threads\":0", "threads is 0; allowed: 1 to 1024"),
+            ("2.5", "-1.0", "per_s is -1; allowed"),
+            ("0123456789abcdef", "x", "proof is \"x\""),
+        ] {
+            let error = WorkerNotice::read(text.replace(from, to).as_bytes()).expect_err("refused");
+            assert!(error.to_string().contains(problem), "{error}");
+        }
+        assert_eq!(WorkerNotice::read(&[b' '; LARGEST_NOTICE + 1]), Err(WireError::TooLarge));
+    }
+}

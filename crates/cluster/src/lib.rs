@@ -1,0 +1,41 @@
+//! One run on many machines: evaluations travel through a NATS server, and results come back in any order.
+//!
+//! A coordinator is an [`snakes_lab::run::Evaluator`]: it publishes genomes in batches, and an experiment puts the results in
+//! the order of the individuals, so the run ends with the hash of a run on one machine. Workers pull batches. The server
+//! keeps the queue (JetStream): it delivers a batch again that no worker acknowledged.
+//!
+//! A task is named by the hash of its content. What is delivered twice, computed twice, or left by a coordinator that was
+//! killed therefore counts once, and for the same task only.
+
+mod address;
+mod any_message;
+mod broker;
+mod compute;
+mod connection;
+mod coordinator;
+mod error;
+mod hello;
+mod machines;
+mod names;
+mod outcome;
+mod packing;
+mod proof;
+mod puller;
+mod store;
+mod watch;
+mod wire;
+mod worker;
+
+pub use address::BrokerOptions;
+pub use any_message::kinds_of_message;
+pub use broker::Broker;
+pub use compute::{Compute, Shared, Simulator};
+pub use coordinator::{Coordinator, CoordinatorOptions};
+pub use error::ClusterError;
+pub use hello::{RunNotice, WorkerNotice, host_name, unique_name};
+pub use machines::{Machines, RunQueue, machines, purge};
+pub use outcome::Outcome;
+pub use proof::proof;
+pub use watch::{ServerWatch, WatchNews, WatchedRun};
+pub use wire::{ResultBatch, TaskKind, TaskText, WireError, WorkBatch};
+pub use worker::{WorkerOptions, work};

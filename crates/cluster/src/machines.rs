@@ -1,0 +1,146 @@
+//! Who is there: the workers and runs on a server, and what waits in its queues.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::Duration;
+
+use futures_util::{StreamExt, TryStreamExt};
+use serde::Serialize;
+
+use super::broker::Broker;
+use super::connection::Trouble;
+use super::error::ClusterError;
+use super::hello::{RunNotice, WorkerNotice};
+use super::names::{
+    NOTICE_INTERVAL, RUN_NOTICES, WORKER_NOTICES, check_name, result_subject, worker_consumer,
+};
+use snakes_core::check::{Invalid, quoted};
+
+/// How long notices are listened to: each machine sends two in this time.
+const LISTENING: Duration = Duration::from_millis(2 * NOTICE_INTERVAL.as_millis() as u64 + 200);
+
+/// What waits on the server for one run.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct RunQueue {
+    /// Batches that no worker has finished.
+    pub batches: u64,
+    /// Results that no coordinator has fetched.
+    pub results: u64,
+}
+
+/// The machines on a server.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Machines {
+    /// The workers, by name.
+    pub workers: BTreeMap<String, WorkerNotice>,
+    /// The runs with a coordinator, by name.
+    pub runs: BTreeMap<String, RunNotice>,
+    /// What waits, by the name of the run.
+    pub queues: BTreeMap<String, RunQueue>,
+    /// Number of batches that workers have, by the proof of their engine.
+    pub in_work: BTreeMap<String, u64>,
+}
+
+/// Listens for two seconds, and asks for the queues.
+///
+/// # Errors
+/// The server refuses a request.
+pub fn machines(broker: &Broker) -> Result<Machines, ClusterError> {
+    broker.runtime().block_on(async {
+        let mut machines = heard(broker).await?;
+        let queues = queues(broker, &mut machines).await;
+        queues.map_err(|trouble| broker.refused("the list of queues", &trouble))?;
+        Ok(machines)
+    })
+}
+
+async fn heard(broker: &Broker) -> Result<Machines, ClusterError> {
+    let subscribed = async {
+        let workers = broker.client().subscribe(WORKER_NOTICES).await?;
+        Ok::<_, async_nats::SubscribeError>((
+            workers,
+            broker.client().subscribe(RUN_NOTICES).await?,
+        ))
+    };
+    let (mut workers, mut runs) =
+        subscribed.await.map_err(|error| broker.refused("listening", &Trouble::of(&error)))?;
+    let mut machines = Machines::default();
+    let end = tokio::time::sleep(LISTENING);
+    tokio::pin!(end);
+    loop {
+        tokio::select! {
+            () = &mut end => return Ok(machines),
+            Some(message) = workers.next() => {
+                if let Ok(notice) = WorkerNotice::read(&message.payload) {
+                    match notice.leaves {
+                        true => machines.workers.remove(&notice.worker),
+                        false => machines.workers.insert(notice.worker.clone(), notice),
+                    };
+                }
+            }
+            Some(message) = runs.next() => {
+                if let Ok(notice) = RunNotice::read(&message.payload) {
+                    machines.runs.insert(notice.run.clone(), notice);
+                }
+            }
+        }
+    }
+}
+
+async fn queues(broker: &Broker, machines: &mut Machines) -> Result<(), Trouble> {
+    let streams = [broker.work_stream().await?, broker.result_stream().await?];
+    for (stream, is_work) in streams.iter().zip([true, false]) {
+        let info = stream.info_with_subjects(">").await.map_err(|error| Trouble::of(&error))?;
+        let subjects: Vec<(String, usize)> =
+            info.try_collect().await.map_err(|error| Trouble::of(&error))?;
+        for (subject, messages) in subjects {
+            // A subject ends with the name of the run.
+            let run = subject.rsplit('.').next().unwrap_or_default().to_owned();
+            let queue = machines.queues.entry(run).or_default();
+            let count = if is_work { &mut queue.batches } else { &mut queue.results };
+            *count += messages as u64;
+        }
+    }
+    // A run that was killed leaves a consumer, even if nothing waits.
+    let consumers: Vec<String> =
+        streams[1].consumer_names().try_collect().await.map_err(|error| Trouble::of(&error))?;
+    let abandoned = consumers.into_iter().filter(|run| !machines.runs.contains_key(run));
+    for run in abandoned.collect::<Vec<String>>() {
+        machines.queues.entry(run).or_default();
+    }
+    let proofs = machines.workers.values().map(|worker| worker.proof.clone());
+    for proof in proofs.collect::<BTreeSet<String>>() {
+        if let Ok(info) = streams[0].consumer_info(worker_consumer(&proof)).await {
+            machines.in_work.insert(proof, info.num_ack_pending as u64);
+        }
+    }
+    Ok(())
+}
+
+/// Removes what waits for a run. Returns the numbers of batches and results that were removed.
+///
+/// # Errors
+/// The server has no such run, or refuses the request.
+pub fn purge(broker: &Broker, run: &str) -> Result<RunQueue, ClusterError> {
+    check_name("--purge", run)?;
+    let Machines { runs, queues, .. } = machines(broker)?;
+    let known: BTreeSet<&str> = runs.keys().chain(queues.keys()).map(String::as_str).collect();
+    if !known.contains(run) {
+        let names = known.into_iter().collect::<Vec<&str>>().join(", ");
+        let allowed = match names.is_empty() {
+            true => "the name of a run on the server, which has none".to_owned(),
+            false => format!("a run on the server: {names}"),
+        };
+        return Err(Invalid::new("--purge", quoted(run), allowed).into());
+    }
+    let purged = broker.runtime().block_on(async {
+        let (work, results) = (broker.work_stream().await?, broker.result_stream().await?);
+        let batches = work.purge().filter(format!("snakes.work.*.{run}")).await;
+        let found = results.purge().filter(result_subject(run)).await;
+        let _ = results.delete_consumer(run).await;
+        Ok::<_, Trouble>(RunQueue {
+            batches: batches.map_err(|error| Trouble::of(&error))?.purged,
+            results: found.map_err(|error| Trouble::of(&error))?.purged,
+        })
+    });
+    purged.map_err(|trouble| broker.refused("the removal", &trouble))
+}

@@ -1,0 +1,272 @@
+//! A worker: pulls batches, computes them, stores the results, and only then acknowledges the batches.
+
+mod activity;
+mod notices;
+mod shared_cache;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use async_nats::jetstream::{AckKind, Message};
+
+use super::broker::{Broker, PullSource};
+use super::compute::Compute;
+use super::error::ClusterError;
+use super::names::{PROGRESS_INTERVAL, result_subject};
+use super::outcome::Outcome;
+use super::puller::{Pulled, Puller};
+use super::store::{RETRY_PAUSE, publish_until_stored};
+use super::wire::{ResultBatch, TaskText, WorkBatch};
+use activity::WorkerActivity;
+use notices::answer_audits;
+use notices::tell_and_listen;
+use shared_cache::SharedCache;
+use snakes_lab::run::RunControl;
+use snakes_lab::run::headless::say;
+
+/// How a worker works.
+#[derive(Debug, Clone)]
+pub struct WorkerOptions {
+    /// Its name, which no other worker has: letters, digits and hyphens.
+    pub name: String,
+    /// Number of its threads.
+    pub threads: usize,
+    /// The proof of its engine: see [`super::proof`].
+    pub proof: String,
+    /// What computes the outcomes.
+    pub compute: Arc<dyn Compute>,
+}
+
+/// What the threads of a worker share.
+#[derive(Debug)]
+struct Workplace {
+    broker: Arc<Broker>,
+    options: WorkerOptions,
+    control: Arc<RunControl>,
+    cache: SharedCache,
+    evaluations: AtomicU64,
+    redelivered: AtomicU64,
+    activity: WorkerActivity,
+}
+
+/// How long a stopped worker waits for its threads: then their batches are left to the server, which delivers them again.
+const LONGEST_END: Duration = Duration::from_millis(1200);
+/// How long a stopped worker tries to tell the server something.
+const LAST_WORDS: Duration = Duration::from_millis(300);
+/// Interval at which it is looked whether the worker was stopped.
+const STOP_INTERVAL: Duration = Duration::from_millis(30);
+
+/// Works until `control` is cancelled. A batch in progress is then returned to the queue after its current evaluation. A
+/// worker that is stopped ends within two seconds, also if its server does not answer. Returns the number of its
+/// evaluations.
+///
+/// # Errors
+/// The first request for work is refused, or all coordinators on the server compute with another engine.
+pub fn work(
+    broker: Broker,
+    options: WorkerOptions,
+    control: &Arc<RunControl>,
+) -> Result<u64, ClusterError> {
+    super::names::check_name("worker", &options.name)?;
+    let broker = Arc::new(broker);
+    let threads = options.threads;
+    let place = Arc::new(Workplace {
+        cache: SharedCache::default(),
+        broker,
+        options,
+        control: Arc::clone(control),
+        evaluations: AtomicU64::new(0),
+        redelivered: AtomicU64::new(0),
+        activity: WorkerActivity::default(),
+    });
+    let runtime = place.broker.runtime();
+    let source = PullSource::Work(place.options.proof.clone());
+    let Some(consumer) = place.unless_stopped(Duration::ZERO, place.broker.consumer(&source))
+    else {
+        return Ok(0);
+    };
+    consumer.map_err(|trouble| place.broker.refused("the request for work", &trouble))?;
+    let notices = runtime.spawn(tell_and_listen(Arc::clone(&place)));
+    let audits = runtime.spawn(answer_audits(Arc::clone(&place)));
+    let mut workers = Vec::new();
+    for number in 0..threads {
+        let place = Arc::clone(&place);
+        let name = format!("worker-{number}");
+        workers.push(thread::Builder::new().name(name).spawn(move || work_loop(&place))?);
+    }
+    let ended = joined(workers, control);
+    audits.abort();
+    // The notices end with the last one, which says that this worker leaves.
+    let foreign = runtime.block_on(async {
+        let foreign = tokio::time::timeout(LAST_WORDS, notices).await;
+        let _ = tokio::time::timeout(LAST_WORDS, place.broker.client().flush()).await;
+        foreign
+    });
+    match foreign {
+        Ok(Ok(Some(error))) => Err(error),
+        _ if ended > 0 => Err(ClusterError::ThreadEnded),
+        _ => Ok(place.evaluations.load(Relaxed)),
+    }
+}
+
+/// Waits until all threads have ended; after the worker was stopped, not for long. Returns the number of those that
+/// panicked.
+fn joined(mut threads: Vec<thread::JoinHandle<()>>, control: &RunControl) -> usize {
+    let (mut panicked, mut stopped) = (0, None);
+    while !threads.is_empty() {
+        if control.is_cancelled() {
+            let stopped = *stopped.get_or_insert_with(Instant::now);
+            if stopped.elapsed() > LONGEST_END {
+                break;
+            }
+        }
+        let (ended, running) = threads.into_iter().partition(|thread| thread.is_finished());
+        threads = running;
+        let ended: Vec<thread::JoinHandle<()>> = ended;
+        panicked += ended.into_iter().map(thread::JoinHandle::join).filter(Result::is_err).count();
+        thread::sleep(STOP_INTERVAL);
+    }
+    panicked
+}
+
+impl Workplace {
+    /// The output of a future; none if the worker was stopped, and the future does not end within `grace` after that.
+    fn unless_stopped<T>(&self, grace: Duration, future: impl Future<Output = T>) -> Option<T> {
+        self.broker.runtime().block_on(async {
+            tokio::select! {
+                biased;
+                value = future => Some(value),
+                () = stopped(&self.control, grace) => None,
+            }
+        })
+    }
+}
+
+/// Ends so long after the worker was stopped.
+async fn stopped(control: &RunControl, grace: Duration) {
+    while !control.is_cancelled() {
+        tokio::time::sleep(STOP_INTERVAL).await;
+    }
+    tokio::time::sleep(grace).await;
+}
+
+/// One thread of a worker.
+fn work_loop(place: &Workplace) {
+    const TASK: &str = "no work can be fetched";
+    let connection = place.broker.connection();
+    let source = PullSource::Work(place.options.proof.clone());
+    let mut puller = Puller::new(&place.broker, source, 1);
+    while !place.control.is_cancelled() {
+        match place.unless_stopped(Duration::ZERO, puller.next()) {
+            Some(Ok(Pulled::Message(message))) => {
+                connection.succeeded(TASK);
+                do_batch(place, &message);
+            }
+            Some(Ok(Pulled::Nothing | Pulled::StoreLost)) => connection.succeeded(TASK),
+            Some(Err(trouble)) => {
+                connection.failed(TASK, &trouble);
+                place.unless_stopped(Duration::ZERO, async {
+                    tokio::time::sleep(RETRY_PAUSE).await
+                });
+            }
+            None => {}
+        }
+    }
+}
+
+/// Computes a batch, stores its results, and acknowledges it.
+fn do_batch(place: &Workplace, message: &Message) {
+    let work = match WorkBatch::decode(&message.payload) {
+        Ok(work) => work,
+        Err(error) => {
+            say(&format!("a batch is ignored: {error}"));
+            acknowledge(place, message, AckKind::Term);
+            return;
+        }
+    };
+    if message.info().is_ok_and(|info| info.delivered > 1) {
+        place.redelivered.fetch_add(1, Relaxed);
+    }
+    let reporter = {
+        let message = message.clone();
+        place.broker.runtime().spawn(async move {
+            loop {
+                tokio::time::sleep(PROGRESS_INTERVAL).await;
+                // A lost report is followed by another one.
+                let _ = message.ack_with(AckKind::Progress).await;
+            }
+        })
+    };
+    place.activity.begin(&work.run);
+    let results = compute(place, &work);
+    place.activity.end();
+    let stored = results.is_some_and(|results| store(place, &results));
+    reporter.abort();
+    // A batch that is returned soon reaches another worker.
+    let pause = (!place.control.is_cancelled()).then_some(RETRY_PAUSE);
+    acknowledge(place, message, if stored { AckKind::Ack } else { AckKind::Nak(pause) });
+}
+
+fn acknowledge(place: &Workplace, message: &Message, kind: AckKind) {
+    // Without an acknowledgement the batch is delivered again, which costs time but changes nothing.
+    let _ = place.unless_stopped(LAST_WORDS, message.ack_with(kind));
+}
+
+/// The results of a batch; none if the worker was stopped, or the coordinator cannot be reached.
+fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
+    let shared = match place.cache.known(work.shared) {
+        Some(known) => known,
+        None => place.unless_stopped(Duration::ZERO, place.cache.fetch(&place.broker, work))??,
+    };
+    let began = Instant::now();
+    let mut outcomes = Vec::with_capacity(work.tasks.len());
+    for task in &work.tasks {
+        if place.control.is_cancelled() {
+            return None;
+        }
+        let line = place.options.compute.outcome(&shared, &task.text).line();
+        outcomes.push(TaskText { key: task.key, text: line.into() });
+        place.evaluations.fetch_add(1, Relaxed);
+    }
+    Some(ResultBatch {
+        run: work.run.clone(),
+        batch: work.batch,
+        worker: place.options.name.clone(),
+        elapsed_s: began.elapsed().as_secs_f64(),
+        outcomes,
+    })
+}
+
+/// Stores results that are larger than a message may be. The coordinator computes what is too large by itself.
+fn store_in_parts(place: &Workplace, results: &ResultBatch) -> bool {
+    let part =
+        |outcomes: &[TaskText]| ResultBatch { outcomes: outcomes.to_vec(), ..results.clone() };
+    match &results.outcomes[..] {
+        [] => true,
+        [only] => {
+            let problem = "the result is larger than the server takes".to_owned();
+            let text = Outcome::Refused(problem).line().into();
+            store(place, &part(&[TaskText { key: only.key, text }]))
+        }
+        many => {
+            let (first, second) = many.split_at(many.len() / 2);
+            store(place, &part(first)) && store(place, &part(second))
+        }
+    }
+}
+
+/// Stores results on the server, however long that takes. False if the worker was stopped before it could.
+fn store(place: &Workplace, results: &ResultBatch) -> bool {
+    let (subject, bytes) = (result_subject(&results.run), results.encode());
+    if bytes.len() > place.broker.largest_message() {
+        return store_in_parts(place, results);
+    }
+    let first = results.outcomes.first().map_or(0, |outcome| outcome.key);
+    let id = format!("{}.{}.{first:x}.{}", results.run, results.batch, results.worker);
+    let task = "a result cannot be stored";
+    let stored = publish_until_stored(&place.broker, task, &subject, &id, &bytes);
+    place.unless_stopped(LAST_WORDS, stored).is_some()
+}

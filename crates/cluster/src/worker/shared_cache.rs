@@ -1,0 +1,66 @@
+//! What the tasks of recent batches share: fetched from the coordinator once.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::broker::Broker;
+use crate::compute::Shared;
+use crate::names::shared_subject;
+use crate::packing::unpack;
+use crate::wire::{WorkBatch, hex, shared_hash};
+use snakes_lab::run::headless::say;
+
+/// Maximum number of trials and genomes that are kept.
+const CAPACITY: usize = 64;
+/// How long a coordinator may take to answer.
+const ANSWER_WAIT: Duration = Duration::from_secs(3);
+
+/// The trials and genomes that were used last, the latest at the end.
+#[derive(Debug, Default)]
+pub struct SharedCache(Mutex<Vec<(u64, Arc<Shared>)>>);
+
+impl SharedCache {
+    /// The trial or the genome that the tasks of a batch share, from its coordinator; none if that does not answer, or sends something else.
+    pub async fn fetch(&self, broker: &Broker, work: &WorkBatch) -> Option<Arc<Shared>> {
+        let subject = shared_subject(&work.run, &hex(work.shared));
+        let request = async_nats::Request::new().timeout(Some(ANSWER_WAIT));
+        let answer = broker.client().send_request(subject, request).await;
+        let bytes = answer.ok()?.payload;
+        let read = unpack(&bytes).and_then(|text| {
+            // The coordinator's hash is of its own text, so equal hashes mean an equal trial.
+            let is_it = shared_hash(work.kind, &text) == work.shared;
+            is_it.then(|| Shared::read(work.kind, &text)).transpose()
+        });
+        match read {
+            Ok(Some(shared)) => {
+                let shared = Arc::new(shared);
+                self.keep(work.shared, Arc::clone(&shared));
+                Some(shared)
+            }
+            // A coordinator that has ended answers with nothing.
+            Ok(None) => None,
+            Err(error) => {
+                say(&format!("run {}: its trial cannot be used: {error}", work.run));
+                None
+            }
+        }
+    }
+
+    /// The text with this hash.
+    pub fn known(&self, hash: u64) -> Option<Arc<Shared>> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let at = kept.iter().position(|(of, _)| *of == hash)?;
+        let found = kept.remove(at);
+        let shared = Arc::clone(&found.1);
+        kept.push(found);
+        Some(shared)
+    }
+
+    fn keep(&self, hash: u64, shared: Arc<Shared>) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() >= CAPACITY {
+            kept.remove(0);
+        }
+        kept.push((hash, shared));
+    }
+}

@@ -1,0 +1,204 @@
+//! The folder of saves, and the runs in it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use directories::ProjectDirs;
+
+use super::change::load_changed_plan;
+use super::files::{modified, numbered, refuse_link};
+use super::notes::{EntryNotes, notes_in_run};
+use super::record::{count_records, read_records};
+use super::run_name::run_name;
+use super::whole_file::prepare_folder;
+use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
+use crate::evolve::{RunPlan, StrategyKind};
+
+/// The folder of saved champions and runs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SavesFolder(PathBuf);
+
+impl SavesFolder {
+    /// The folder that the user named; else `saves/` in the working directory, if it exists; else the platform's data
+    /// folder.
+    pub fn find(named: Option<&Path>) -> Self {
+        if let Some(named) = named {
+            let is_empty = named.as_os_str().is_empty();
+            return Self(if is_empty { PathBuf::from(".") } else { named.to_owned() });
+        }
+        let here = PathBuf::from("saves");
+        if here.is_dir() {
+            return Self(here);
+        }
+        let data = ProjectDirs::from("", "", "snakes-and-stairs");
+        Self(data.map_or(here, |data| data.data_dir().join("saves")))
+    }
+
+    /// A folder within a run's folder. The run's folder may come from anywhere, so links in it are not followed.
+    ///
+    /// # Errors
+    /// The folder is a link.
+    pub fn within_run(run: &Path, name: &str) -> Result<Self, SaveError> {
+        let path = run.join(name);
+        if path.is_symlink() {
+            let source = std::io::Error::other("it is a link");
+            return Err(SaveError::Unwritable { path, source });
+        }
+        Ok(Self(path))
+    }
+
+    /// Its folder for screenshots.
+    #[must_use]
+    pub fn pictures(&self) -> Self {
+        Self(self.0.join("pictures"))
+    }
+
+    /// Its folder for exported files.
+    #[must_use]
+    pub fn exports(&self) -> Self {
+        Self(self.0.join("exports"))
+    }
+
+    /// The first free path in it of the form `NAME-NUMBER.EXTENSION`.
+    pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
+        let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
+        let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
+        free.next().unwrap_or_else(|| path(0))
+    }
+
+    /// The folder's path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Its folder for a run.
+    pub fn of_run(&self, plan: &RunPlan) -> PathBuf {
+        self.0.join(run_name(plan))
+    }
+
+    /// The runs in it that this engine can read, in the order of their folders' names; unreadable ones are left out.
+    pub fn runs(&self) -> Vec<RunSummary> {
+        let Ok(entries) = fs::read_dir(&self.0) else { return Vec::new() };
+        let folders = entries.flatten().filter(|entry| entry.file_type().is_ok_and(|t| t.is_dir()));
+        let mut folders: Vec<PathBuf> = folders.map(|entry| entry.path()).collect();
+        folders.sort();
+        let summary = |folder: PathBuf| {
+            let plan = load_changed_plan(&folder).ok()?;
+            let finished = count_records(&folder).ok()?;
+            let evolution = &plan.settings.evolution;
+            let mut is_stopped = finished < evolution.generations;
+            if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
+                is_stopped = has_generations_left(&plan, &read_records(&folder, &plan).ok()?);
+            }
+            // Notes that cannot be read do not keep a run from being resumed.
+            let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
+            let name = notes.own_name().map(str::to_owned);
+            let log = fs::metadata(folder.join("log.jsonl"));
+            let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
+            Some(RunSummary { folder, plan, finished, name, saved_at, is_stopped })
+        };
+        folders.into_iter().filter_map(summary).collect()
+    }
+
+    /// Makes sure that files can be written into it, and creates it if it does not exist.
+    pub fn prepare(&self) -> Result<(), SaveError> {
+        prepare_folder(&self.0)
+    }
+}
+
+/// Whether a run with these finished generations has evaluations left for another one.
+pub fn has_generations_left(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
+    let evolution = &plan.settings.evolution;
+    if evolution.strategy.info().is_budget_driven && !records.is_empty() {
+        // Generations may grow, so the budget may be spent before the last generation.
+        let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
+        let last = records.last().map_or(0, |last| u64::from(last.evaluations));
+        // Those of islands shrink, to two islands in the end.
+        let least = 2 * u64::from(evolution.islands.candidates);
+        let next = match evolution.strategy {
+            StrategyKind::Islands => last.min(least),
+            // Theirs vary; only the state says what comes next.
+            kind if kind.info().evolves_stairs => 1,
+            _ => last,
+        };
+        if spent + next > plan.budget() {
+            return false;
+        }
+    }
+    (records.len() as u64) < u64::from(evolution.generations)
+}
+
+/// A run in a folder of saves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its plan, after all its changes.
+    pub plan: RunPlan,
+    /// Number of finished generations.
+    pub finished: u32,
+    /// The name that the user gave it, if any.
+    pub name: Option<String>,
+    /// Time of the last change of its log since 1970; zero if it is unknown.
+    pub saved_at: Duration,
+    /// Whether evaluations are left for another generation.
+    is_stopped: bool,
+}
+
+impl RunSummary {
+    /// Whether generations are left to evolve.
+    pub fn is_stopped(&self) -> bool {
+        self.is_stopped
+    }
+}
+
+/// Name of the file of a generation's champion; the first generation is 1.
+pub fn champion_file_name(generation: u32) -> String {
+    format!("generation-{generation}.ron")
+}
+
+/// The champions in a run's folder with the numbers of their generations, in order.
+///
+/// # Errors
+/// The folder cannot be read, or contains no champion or a damaged one.
+pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> {
+    let mut generations = numbered(folder, "generation-")?;
+    generations.sort_unstable();
+    if generations.is_empty() {
+        let missing = "it contains no generation-1.ron or later; give a run's folder";
+        let source = std::io::Error::other(missing);
+        return Err(SaveError::Unreadable { path: folder.to_owned(), source });
+    }
+    let load = |number| Ok((number, load_generation(folder, number)?));
+    generations.into_iter().map(load).collect()
+}
+
+/// Reads the champion of one generation from a run's folder; the first generation is 1.
+///
+/// # Errors
+/// There is none, or it is damaged.
+pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion, SaveError> {
+    let path = folder.join(champion_file_name(generation));
+    refuse_link(&path).map_err(SaveError::unreadable(&path))?;
+    load_champion(&path)
+}
+
+#[cfg(test)]
+mod tests {
+    #[cfg(unix)]
+    #[test]
+    fn links_in_a_runs_folder_are_not_followed() {
+        use super::*;
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().expect("a folder");
+        let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../saves/first-climber.ron");
+        symlink(shipped, folder.path().join("generation-1.ron")).expect("linked");
+        let error = load_run(folder.path()).expect_err("refused").to_string();
+        assert!(error.contains("generation-1.ron: cannot be read: it is a link"), "{error}");
+        symlink("/tmp", folder.path().join("figures")).expect("linked");
+        let error = SavesFolder::within_run(folder.path(), "figures").expect_err("refused");
+        assert!(error.to_string().contains("figures: cannot be written: it is a link"), "{error}");
+        assert!(SavesFolder::within_run(folder.path(), "other").is_ok());
+    }
+}

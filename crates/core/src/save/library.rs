@@ -1,0 +1,97 @@
+//! The library: the champions and runs in a folder of saves, and the operations on them.
+//!
+//! [`list`] reads names only, so that ten thousand files take no time. [`read_entry`] reads the contents of one entry; a
+//! damaged one does not affect the others. Nothing here simulates.
+//!
+//! No operation loses data: no file is overwritten, deleted entries are moved into a hidden folder, and every [`FileStep`]
+//! can be undone. Links are not followed.
+
+mod change;
+mod details;
+mod list;
+mod moving;
+mod name;
+mod notes;
+mod problem;
+mod shipped;
+mod thumbnail;
+mod transfer;
+
+pub use change::{DELETED, FileStep, delete, duplicate, rename};
+pub use details::{
+    ChampionDetails, EntryDetails, RunDetails, load_entry, read_entry, shipped_champions,
+};
+pub use list::{LibraryEntry, SavePlace, list};
+pub use name::{MAX_NAME_CHARS, check_entry_name, plain_name};
+pub use notes::{read_notes, set_notes_text};
+pub use problem::EntryProblem;
+pub use thumbnail::Thumbnail;
+pub use transfer::{EXPORTS, export, import, run_of_plan};
+
+/// Folders of saves for tests.
+#[cfg(test)]
+mod fixtures {
+    use tempfile::TempDir;
+
+    use super::{LibraryEntry, SavePlace};
+    use crate::evolve::{Champion, Origin, RunPlan, Settings, begin};
+    use crate::save::{
+        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, shipped_champion,
+        store_champion,
+    };
+    use crate::score::{Recording, evaluate};
+
+    /// An empty folder of saves, which is removed when dropped.
+    pub fn saves() -> (TempDir, SavesFolder) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        (folder, saves)
+    }
+
+    /// A champion in it.
+    pub fn champion_in(saves: &SavesFolder, name: &str) -> SavePlace {
+        let path = saves.path().join(format!("{name}.ron"));
+        let loaded = shipped_champion().expect("well formed");
+        store_champion(&path, &loaded.champion, loaded.recording.as_ref()).expect("written");
+        SavePlace::Champion(path)
+    }
+
+    /// A run in it that was stopped after two of four generations.
+    pub fn run_in(saves: &SavesFolder, seed: u64) -> SavePlace {
+        let mut settings = Settings::default();
+        settings.evolution.population = 6;
+        settings.evolution.generations = 4;
+        settings.trial.duration_s = 0.5;
+        let plan = RunPlan::new("test", seed, settings);
+        let path = saves.of_run(&plan);
+        let opened = RunFolder::open(&path, &plan, ExistingRun::Keep, "a test");
+        let (mut folder, _) = opened.expect("opened");
+        let mut search = begin(&plan);
+        for generation in 1..=2 {
+            let genomes = search.ask();
+            let evaluations: Vec<_> =
+                genomes.iter().map(|genome| evaluate(genome, &plan.settings.trial)).collect();
+            search.tell(&genomes, &evaluations);
+            let champion = Champion {
+                genome: genomes[0].clone(),
+                trial: plan.settings.trial.clone(),
+                evaluation: evaluations[0],
+                chosen_by: None,
+                origin: Origin { preset: "test".to_owned(), seed, generation, individual: 0 },
+            };
+            let recording = Recording::of(&champion.genome, &champion.trial);
+            let record = GenerationRecord::of_test(generation, genomes.len() as u32);
+            let state = SearchState { strategy: search.state(), front: Default::default() };
+            folder
+                .finish_generation(&record, Some((&champion, &recording)), &state, 1)
+                .expect("kept");
+        }
+        SavePlace::Run(path)
+    }
+
+    /// The names of the entries that match.
+    pub fn names(entries: &[LibraryEntry], matches: impl Fn(&SavePlace) -> bool) -> Vec<String> {
+        let matching = entries.iter().filter(|entry| matches(&entry.place));
+        matching.map(|entry| entry.place.name()).collect()
+    }
+}

@@ -1,0 +1,91 @@
+//! The only place that touches files: runs, champions and presets as text, plots and tables, written so that
+//! a kill at any instant loses nothing that was finished.
+//!
+//! Files have types of their own (`v5`, for example), apart from the core's types, so that the core may change without
+//! breaking a file; settings and genomes alone are written as they are. From the first release on, every released
+//! format stays readable (see `v5`).
+//! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
+
+mod body_study;
+mod champion;
+mod champion_exam;
+mod change;
+mod checkpoint;
+mod comparison;
+mod copies;
+mod engine_2;
+mod engine_study;
+mod families;
+mod file_structs;
+mod files;
+mod folder;
+pub mod library;
+mod lineage;
+mod lock;
+mod log;
+mod notes;
+mod own_files;
+mod picture;
+mod plan;
+mod poet_study;
+mod poses;
+mod preferences;
+mod preset;
+mod record;
+mod run;
+mod run_name;
+mod same_engine;
+mod stairs_file;
+mod stairs_study;
+mod study;
+mod v5;
+mod whole_file;
+mod whole_folder;
+
+pub use body_study::{BodyStudyRun, CreatureStudyRun};
+pub use champion::{
+    LoadedChampion, champion_text, load_champion, load_champion_and_note, parse_champion,
+    shipped_champion, store_champion,
+};
+pub use champion_exam::{check_examinable, exam_in_words, store_exam};
+pub use change::parse_changes;
+pub use checkpoint::{SearchState, parse_checkpoint};
+pub use comparison::{
+    CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MAX_COMPARED_RUNS, load_comparison,
+    store_comparison,
+};
+pub use copies::ChampionCopies;
+pub use engine_study::EngineStudyRun;
+pub use families::{
+    FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
+    load_families, store_families,
+};
+pub use files::{SaveError, hash_of, load_text};
+pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
+pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
+pub use notes::{EntryNotes, check_notes, check_run_name};
+pub use own_files::{KnownFiles, OwnFile, OwnKind};
+pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
+pub use plan::{load_plan, parse_plan};
+pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
+pub use preferences::{
+    LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,
+};
+pub use preset::{
+    DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_preset_names, shipped_presets,
+    store_preset,
+};
+pub use record::{
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
+    generations_hash, load_log, parse_evaluations, parse_records,
+};
+pub use run::{ExistingRun, RunFolder, SavedProgress};
+pub use run_name::{fingerprint, run_name, settings_fingerprint};
+pub use stairs_file::{
+    NamedStairs, built_in_stairs, built_in_stairs_names, is_stairs_file, load_stairs, parse_stairs,
+};
+pub use stairs_study::StairsStudyRun;
+pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};
+pub use v5::RecordedV5;
+pub use whole_file::UnfinishedFile;
+pub use whole_folder::UnfinishedFolder;

@@ -1,0 +1,49 @@
+//! The settings schema: one row for each setting, beside the field that it describes.
+//!
+//! A struct of settings implements [`SettingGroup`]: its `walk` pairs each field with a row that has the setting's
+//! name, unit, range or choices, label, hint, and whether it may change during a run. Everything else reads these
+//! rows: the checks, the list of all settings, `--set`, live changes, the panels and `docs/settings.md`.
+//!
+//! Values are stored, written and checked in the unit of the row. Panels show some of them in another one, such as
+//! angles in degrees; `display` alone converts between the two.
+//!
+//! To add a setting, add a field with its default and its row to the `setting_group!` of its struct, which does not
+//! compile without the row. Where the walk has another order than the files, the row stands in `walk`.
+
+mod access;
+mod choice;
+mod declare;
+mod display;
+mod parts;
+mod per_part;
+mod setting;
+mod table;
+mod value;
+mod walk;
+
+pub use crate::choices;
+pub use access::{check, find, list, set_text};
+pub use choice::{Choice, Choices};
+pub(crate) use declare::{named_by_info, setting_group, settings};
+pub use display::DisplayUnit;
+pub use parts::Parts;
+pub use per_part::PerPart;
+pub use setting::{NumberRange, Setting, SettingKind, SettingRow};
+pub use setting::{
+    absent, choice, list_of_numbers, number, optional_per_part, per_part, switch, whole,
+};
+pub use table::markdown;
+pub use value::{SettingField, SettingValue};
+pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
+
+/// Whether a value is the default of its type.
+///
+/// For a setting that a released format does not have. It bears `#[serde(default, skip_serializing_if =
+/// "is_default")]`, and its default acts as the program did before: files without it keep their meaning, and runs
+/// that do not use it keep their names.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[cfg(test)]
+mod tests;

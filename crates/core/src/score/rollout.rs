@@ -1,0 +1,443 @@
+//! One genome in one trial, step by step.
+
+#[cfg(test)]
+mod audit;
+mod continued;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::behaviour::{BehaviourMoment, BehaviourObserver};
+use super::fitness::FinalState;
+use super::trial::steps_in;
+use super::way_up::WayUp;
+use super::{Behaviour, Fitness, Perturbation, Trial};
+use crate::control::{ActiveSenses, Activity, ControlLoop, Perception};
+use crate::genome::Genome;
+use crate::learn::Episode;
+use crate::world::{
+    BodyPlan, Disqualification, Effort, JointTorque, LanesCommon, LockStep, Pose, Pull, Shove,
+    Simulation, Stairs, Vector, WorldPlan,
+};
+use continued::{Conditions, TrialChange};
+
+/// The result of a rollout.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evaluation {
+    /// The fitness by the trial's measure: see [`Fitness`] for the unit. For a disqualified agent, the fitness
+    /// after its last healthy step.
+    pub fitness: f32,
+    /// y of the middle limb's centre at the end, in metres, for every measure of fitness.
+    pub centre_y_m: f32,
+    /// The reason of the disqualification, if there was one.
+    pub disqualified: Option<Disqualification>,
+    /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
+    /// one included.
+    pub trace_hash: u64,
+    /// Healthy physics steps taken.
+    pub steps: u32,
+    /// Energy, speeds and distances over these steps. `None` in records from before they were measured.
+    pub effort: Option<Effort>,
+    /// Measures of the motion. `None` in records from before they were measured.
+    pub behaviour: Option<Behaviour>,
+}
+
+impl Evaluation {
+    /// A healthy evaluation with this fitness, for tests.
+    pub fn of_fitness(fitness: f32) -> Self {
+        Self {
+            fitness,
+            centre_y_m: fitness,
+            disqualified: None,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+            behaviour: None,
+        }
+    }
+
+    /// Whether both have the same bits. A value that one of them lacks is not compared.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
+            a.is_none() || b.is_none() || a == b
+        }
+        let bare = |evaluation: &Self| Self { effort: None, behaviour: None, ..*evaluation };
+        bare(self) == bare(other)
+            && agree(self.effort, other.effort)
+            && agree(self.behaviour, other.behaviour)
+    }
+
+    /// Whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
+    pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
+        let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
+        self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps
+    }
+}
+
+/// Time at the end of a trial over which a fitness counts, in s: a snake that is thrown up the stairs in the last instant
+/// has not climbed them.
+const SCORED_S: f32 = 0.5;
+
+/// A rollout in progress. A clone continues with the bits of the original.
+///
+/// A what-if changes its trial on the way: see [`Rollout::changing_at`].
+#[derive(Clone)]
+pub struct Rollout {
+    simulation: Simulation,
+    control: ControlLoop,
+    torques: Vec<JointTorque>,
+    poses: Vec<Pose>,
+    conditions: Arc<Conditions>,
+    /// The change of its conditions that is still to come.
+    change: Option<TrialChange>,
+    /// The shove that is still to come.
+    shove: Option<Shove>,
+    frequency_hz: f32,
+    observer: BehaviourObserver,
+    furthest_y_m: f32,
+    /// The way up, which is observed if the fitness depends on it.
+    way: WayUp,
+    /// The scores of the last [`SCORED_S`], the earliest first.
+    recent: VecDeque<f32>,
+    trace: Xxh3Default,
+    step: u32,
+    disqualified: Option<Disqualification>,
+    is_disturbed: bool,
+}
+
+impl Rollout {
+    /// Builds the trial's world with the genome's body. Both must have passed their checks.
+    pub fn new(genome: &Genome, trial: &Trial) -> Self {
+        Self::in_world(genome, trial, trial.world_plan(genome))
+    }
+
+    /// The same in a slightly different world.
+    pub fn perturbed(genome: &Genome, trial: &Trial, perturbation: &Perturbation) -> Self {
+        let mut plan = trial.world_plan(genome);
+        perturbation.apply(&mut plan);
+        let mut rollout = Self::in_world(genome, trial, plan);
+        rollout.shove = perturbation.shove.map(|shove| {
+            // The limb was drawn for the number of limbs of the trial. A body of its own is shoved at the same share of its
+            // length.
+            let (own, drawn_for) = (rollout.body().limbs(), trial.agent.limbs.max(1) as usize);
+            let is_own = genome.body.has_own_blocks();
+            let limb = if is_own { shove.limb * own / drawn_for } else { shove.limb };
+            Shove { limb, ..shove }
+        });
+        rollout
+    }
+
+    fn in_world(genome: &Genome, trial: &Trial, plan: WorldPlan) -> Self {
+        let mut simulation = Simulation::new(&plan);
+        let settled = if plan.settles { simulation.settle() } else { Ok(()) };
+        let poses: Vec<Pose> = simulation.poses().collect();
+        let mut rollout = Self {
+            control: ControlLoop::new(genome, &plan, trial.agent.senses),
+            torques: vec![JointTorque::default(); plan.body.joints.len()],
+            way: WayUp::begin(&plan.body, &poses, &plan.stairs),
+            poses,
+            simulation,
+            conditions: Arc::new(Conditions::of(trial, plan)),
+            change: None,
+            shove: None,
+            frequency_hz: genome.controller.frequency_hz(),
+            observer: BehaviourObserver::default(),
+            furthest_y_m: f32::MIN,
+            recent: VecDeque::new(),
+            trace: Xxh3Default::new(),
+            step: 0,
+            disqualified: settled.err(),
+            is_disturbed: false,
+        };
+        rollout.furthest_y_m = rollout.middle_m().y;
+        rollout
+    }
+
+    /// Takes one step, unless the rollout is over. Returns whether it took a healthy step.
+    pub fn advance(&mut self) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        self.enter_step();
+        self.control.act(self.step, &self.simulation, &mut self.torques);
+        self.take_step()
+    }
+
+    /// Takes one step of each rollout, side by side, with the bits that each has alone. None of them is over, and all their worlds
+    /// have the same [`Simulation::common`].
+    pub(crate) fn advance_together(rollouts: &mut [&mut Self], lock_step: &mut LockStep) {
+        for rollout in rollouts.iter_mut() {
+            rollout.enter_step();
+            rollout.control.act(rollout.step, &rollout.simulation, &mut rollout.torques);
+        }
+        let mut worlds: Vec<_> = rollouts
+            .iter_mut()
+            .map(|rollout| (&mut rollout.simulation, rollout.torques.as_slice()))
+            .collect();
+        let ends = lock_step.step(&mut worlds);
+        for (rollout, end) in rollouts.iter_mut().zip(ends) {
+            rollout.take_in_step(end);
+        }
+    }
+
+    /// Settings and sizes that its world must share with those beside which it advances; none if its engine takes each step alone.
+    pub(crate) fn common(&self) -> Option<LanesCommon> {
+        self.simulation.common()
+    }
+
+    /// The same with torques from outside instead of the genome's controller, one per joint from the head; a joint without
+    /// one is not driven. The evaluation then describes the controller outside.
+    pub fn advance_with(&mut self, torques: &[JointTorque]) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        self.enter_step();
+        self.torques.fill(JointTorque::default());
+        for (kept, torque) in self.torques.iter_mut().zip(torques) {
+            *kept = *torque;
+        }
+        self.take_step()
+    }
+
+    /// Brings about what happens to the world before this step.
+    fn enter_step(&mut self) {
+        self.enter_change();
+        let now_s = self.time_s();
+        if let Some(shove) = self.shove.take_if(|shove| shove.at_s <= now_s) {
+            self.simulation.shove(&shove);
+        }
+    }
+
+    /// Steps the world with the torques of this step.
+    fn take_step(&mut self) -> bool {
+        let end = self.simulation.step(&self.torques);
+        self.take_in_step(end)
+    }
+
+    /// Takes in the result of a step.
+    fn take_in_step(&mut self, end: Result<(), Disqualification>) -> bool {
+        if let Err(reason) = end {
+            self.disqualified = Some(reason);
+            return false;
+        }
+        self.step += 1;
+        for (kept, pose) in self.poses.iter_mut().zip(self.simulation.poses()) {
+            *kept = pose;
+            let (at, turn) = (pose.translation, pose.rotation);
+            let mut bytes = [0; 28];
+            let numbers = [at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w];
+            for (slot, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+                slot.copy_from_slice(&number.to_bits().to_le_bytes());
+            }
+            self.trace.update(&bytes);
+        }
+        self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
+        self.observer.observe(&self.simulation, &self.conditions.world.stairs);
+        if self.conditions.fitness == Fitness::Share {
+            let now_s = self.time_s();
+            let stairs = &self.conditions.world.stairs;
+            self.way.observe(&self.simulation, &self.poses, stairs, now_s);
+        }
+        self.remember_score();
+        true
+    }
+
+    /// Whether the trial's time is up or the agent is disqualified.
+    pub fn is_over(&self) -> bool {
+        self.step >= self.last_step() || self.disqualified.is_some()
+    }
+
+    /// The poses of the parts after the last healthy step, from the head.
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// Healthy steps taken so far.
+    pub fn step(&self) -> u32 {
+        self.step
+    }
+
+    /// Simulated time so far, in s.
+    pub fn time_s(&self) -> f32 {
+        self.step as f32 * self.conditions.world.physics.step_s()
+    }
+
+    /// The evaluation so far; after the end, the result.
+    pub fn evaluation(&self) -> Evaluation {
+        let effort = self.simulation.effort();
+        let middle = self.middle_m();
+        let cost = self.conditions.energy_cost_per_kj * effort.energy_j / 1000.0;
+        let world = &self.conditions.world;
+        let moment = BehaviourMoment {
+            middle_m: middle.to_array(),
+            start_y_m: world.middle_start_y_m(),
+            weight_n: self.body().mass_kg() * world.physics.gravity_m_s2,
+            energy_j: effort.energy_j,
+            frequency_hz: self.frequency_hz,
+            wave_uses: self.control.wave_uses(),
+        };
+        let behaviour = self.observer.behaviour(self.stairs(), &moment);
+        let duration_s = self.last_step() as f32 * world.physics.step_s();
+        let score = self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score());
+        let score = match self.conditions.fitness {
+            Fitness::Share => score + self.way.bonus(duration_s),
+            _ => score,
+        };
+        Evaluation {
+            fitness: score - cost,
+            centre_y_m: middle.y,
+            disqualified: self.disqualified,
+            trace_hash: self.trace.digest(),
+            steps: self.step,
+            effort: Some(effort),
+            behaviour: Some(behaviour),
+        }
+    }
+
+    /// The score of the present state alone, by the trial's measure of fitness and without the cost of energy.
+    pub fn score(&self) -> f32 {
+        let state = FinalState {
+            body: self.body(),
+            poses: &self.poses,
+            furthest_y_m: self.furthest_y_m,
+            stairs: self.stairs(),
+            way: &self.way,
+        };
+        state.score(self.conditions.fitness)
+    }
+
+    /// Remembers the score of the present state, and forgets those from more than [`SCORED_S`] ago.
+    fn remember_score(&mut self) {
+        let scored = steps_in(SCORED_S, &self.conditions.world.physics) as usize;
+        while self.recent.len() >= scored {
+            self.recent.pop_front();
+        }
+        self.recent.push_back(self.score());
+    }
+
+    /// Sets or ends the user's pull on a limb, from the next step on. A pull disturbs the rollout for good: its
+    /// result no longer describes the genome.
+    pub fn pull(&mut self, pull: Option<Pull>) {
+        self.is_disturbed |= pull.is_some();
+        self.simulation.pull(pull);
+    }
+
+    /// Whether the user has pulled a limb.
+    pub fn is_disturbed(&self) -> bool {
+        self.is_disturbed
+    }
+
+    /// Number of steps of the whole rollout, unless the agent is disqualified before.
+    pub fn last_step(&self) -> u32 {
+        // The last conditions decide.
+        self.change.as_ref().map_or(self.conditions.last_step, TrialChange::last_step)
+    }
+
+    /// The stairs on which the snake is now.
+    pub fn stairs(&self) -> &Stairs {
+        &self.conditions.world.stairs
+    }
+
+    /// The built body.
+    pub fn body(&self) -> &BodyPlan {
+        self.simulation.body()
+    }
+
+    /// Position of the middle limb's centre after the last healthy step, in metres.
+    pub fn middle_m(&self) -> Vector {
+        self.poses[self.body().middle_part].translation
+    }
+
+    /// Whether all steps of the stairs are under the middle limb now.
+    pub fn is_on_landing(&self) -> bool {
+        let steps = self.stairs().steps;
+        steps > 0 && self.stairs().steps_under(self.middle_m().to_array()) == steps
+    }
+
+    /// Ends the episode: the experience of a controller that learns from it. A disturbed rollout teaches nothing.
+    pub fn finish(&mut self) -> Option<Episode> {
+        let is_disqualified = self.disqualified.is_some();
+        let episode = self.control.finish(self.step, &self.simulation, is_disqualified);
+        episode.filter(|_| !self.is_disturbed)
+    }
+
+    /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
+    pub fn perception(&self) -> &Perception {
+        self.control.perception()
+    }
+
+    /// The senses that work now.
+    pub fn active_senses(&self) -> ActiveSenses {
+        self.control.active_senses()
+    }
+
+    /// What the controller does at a joint, the first of which is 0; none before the first step, and for a controller that
+    /// has nothing to show.
+    pub fn activity(&self, joint: usize) -> Option<Activity> {
+        self.control.activity(joint)
+    }
+
+    /// The world, for reading.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::genome::{ControllerGenes, GenomeSpace};
+    use crate::rng::{Purpose, stream};
+    use crate::score::evaluate;
+
+    fn random_genome(individual: u32, trial: &Trial) -> Genome {
+        let mut rng = stream(1, 1, individual, Purpose::Birth);
+        GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
+    }
+
+    #[test]
+    fn scoring_twice_gives_the_same_bits() {
+        let trial = Trial::default();
+        for individual in 0..5 {
+            let genome = random_genome(individual, &trial);
+            assert_eq!(evaluate(&genome, &trial), evaluate(&genome, &trial));
+        }
+    }
+
+    #[test]
+    fn torques_from_outside_lead_to_the_same_evaluation() {
+        let trial = Trial::default();
+        let genome = random_genome(2, &trial);
+        let (mut inside, mut outside) =
+            (Rollout::new(&genome, &trial), Rollout::new(&genome, &trial));
+        while inside.advance() {
+            assert!(outside.advance_with(&inside.torques));
+            assert_eq!(outside.score(), inside.score());
+        }
+        // A joint without a torque is not driven.
+        assert!(!outside.advance_with(&[]) && outside.is_over());
+        assert_eq!(outside.evaluation(), inside.evaluation());
+    }
+
+    #[test]
+    fn different_genomes_leave_different_traces() {
+        let trial = Trial::default();
+        let first = evaluate(&random_genome(0, &trial), &trial);
+        let second = evaluate(&random_genome(1, &trial), &trial);
+        assert_ne!(first.trace_hash, second.trace_hash);
+    }
+
+    #[test]
+    fn without_torque_the_snake_stays_where_it_starts() {
+        let trial = Trial::default();
+        let mut genome = random_genome(0, &trial);
+        let ControllerGenes::Signal(signals) = &mut genome.controller else { panic!("no signals") };
+        signals.all_mut().for_each(|signal| signal.fill(0.0));
+        let evaluation = evaluate(&genome, &trial);
+        assert_eq!(evaluation.disqualified, None);
+        assert_eq!(evaluation.steps, 300);
+        assert!((evaluation.fitness - trial.start_y_m).abs() < 0.01, "{evaluation:?}");
+    }
+}

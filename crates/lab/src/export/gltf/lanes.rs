@@ -1,0 +1,274 @@
+//! Lanes: a champion's stairs and limbs, and the animation of the limbs.
+
+use gltf_json::accessor::Type;
+use gltf_json::animation::{Animation, Channel, Interpolation, Property, Sampler, Target};
+use gltf_json::scene::UnitQuaternion;
+use gltf_json::validation::Checked;
+use gltf_json::{Accessor, Index, Material, Mesh, Node};
+
+use super::super::mjcf::{LIMB_COLORS, STEP_COLORS, part_name};
+use super::super::motion::follow;
+use super::super::{ExportError, ExportProgress, ExportedChampion};
+use super::pieces::{Look, SceneParts};
+use super::shapes::TriangleSet;
+use snakes_core::score::{Rollout, Trial};
+use snakes_core::world::{BodyPlan, Pose, Rotation, StairSolid, Vector};
+
+/// Samples of an animation per second, at most.
+const SAMPLES_PER_S: u32 = 60;
+/// Room between lanes, in m, as on the studio's stage.
+const GAP_M: f32 = 1.0;
+const RED: Look = Look { name: "red", color: LIMB_COLORS[0], roughness: 0.45 };
+const BLUE: Look = Look { name: "blue", color: LIMB_COLORS[1], roughness: 0.45 };
+const LIGHT_STEP: Look = Look { name: "light step", color: STEP_COLORS[0], roughness: 0.9 };
+const DARK_STEP: Look = Look { name: "dark step", color: STEP_COLORS[1], roughness: 0.9 };
+const EYE: Look = Look { name: "eye", color: [0.95, 0.95, 0.95], roughness: 0.2 };
+const PUPIL: Look = Look { name: "pupil", color: [0.05, 0.05, 0.06], roughness: 0.2 };
+
+/// Corners of the space that the lanes take, in m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    pub min: Vector,
+    pub max: Vector,
+}
+
+/// The materials that all lanes share.
+struct Looks {
+    limbs: [Index<Material>; 2],
+    steps: [Index<Material>; 2],
+    eye: Index<Material>,
+    pupil: Index<Material>,
+}
+
+/// The poses of a champion's limbs, sampled.
+#[derive(Default)]
+struct Samples {
+    times_s: Vec<f32>,
+    /// For each limb.
+    poses: Vec<Vec<Pose>>,
+}
+
+/// Adds a lane for each champion, the first one on the right, and their animation. Returns the lanes' nodes and bounds.
+pub(super) fn add_lanes(
+    pieces: &mut SceneParts,
+    champions: &[ExportedChampion],
+    progress: &ExportProgress,
+) -> Result<(Vec<Index<Node>>, Bounds), ExportError> {
+    let looks = Looks {
+        limbs: [RED, BLUE].map(|look| pieces.material(look)),
+        steps: [LIGHT_STEP, DARK_STEP].map(|look| pieces.material(look)),
+        eye: pieces.material(EYE),
+        pupil: pieces.material(PUPIL),
+    };
+    let width_m = |exported: &ExportedChampion| {
+        let champion = &exported.loaded.champion;
+        champion.body().width_m().max(champion.trial.stairs.width_m)
+    };
+    let spacing_m = champions.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
+    let middle = champions.len().saturating_sub(1) as f32 / 2.0;
+    let mut animation = Animation {
+        extensions: None,
+        extras: None,
+        channels: Vec::new(),
+        name: Some(if champions.len() > 1 { "race" } else { "climb" }.to_owned()),
+        samplers: Vec::new(),
+    };
+    let mut bounds = Bounds { min: Vector::splat(f32::MAX), max: Vector::splat(f32::MIN) };
+    let mut lanes = Vec::new();
+    for (number, exported) in champions.iter().enumerate() {
+        let ExportedChampion { name, loaded, .. } = exported;
+        let (body, trial) = (loaded.champion.body(), &loaded.champion.trial);
+        let part = progress.part(number, champions.len());
+        let samples = samples(exported, &body, &part)?;
+        let x_m = (middle - number as f32) * spacing_m;
+        let half_m = spacing_m / 2.0;
+        let back_m = trial.start_y_m - body.length_m() / 2.0;
+        bounds.min = bounds.min.min(Vector::new(x_m - half_m, back_m, 0.0));
+        let end_y_m = samples.furthest_y_m(trial, &body);
+        let top_m = trial.stairs.highest_m() + 1.0;
+        bounds.max = bounds.max.max(Vector::new(x_m + half_m, end_y_m, top_m));
+        let mut children = limbs(pieces, name, &body, &samples, &looks);
+        let times = pieces.times(&samples.times_s);
+        for (limb, poses) in children.iter().zip(&samples.poses) {
+            move_limb(pieces, &mut animation, *limb, times, poses);
+        }
+        children.extend(stairs(pieces, name, trial, end_y_m, &looks));
+        lanes.push(pieces.root.push(Node {
+            name: Some(name.clone()),
+            translation: Some([x_m, 0.0, 0.0]),
+            children: Some(children),
+            ..Node::default()
+        }));
+    }
+    pieces.root.push(animation);
+    Ok((lanes, bounds))
+}
+
+/// Simulates a champion and keeps every pose, or at high step rates every second, third and so on, and the last one.
+fn samples(
+    exported: &ExportedChampion,
+    body: &BodyPlan,
+    progress: &ExportProgress,
+) -> Result<Samples, ExportError> {
+    let champion = &exported.loaded.champion;
+    let steps_per_s = champion.trial.physics.steps_per_s;
+    let every = steps_per_s.div_ceil(SAMPLES_PER_S);
+    let mut samples = Samples { times_s: Vec::new(), poses: vec![Vec::new(); body.parts.len()] };
+    let mut last: Option<(u32, Vec<Pose>)> = None;
+    let mut keep = |step: u32, poses: &[Pose]| {
+        samples.times_s.push((f64::from(step) / f64::from(steps_per_s)) as f32);
+        for (kept, pose) in samples.poses.iter_mut().zip(poses) {
+            let mut pose = *pose;
+            // Of a rotation's two quaternions the one next to the last, so that the way between them is short.
+            pose.rotation = pose.rotation.normalize();
+            if kept.last().is_some_and(|last: &Pose| last.rotation.dot(pose.rotation) < 0.0) {
+                pose.rotation = -pose.rotation;
+            }
+            kept.push(pose);
+        }
+    };
+    follow(champion, progress, |rollout: &Rollout| {
+        let step = rollout.step();
+        if step.is_multiple_of(every) {
+            keep(step, rollout.poses());
+            last = None;
+        } else {
+            last = Some((step, rollout.poses().to_vec()));
+        }
+        Ok(())
+    })?;
+    if let Some((step, poses)) = last {
+        keep(step, &poses);
+    }
+    Ok(samples)
+}
+
+/// The nodes of the limbs, head first, at the start. Limbs of equal size and colour share a mesh.
+fn limbs(
+    pieces: &mut SceneParts,
+    name: &str,
+    body: &BodyPlan,
+    samples: &Samples,
+    looks: &Looks,
+) -> Vec<Index<Node>> {
+    let mut meshes: Vec<([f32; 3], usize, Index<Mesh>)> = Vec::new();
+    let mut nodes = Vec::new();
+    for (index, part) in body.parts.iter().enumerate() {
+        let (size_m, color) = (part.size_m(), part.limb % 2);
+        let known =
+            meshes.iter().find(|(size, of, _)| index > 0 && (*size, *of) == (size_m, color));
+        let mesh = match known {
+            Some((_, _, mesh)) => *mesh,
+            None => {
+                let block = TriangleSet::rounded_box(Vector::from(size_m));
+                let mut shapes = vec![(block, looks.limbs[color])];
+                if index == 0 {
+                    let [eyes, pupils] = eyes(Vector::from(size_m));
+                    shapes.extend([(eyes, looks.eye), (pupils, looks.pupil)]);
+                }
+                let mesh = pieces.mesh(if index == 0 { "head" } else { "limb" }, &shapes);
+                if index > 0 {
+                    meshes.push((size_m, color, mesh));
+                }
+                mesh
+            }
+        };
+        let start = samples.poses[index].first().copied().unwrap_or(Pose::IDENTITY);
+        nodes.push(pieces.root.push(Node {
+            name: Some(format!("{name}, {}", part_name(body, index))),
+            mesh: Some(mesh),
+            translation: Some(start.translation.to_array()),
+            rotation: Some(UnitQuaternion(start.rotation.to_array())),
+            ..Node::default()
+        }));
+    }
+    nodes
+}
+
+/// The eyes of a head, and their pupils.
+fn eyes(size: Vector) -> [TriangleSet; 2] {
+    let radius = size.x.min(size.z) * 0.2;
+    let (mut eyes, mut pupils) = (TriangleSet::default(), TriangleSet::default());
+    for side in [-1.0, 1.0] {
+        let across = side * (size.x / 2.0 - radius * 0.35);
+        let eye = Vector::new(across, size.y / 2.0 - radius * 1.9, size.z / 2.0 - radius * 0.2);
+        eyes.ball(eye, radius);
+        let gaze = Vector::new(side * 0.8, 0.62, 0.22).normalize();
+        pupils.ball(eye + gaze * radius * 0.5, radius * 0.64);
+    }
+    [eyes, pupils]
+}
+
+/// Adds the movement of a limb.
+fn move_limb(
+    pieces: &mut SceneParts,
+    animation: &mut Animation,
+    limb: Index<Node>,
+    times: Index<Accessor>,
+    poses: &[Pose],
+) {
+    let places: Vec<f32> = poses.iter().flat_map(|pose| pose.translation.to_array()).collect();
+    let turns: Vec<f32> = poses.iter().flat_map(|pose| pose.rotation.to_array()).collect();
+    let outputs = [
+        (Property::Translation, pieces.floats(&places, Type::Vec3, None)),
+        (Property::Rotation, pieces.floats(&turns, Type::Vec4, None)),
+    ];
+    for (property, output) in outputs {
+        let sampler = Index::push(
+            &mut animation.samplers,
+            Sampler {
+                extensions: None,
+                extras: None,
+                input: times,
+                interpolation: Checked::Valid(Interpolation::Linear),
+                output,
+            },
+        );
+        let path = Checked::Valid(property);
+        let target = Target { extensions: None, extras: None, node: limb, path };
+        animation.channels.push(Channel { sampler, target, extensions: None, extras: None });
+    }
+}
+
+impl Samples {
+    /// How far along y a scene has to reach, in m: to where a snake lies on the landing, and at least as far as this one got.
+    fn furthest_y_m(&self, trial: &Trial, body: &BodyPlan) -> f32 {
+        let places = self.poses.iter().flatten().map(|pose| pose.translation.y);
+        let reach_m = body.parts.iter().map(|limb| limb.length_m).fold(0.0, f32::max);
+        let on_landing_m = trial.stairs.landing_y_m() + body.length_m();
+        (places.fold(f32::MIN, f32::max) + reach_m).max(on_landing_m)
+    }
+}
+
+/// The part of a solid before `end_y_m`.
+fn cut_off(solid: StairSolid, end_y_m: f32) -> StairSolid {
+    let over_m = solid.pose.translation.y + solid.half_m.y - end_y_m;
+    if over_m <= 0.0 || solid.pose.rotation != Rotation::IDENTITY {
+        return solid;
+    }
+    let ahead = Vector::Y * over_m / 2.0;
+    let pose = Pose::from_translation(solid.pose.translation - ahead);
+    StairSolid { pose, half_m: solid.half_m - ahead, ..solid }
+}
+
+/// The node of the stairs, if there are any: steps of two tones in turn. Of a long landing only the part up to `end_y_m`.
+fn stairs(
+    pieces: &mut SceneParts,
+    name: &str,
+    trial: &Trial,
+    end_y_m: f32,
+    looks: &Looks,
+) -> Option<Index<Node>> {
+    let mut tones = [TriangleSet::default(), TriangleSet::default()];
+    for solid in trial.stairs.solids() {
+        tones[solid.step as usize % 2].step(&cut_off(solid, end_y_m));
+    }
+    let shapes = tones.into_iter().zip(looks.steps);
+    let shapes: Vec<_> = shapes.filter(|(shape, _)| !shape.indices.is_empty()).collect();
+    if shapes.is_empty() {
+        return None;
+    }
+    let mesh = pieces.mesh("stairs", &shapes);
+    let name = Some(format!("{name}, stairs"));
+    Some(pieces.root.push(Node { name, mesh: Some(mesh), ..Node::default() }))
+}

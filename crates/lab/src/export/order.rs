@@ -1,0 +1,97 @@
+//! Orders: champions, a format, and the file to write.
+
+use std::io::Write;
+use std::path::Path;
+use std::path::PathBuf;
+
+use super::facts::{Fact, facts};
+use super::format::ExportFormat;
+use super::mjcf::mjcf;
+use super::source::{ExportSource, ExportedChampion};
+use super::urdf::urdf;
+use super::{ExportError, ExportProgress, gltf, page, table_file};
+use snakes_core::save::UnfinishedFile;
+use snakes_core::world::WorldPlan;
+
+/// Champions, a format and a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportOrder {
+    source: ExportSource,
+    format: ExportFormat,
+    path: PathBuf,
+}
+
+/// Writes the model of a world with facts about the champion: `(name, world, facts)`.
+type ModelWriter = fn(&str, &WorldPlan, &[Fact]) -> std::io::Result<String>;
+
+impl ExportOrder {
+    /// Champions for a file whose ending decides the format.
+    ///
+    /// # Errors
+    /// No format has this ending, or its files do not hold this number of champions.
+    pub fn new(source: ExportSource, path: PathBuf) -> Result<Self, ExportError> {
+        let format = ExportFormat::of_path("--output", &path)?;
+        let found = source.champions.len();
+        match source.run {
+            Some(_) => format.check_generations(found)?,
+            None => format.check_champions(found)?,
+        }
+        Ok(Self { source, format, path })
+    }
+
+    /// The champions.
+    pub fn champions(&self) -> &[ExportedChampion] {
+        &self.source.champions
+    }
+
+    /// The champions, to be changed.
+    pub fn champions_mut(&mut self) -> &mut [ExportedChampion] {
+        &mut self.source.champions
+    }
+
+    /// The format.
+    pub fn format(&self) -> ExportFormat {
+        self.format
+    }
+
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the file, unless it is a film.
+    ///
+    /// # Errors
+    /// It cannot be written, it is a film, or the user cancelled.
+    pub fn carry_out(&self, progress: &ExportProgress) -> Result<(), ExportError> {
+        let Self { source, format, path } = self;
+        let champions = &source.champions;
+        match format {
+            ExportFormat::Csv => table_file::write_csv(champions, path, progress),
+            ExportFormat::Html => page::write_page(source, path, progress),
+            ExportFormat::Parquet => table_file::write_parquet(champions, path, progress),
+            ExportFormat::Glb => gltf::write_glb(champions, path, progress),
+            ExportFormat::Mjcf => self.write_models(mjcf, progress),
+            ExportFormat::Urdf => self.write_models(urdf, progress),
+            ExportFormat::Mp4 | ExportFormat::Gif | ExportFormat::Png => Err(ExportError::Film),
+        }
+    }
+
+    /// Writes the text of a model of the only champion.
+    fn write_models(
+        &self,
+        model: ModelWriter,
+        progress: &ExportProgress,
+    ) -> Result<(), ExportError> {
+        progress.reach(0.0)?;
+        self.champions().iter().try_for_each(|exported| {
+            let champion = &exported.loaded.champion;
+            let plan = champion.trial.world_plan(&champion.genome);
+            let text = model(&exported.name, &plan, &facts(exported));
+            let text = text.map_err(ExportError::unwritable(&self.path))?;
+            let mut file = UnfinishedFile::create(&self.path)?;
+            file.write_all(text.as_bytes()).map_err(ExportError::unwritable(&self.path))?;
+            Ok(file.finish()?)
+        })
+    }
+}

@@ -1,0 +1,87 @@
+//! A box with rounded edges and corners, which catch the light: the shape of limbs in every picture and every scene.
+//!
+//! Each face is a grid whose outer cells are bent over the edges, like a cube inflated to a sphere. The flat middle of a
+//! face is a single cell.
+
+use snakes_core::world::Vector;
+
+/// A box with rounded edges around the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoundedBox {
+    half: Vector,
+    radius: f32,
+    /// Cells across each rounded edge.
+    edge_cells: usize,
+}
+
+/// A face of a box: the axis that it looks along, 0 to 2, and whether it looks towards the axis' positive end.
+pub type BoxFace = (usize, bool);
+
+impl RoundedBox {
+    /// A box of a size, edges included, in metres. A box that is too thin gets a smaller radius.
+    pub fn new(size_m: [f32; 3], radius_m: f32, edge_cells: usize) -> Self {
+        let half = Vector::from(size_m) / 2.0;
+        let radius = radius_m.min(half.min_element() * 0.999);
+        Self { half, radius, edge_cells: edge_cells.max(1) }
+    }
+
+    /// Its six faces.
+    pub fn faces() -> impl Iterator<Item = BoxFace> {
+        (0..3).flat_map(|axis| [(axis, true), (axis, false)])
+    }
+
+    /// Cells of a face in each direction.
+    pub fn cells(&self) -> usize {
+        2 * self.edge_cells + 1
+    }
+
+    /// Position, in metres, and normal of a corner of a face's cells; both indices go from 0 to [`Self::cells`]. Seen from
+    /// outside, rows go up if columns go to the right.
+    pub fn corner(&self, (axis, is_positive): BoxFace, column: usize, row: usize) -> [[f32; 3]; 2] {
+        let (mut right, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
+        if !is_positive {
+            std::mem::swap(&mut right, &mut up);
+        }
+        let mut on_box = Vector::ZERO;
+        on_box[axis] = if is_positive { self.half[axis] } else { -self.half[axis] };
+        on_box[right] = self.place(column, self.half[right]);
+        on_box[up] = self.place(row, self.half[up]);
+        let inner = self.half - Vector::splat(self.radius);
+        let within = on_box.clamp(-inner, inner);
+        let normal = (on_box - within).normalize_or_zero();
+        [(within + normal * self.radius).to_array(), normal.to_array()]
+    }
+
+    /// Position of a cell's corner along one axis before bending: equal angles within each rounded edge.
+    fn place(&self, corner: usize, half: f32) -> f32 {
+        let from_edge = |cells: usize| {
+            let angle = std::f32::consts::FRAC_PI_4 * (1.0 - cells as f32 / self.edge_cells as f32);
+            self.radius - self.radius * libm::tanf(angle)
+        };
+        if corner <= self.edge_cells {
+            from_edge(corner) - half
+        } else {
+            half - from_edge(self.cells() - corner)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_corner_lies_on_the_rounded_box_and_faces_outward() {
+        let (size, radius) = (Vector::new(1.0, 2.0, 0.8), 0.1);
+        let shape = RoundedBox::new(size.to_array(), radius, 3);
+        let inner = size / 2.0 - Vector::splat(radius);
+        for face in RoundedBox::faces() {
+            for (column, row) in (0..=7).flat_map(|column| (0..=7).map(move |row| (column, row))) {
+                let [position, normal] = shape.corner(face, column, row).map(Vector::from);
+                let from_inner = position - position.clamp(-inner, inner);
+                assert!((from_inner.length() - radius).abs() < 1.0e-5, "{position}");
+                assert!((from_inner / radius - normal).length() < 1.0e-4, "{normal}");
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Champions and runs that are exported, read from files.
+
+use std::path::{Path, PathBuf};
+
+use super::ExportError;
+use snakes_core::Engine;
+use snakes_core::check::Invalid;
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::{
+    GenerationRecord, LoadedChampion, load_champion_and_note, load_log, load_run,
+};
+use snakes_core::score::evaluate;
+
+/// A champion with the name under which it appears.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportedChampion {
+    /// The name of its file without the ending, or of its generation in a run.
+    pub name: String,
+    /// The file that it was read from.
+    pub file: PathBuf,
+    /// The champion.
+    pub loaded: LoadedChampion,
+    /// The comment of its user in the file.
+    pub note: Option<String>,
+}
+
+impl ExportedChampion {
+    /// Replaces a record that the champion does not replay to by the result that it has here.
+    pub fn take_result_of_this_engine(&mut self) {
+        let LoadedChampion { champion, engine, recording, exam } = &mut self.loaded;
+        champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        // Both describe the other record.
+        (*engine, *recording) = (Engine::THIS, None);
+        exam.clear();
+    }
+}
+
+/// The run that all exported champions come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportedRun {
+    /// Its plan after all its changes.
+    pub plan: RunPlan,
+    /// Its finished generations.
+    pub records: Vec<GenerationRecord>,
+    /// The generation of each champion; the first is 1.
+    pub generations: Vec<u32>,
+}
+
+/// Champions, and their run if they were read from its folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportSource {
+    /// The champions.
+    pub champions: Vec<ExportedChampion>,
+    /// The run.
+    pub run: Option<ExportedRun>,
+}
+
+impl ExportSource {
+    /// Reads champions from files, or those of all generations from the folder of a run.
+    ///
+    /// # Errors
+    /// A file cannot be used, or a folder is given beside something else.
+    pub fn read(files: &[PathBuf]) -> Result<Self, ExportError> {
+        if let Some(folder) = files.iter().find(|file| file.is_dir()) {
+            if files.len() > 1 {
+                let value = format!("{} files and folders", files.len());
+                return Err(
+                    Invalid::new("FILES", value, "champions, or one folder of a run").into()
+                );
+            }
+            return Self::read_run(folder);
+        }
+        let mut champions: Vec<ExportedChampion> = Vec::with_capacity(files.len());
+        for file in files {
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            // Tables are grouped by name, so files of equal names in two folders get numbers.
+            let is_free = |name: &String| champions.iter().all(|other| other.name != *name);
+            let numbered = (2..=files.len() + 1).map(|number| format!("{stem} ({number})"));
+            let name = std::iter::once(stem.to_string()).chain(numbered).find(is_free);
+            let name = name.unwrap_or_else(|| stem.to_string());
+            let (loaded, note) = load_champion_and_note(file)?;
+            champions.push(ExportedChampion { name, file: file.clone(), loaded, note });
+        }
+        Ok(Self { champions, run: None })
+    }
+
+    fn read_run(folder: &Path) -> Result<Self, ExportError> {
+        let (plan, records) = load_log(folder)?;
+        let (generations, loaded): (Vec<u32>, Vec<LoadedChampion>) =
+            load_run(folder)?.into_iter().unzip();
+        let champion = |(number, loaded): (&u32, LoadedChampion)| ExportedChampion {
+            name: format!("generation {number}"),
+            file: folder.join(format!("generation-{number}.ron")),
+            loaded,
+            note: None,
+        };
+        let champions = generations.iter().zip(loaded).map(champion).collect();
+        Ok(Self { champions, run: Some(ExportedRun { plan, records, generations }) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn champions_of_equal_names_are_told_apart() {
+        let file = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../saves/climber.ron"));
+        let source = ExportSource::read(&[file.clone(), file.clone(), file]).expect("read");
+        let names: Vec<&str> = source.champions.iter().map(|of| of.name.as_str()).collect();
+        assert_eq!(names, ["climber", "climber (2)", "climber (3)"]);
+    }
+}

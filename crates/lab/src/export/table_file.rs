@@ -1,0 +1,252 @@
+//! Tables of motion as CSV and Parquet.
+
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as PhysicalType};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int32Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::Type;
+
+use super::columns::{KEYS, RowReader, RowValues, VALUES, columns};
+use super::facts::facts_as_json;
+use super::motion::follow;
+use super::{ExportError, ExportProgress, ExportedChampion};
+use snakes_core::save::UnfinishedFile;
+use snakes_core::score::Rollout;
+
+/// Rows that are held in memory and become one group of a Parquet file.
+const ROWS_PER_GROUP: usize = 100_000;
+
+/// The rows of a table, one after the other.
+trait TableSink {
+    fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError>;
+}
+
+/// The columns that say which row it is: see [`KEYS`].
+#[derive(Debug, Clone, Copy)]
+struct RowKey<'n> {
+    champion: &'n str,
+    step: u32,
+    time_s: f64,
+    /// The head is 1.
+    limb: u32,
+}
+
+/// Sends the rows of all champions.
+fn send_rows(
+    champions: &[ExportedChampion],
+    progress: &ExportProgress,
+    sink: &mut dyn TableSink,
+) -> Result<(), ExportError> {
+    let mut reader = RowReader::default();
+    for (index, ExportedChampion { name, loaded, .. }) in champions.iter().enumerate() {
+        let steps_per_s = f64::from(loaded.champion.trial.physics.steps_per_s);
+        let send = |rollout: &Rollout| {
+            let step = rollout.step();
+            let time_s = f64::from(step) / steps_per_s;
+            let rows = reader.rows(rollout);
+            (1..).zip(&rows).try_for_each(|(limb, values)| {
+                sink.row(&RowKey { champion: name, step, time_s, limb }, values)
+            })
+        };
+        follow(&loaded.champion, &progress.part(index, champions.len()), send)?;
+    }
+    Ok(())
+}
+
+/// Writes a table as CSV. Numbers have as many digits as their bits need; a value that is not there is empty.
+pub(super) fn write_csv(
+    champions: &[ExportedChampion],
+    path: &Path,
+    progress: &ExportProgress,
+) -> Result<(), ExportError> {
+    struct CsvTable<'p, W: Write> {
+        writer: csv::Writer<W>,
+        path: &'p Path,
+    }
+    impl<W: Write> TableSink for CsvTable<'_, W> {
+        fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
+            let numbers = [key.step.to_string(), key.time_s.to_string(), key.limb.to_string()];
+            let values = values.iter().map(|value| value.map(|value| value.to_string()));
+            let cells = [key.champion.to_owned()].into_iter().chain(numbers);
+            let cells = cells.chain(values.map(Option::unwrap_or_default));
+            self.writer.write_record(cells).map_err(of_csv(self.path))
+        }
+    }
+    let mut file = UnfinishedFile::create(path)?;
+    let mut table = CsvTable { writer: csv::Writer::from_writer(&mut file), path };
+    let names = columns().map(|column| column.name);
+    table.writer.write_record(names).map_err(of_csv(path))?;
+    send_rows(champions, progress, &mut table)?;
+    table.writer.flush().map_err(ExportError::unwritable(path))?;
+    drop(table);
+    Ok(file.finish()?)
+}
+
+/// The error that a CSV file cannot be written.
+fn of_csv(path: &Path) -> impl Fn(csv::Error) -> ExportError {
+    move |error| {
+        let text = error.to_string();
+        match error.into_kind() {
+            csv::ErrorKind::Io(system) => ExportError::unwritable(path)(system),
+            _ => ExportError::unwritable(path)(text),
+        }
+    }
+}
+
+/// Key of the metadata with the facts about each champion, as JSON.
+const CHAMPIONS: &str = "champions";
+
+/// Writes a table as Parquet: columns of 32-bit floats, in groups of [`ROWS_PER_GROUP`] rows, with the columns' meanings
+/// and facts about the champions as metadata of the file.
+pub(super) fn write_parquet(
+    champions: &[ExportedChampion],
+    path: &Path,
+    progress: &ExportProgress,
+) -> Result<(), ExportError> {
+    let mut file = UnfinishedFile::create(path)?;
+    fill_parquet(&mut file, champions, path, progress)?;
+    Ok(file.finish()?)
+}
+
+fn fill_parquet(
+    file: &mut UnfinishedFile,
+    champions: &[ExportedChampion],
+    path: &Path,
+    progress: &ExportProgress,
+) -> Result<(), ExportError> {
+    let failed = of_parquet(path);
+    let meanings =
+        columns().map(|column| KeyValue::new(column.name.to_owned(), column.meaning.to_owned()));
+    let about = KeyValue::new(CHAMPIONS.to_owned(), facts_as_json(champions).to_string());
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        // The program's name and version; the library's own would change with each update of it.
+        .set_created_by(concat!("snakes-and-stairs version ", env!("CARGO_PKG_VERSION")).to_owned())
+        .set_key_value_metadata(Some(meanings.chain([about]).collect()))
+        // Neighbouring steps differ in few bits of a float, and the bytes of equal weight resemble each other.
+        .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+        .set_column_dictionary_enabled(KEYS[0].name.into(), true)
+        .set_dictionary_enabled(false)
+        .set_column_encoding(KEYS[1].name.into(), Encoding::DELTA_BINARY_PACKED)
+        .set_column_encoding(KEYS[3].name.into(), Encoding::DELTA_BINARY_PACKED)
+        .set_column_encoding(KEYS[0].name.into(), Encoding::PLAIN)
+        .build();
+    let schema = Arc::new(schema().map_err(&failed)?);
+    let writer = SerializedFileWriter::new(file, schema, Arc::new(properties));
+    let mut table =
+        ParquetTable { writer: writer.map_err(&failed)?, path, group: RowGroup::default() };
+    send_rows(champions, progress, &mut table)?;
+    table.write_group()?;
+    table.writer.into_inner().map_err(&failed)?;
+    Ok(())
+}
+
+/// A Parquet file in progress.
+struct ParquetTable<'p, W: Write + Send> {
+    writer: SerializedFileWriter<W>,
+    path: &'p Path,
+    group: RowGroup,
+}
+
+/// Rows that are not written yet, column by column.
+#[derive(Debug)]
+struct RowGroup {
+    champions: Vec<ByteArray>,
+    steps: Vec<i32>,
+    times_s: Vec<f64>,
+    limbs: Vec<i32>,
+    /// For each column the values that are there, and for each row 1 if its value is there, else 0.
+    values: Vec<(Vec<f32>, Vec<i16>)>,
+}
+
+impl Default for RowGroup {
+    fn default() -> Self {
+        Self {
+            champions: Vec::new(),
+            steps: Vec::new(),
+            times_s: Vec::new(),
+            limbs: Vec::new(),
+            values: vec![Default::default(); VALUES.len()],
+        }
+    }
+}
+
+impl<W: Write + Send> TableSink for ParquetTable<'_, W> {
+    fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
+        let group = &mut self.group;
+        group.champions.push(key.champion.into());
+        group.steps.push(key.step.cast_signed());
+        group.times_s.push(key.time_s);
+        group.limbs.push(key.limb.cast_signed());
+        for ((present, levels), value) in group.values.iter_mut().zip(values) {
+            levels.push(value.is_some().into());
+            present.extend(value);
+        }
+        if group.steps.len() >= ROWS_PER_GROUP { self.write_group() } else { Ok(()) }
+    }
+}
+
+impl<W: Write + Send> ParquetTable<'_, W> {
+    /// Writes the rows that are held.
+    fn write_group(&mut self) -> Result<(), ExportError> {
+        let group = std::mem::take(&mut self.group);
+        let mut write = || {
+            let mut row_group = self.writer.next_row_group()?;
+            write_column::<ByteArrayType, _>(&mut row_group, &group.champions, None)?;
+            write_column::<Int32Type, _>(&mut row_group, &group.steps, None)?;
+            write_column::<DoubleType, _>(&mut row_group, &group.times_s, None)?;
+            write_column::<Int32Type, _>(&mut row_group, &group.limbs, None)?;
+            for (present, levels) in &group.values {
+                write_column::<FloatType, _>(&mut row_group, present, Some(levels))?;
+            }
+            row_group.close().map(drop)
+        };
+        write().map_err(of_parquet(self.path))
+    }
+}
+
+fn write_column<T: parquet::data_type::DataType, W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    values: &[T::T],
+    levels: Option<&[i16]>,
+) -> Result<(), ParquetError> {
+    let missing = || ParquetError::General("a column is missing".to_owned());
+    let mut column = group.next_column()?.ok_or_else(missing)?;
+    column.typed::<T>().write_batch(values, levels, None)?;
+    column.close()
+}
+
+/// The types of all columns.
+fn schema() -> Result<Type, ParquetError> {
+    let field = |name, physical, logical, repetition| {
+        let builder = Type::primitive_type_builder(name, physical);
+        builder.with_logical_type(logical).with_repetition(repetition).build().map(Arc::new)
+    };
+    let key = |index: usize, physical, logical| {
+        field(KEYS[index].name, physical, logical, Repetition::REQUIRED)
+    };
+    let mut fields = vec![
+        key(0, PhysicalType::BYTE_ARRAY, Some(LogicalType::String))?,
+        key(1, PhysicalType::INT32, None)?,
+        key(2, PhysicalType::DOUBLE, None)?,
+        key(3, PhysicalType::INT32, None)?,
+    ];
+    for column in VALUES {
+        fields.push(field(column.name, PhysicalType::FLOAT, None, Repetition::OPTIONAL)?);
+    }
+    Type::group_type_builder("motion").with_fields(fields).build()
+}
+
+/// The error that a Parquet file cannot be written.
+fn of_parquet(path: &Path) -> impl Fn(ParquetError) -> ExportError {
+    move |error| match error {
+        ParquetError::External(reason) => ExportError::unwritable(path)(reason),
+        other => ExportError::unwritable(path)(other),
+    }
+}

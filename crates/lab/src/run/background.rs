@@ -1,0 +1,376 @@
+//! A run on a thread of its own, for a window that must not wait.
+
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, unbounded};
+
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
+use super::lineage::{Ancestor, Ancestry, Generation};
+use super::recorder::{RecordedRun, RunRecorder, RunSource};
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
+use snakes_core::evolve::{Archive, Champion, Front, RunPlan, SettingChange, StairsTree};
+
+/// News about a run in the background.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunEvent {
+    /// The run's folder is open.
+    Opened(Box<OpenedRun>),
+    /// A setting is changed; the change takes effect with the generation that begins next.
+    SettingChanged {
+        /// The change.
+        change: SettingChange,
+        /// The plan with it.
+        plan_now: Box<RunPlan>,
+    },
+    /// A setting was not changed.
+    SettingNotChanged {
+        /// Its full dotted name.
+        field: String,
+        /// Why, in a line.
+        reason: String,
+    },
+    /// The run's folder cannot be opened, and why: nothing is evolved.
+    Refused(String),
+    /// Results besides champions: after the run was opened, and before each [`Self::Generation`].
+    Explored(Box<Exploration>),
+    /// A generation is finished.
+    Generation(Box<GenerationReport>),
+    /// All generations are finished.
+    Finished {
+        /// Hash over the whole run.
+        run_hash: u64,
+    },
+    /// The generation could not be saved, and why. The run is held; resuming tries again.
+    NotSaved(String),
+    /// The simulation of an individual panicked, in a line; the run continues.
+    Crashed(String),
+    /// An evaluator reported results that cannot be trusted, and why, in a line. Earlier generations, saved ones included,
+    /// may be wrong; no more events follow.
+    Untrusted(String),
+    /// The run's thread ended by an error of the program; no more events follow.
+    Failed,
+}
+
+/// A run whose folder was opened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenedRun {
+    /// The plan it began with.
+    pub plan_at_start: RunPlan,
+    /// The plan with all changes that earlier sessions made.
+    pub plan_now: RunPlan,
+    /// The finished generations, the first first.
+    pub reports: Vec<GenerationReport>,
+}
+
+/// Results of a run besides its champions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exploration {
+    /// The individuals that no other beats in both distance and energy.
+    pub front: Front,
+    /// The strategy's archive of elites, if it has one.
+    pub archive: Option<Archive>,
+    /// The tree of stairs, if stairs evolve.
+    pub stairs: Option<Arc<StairsTree>>,
+    /// The best of the latest generation, the best first; empty if an earlier session finished it.
+    pub leaders: Vec<Champion>,
+    /// The latest generation; none if an earlier session finished it.
+    pub generation: Option<Arc<Generation>>,
+    /// The known parents of the next generation, each with its number of children.
+    pub parents: Vec<(Arc<Ancestor>, u32)>,
+    /// The ancestry of the best so far.
+    pub ancestry: Ancestry,
+}
+
+impl Exploration {
+    /// The results of an experiment so far.
+    pub fn of(experiment: &Experiment) -> Self {
+        Self {
+            front: experiment.front().clone(),
+            archive: experiment.archive(),
+            stairs: experiment.stairs_tree().map(Arc::new),
+            leaders: experiment.leaders().to_vec(),
+            generation: experiment.generation().cloned(),
+            parents: experiment.parents(),
+            ancestry: experiment.ancestry(),
+        }
+    }
+}
+
+/// A run on a background thread. Dropping this cancels it and waits briefly for files that are being written.
+#[derive(Debug)]
+pub struct BackgroundRun {
+    shared: Arc<BackgroundState>,
+    events: Receiver<RunEvent>,
+    has_ended: AtomicBool,
+}
+
+/// How long dropping a run waits for its thread: much longer than it takes to write a file.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Shared between the run's thread and its [`BackgroundRun`].
+#[derive(Debug)]
+struct BackgroundState {
+    control: RunControl,
+    pause_after_generation: AtomicBool,
+    /// Size of the generation in progress. Some strategies change it.
+    population: AtomicU32,
+    /// Requested changes of settings: full dotted names and values.
+    requests: Mutex<VecDeque<(String, String)>>,
+    /// The evaluator of the next generation.
+    evaluator: Mutex<Arc<dyn Evaluator>>,
+}
+
+impl BackgroundState {
+    fn requests(&self) -> MutexGuard<'_, VecDeque<(String, String)>> {
+        self.requests.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn evaluator(&self) -> MutexGuard<'_, Arc<dyn Evaluator>> {
+        self.evaluator.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl BackgroundRun {
+    /// Opens a run and holds it before its first evaluation: see [`Self::resume`]. If `before` may still use its
+    /// folder, the run's thread waits until that has ended.
+    ///
+    /// # Errors
+    /// The thread could not be started.
+    pub fn start(
+        source: RunSource,
+        evaluator: Arc<dyn Evaluator>,
+        before: Option<Self>,
+    ) -> std::io::Result<Self> {
+        let shared = Arc::new(BackgroundState {
+            control: RunControl::default(),
+            pause_after_generation: AtomicBool::new(false),
+            population: AtomicU32::new(source.plan.settings.evolution.population),
+            requests: Mutex::default(),
+            evaluator: Mutex::new(evaluator),
+        });
+        shared.control.pause();
+        if let Some(before) = &before {
+            before.shared.control.cancel();
+        }
+        let (sender, events) = unbounded();
+        let worker = RunWorker { shared: Arc::clone(&shared), events: sender };
+        thread::Builder::new().name("experiment".to_owned()).spawn(move || {
+            if let Some(before) = before {
+                before.wait_for_end();
+            }
+            if worker.shared.control.is_cancelled() {
+                return;
+            }
+            match source.open("the studio") {
+                Ok(run) => worker.work(run),
+                Err(error) => worker.send(RunEvent::Refused(error.to_string())),
+            }
+        })?;
+        Ok(Self { shared, events, has_ended: AtomicBool::new(false) })
+    }
+
+    /// Continues until paused or finished.
+    pub fn resume(&self) {
+        self.shared.pause_after_generation.store(false, Ordering::SeqCst);
+        self.shared.control.resume();
+    }
+
+    /// Continues to the end of the current generation, then pauses.
+    pub fn run_single_generation(&self) {
+        self.shared.pause_after_generation.store(true, Ordering::SeqCst);
+        self.shared.control.resume();
+    }
+
+    /// Whether it will pause after the current generation.
+    pub fn is_single_generation(&self) -> bool {
+        self.shared.pause_after_generation.load(Ordering::SeqCst)
+    }
+
+    /// Holds the workers.
+    pub fn pause(&self) {
+        self.shared.control.pause();
+    }
+
+    /// Requests changes of settings, by their full dotted names, before the next generation begins; if the run is
+    /// held between two generations, at once. Each is answered by [`RunEvent::SettingChanged`] or
+    /// [`RunEvent::SettingNotChanged`], unless the setting has that value already.
+    pub fn request_changes(&self, changes: impl IntoIterator<Item = (String, String)>) {
+        self.shared.requests().extend(changes);
+        self.shared.control.wake();
+    }
+
+    /// Replaces the evaluator from the next generation on. That changes no bit.
+    pub fn set_evaluator(&self, evaluator: Arc<dyn Evaluator>) {
+        *self.shared.evaluator() = evaluator;
+    }
+
+    /// Whether the workers are held.
+    pub fn is_paused(&self) -> bool {
+        self.shared.control.is_paused()
+    }
+
+    /// Number of finished evaluations of the current generation, and their total.
+    pub fn progress(&self) -> (u32, u32) {
+        let population = self.shared.population.load(Ordering::Relaxed);
+        // Between two generations, one number may be read before and the other after the change.
+        (self.shared.control.done().min(population), population)
+    }
+
+    /// The next event, if there is one.
+    pub fn poll(&self) -> Option<RunEvent> {
+        match self.events.try_recv() {
+            Ok(event) => {
+                let is_last = matches!(
+                    event,
+                    RunEvent::Finished { .. } | RunEvent::Refused(_) | RunEvent::Untrusted(_)
+                );
+                self.has_ended.fetch_or(is_last, Ordering::Relaxed);
+                Some(event)
+            }
+            Err(TryRecvError::Empty) => None,
+            // The thread is gone. Without a last event, it panicked.
+            Err(TryRecvError::Disconnected) => {
+                (!self.has_ended.swap(true, Ordering::Relaxed)).then_some(RunEvent::Failed)
+            }
+        }
+    }
+
+    /// Blocks until a cancelled run has released its folder.
+    fn wait_for_end(self) {
+        // The thread drops its end of the channel last.
+        self.events.iter().for_each(drop);
+    }
+}
+
+impl Drop for BackgroundRun {
+    fn drop(&mut self) {
+        self.shared.control.cancel();
+        let deadline = Instant::now() + SHUTDOWN_TIMEOUT;
+        // The channel is disconnected when the thread has ended.
+        while self.events.recv_deadline(deadline) != Err(RecvTimeoutError::Disconnected)
+            && Instant::now() < deadline
+        {}
+    }
+}
+
+/// State of the run's thread.
+struct RunWorker {
+    shared: Arc<BackgroundState>,
+    events: Sender<RunEvent>,
+}
+
+impl RunWorker {
+    /// Sending fails only when the receiver was dropped; the run is cancelled then anyway.
+    fn send(&self, event: RunEvent) {
+        drop(self.events.send(event));
+    }
+
+    fn work(&self, run: RecordedRun) {
+        let RecordedRun { plan_at_start, mut experiment, mut recorder, reports } = run;
+        let control = &self.shared.control;
+        let explored =
+            |experiment: &Experiment| RunEvent::Explored(Box::new(Exploration::of(experiment)));
+        self.shared.population.store(experiment.population(), Ordering::Relaxed);
+        let plan_now = experiment.plan_now().into_owned();
+        self.send(RunEvent::Opened(Box::new(OpenedRun { plan_at_start, plan_now, reports })));
+        if experiment.finished() > 0 {
+            self.send(explored(&experiment));
+        }
+        let mut used: Option<Arc<dyn Evaluator>> = None;
+        loop {
+            // Even a finished run can be made longer.
+            self.serve_requests(&mut experiment, &mut recorder);
+            if experiment.is_over() {
+                break;
+            }
+            match control.wait_while_paused_unless(|| !self.shared.requests().is_empty()) {
+                Ok(true) => {}
+                Ok(false) => continue,
+                Err(Cancelled) => return,
+            }
+            let evaluator = Arc::clone(&self.shared.evaluator());
+            // The evaluator before may still have been checking its last results.
+            let before = used.replace(Arc::clone(&evaluator));
+            let before = before.filter(|before| !Arc::ptr_eq(before, &evaluator));
+            if self.reports_fault(before.as_deref()) {
+                return;
+            }
+            let record = |generation, individual, evaluation: &_| {
+                recorder.record_evaluation(generation, individual, evaluation);
+            };
+            let report = experiment.run_generation_recording(&*evaluator, control, record);
+            let Ok(report) = report else {
+                // An evaluator with a fault cancels its batches by itself.
+                if !control.is_cancelled() {
+                    self.reports_fault(Some(&*evaluator));
+                }
+                return;
+            };
+            let crashes = loop {
+                match recorder.record_generation(&experiment, &report) {
+                    Ok(crashes) => break crashes,
+                    Err(error) => {
+                        control.pause();
+                        self.send(RunEvent::NotSaved(error.to_string()));
+                    }
+                }
+                if control.wait_while_paused().is_err() {
+                    return;
+                }
+            };
+            if self.shared.pause_after_generation.swap(false, Ordering::SeqCst) {
+                control.pause();
+            }
+            crashes.into_iter().for_each(|crash| self.send(RunEvent::Crashed(crash)));
+            self.send(explored(&experiment));
+            self.send(RunEvent::Generation(Box::new(report)));
+        }
+        if !self.reports_fault(used.as_deref()) {
+            self.send(RunEvent::Finished { run_hash: experiment.run_hash() });
+        }
+    }
+
+    /// Tells that an evaluator's results cannot be trusted, if they cannot.
+    fn reports_fault(&self, evaluator: Option<&dyn Evaluator>) -> bool {
+        let fault = evaluator.and_then(Evaluator::fault);
+        let is_wrong = fault.is_some();
+        fault.into_iter().for_each(|reason| self.send(RunEvent::Untrusted(reason)));
+        is_wrong
+    }
+
+    /// Makes the requested changes of settings.
+    fn serve_requests(&self, experiment: &mut Experiment, recorder: &mut RunRecorder) {
+        loop {
+            self.show_next_generation(experiment);
+            let Some((field, text)) = self.shared.requests().pop_front() else { return };
+            let event = match recorder.change_setting(experiment, &field, &text) {
+                Ok(None) => continue,
+                Ok(Some(change)) => {
+                    let plan_now = Box::new(experiment.plan_now().into_owned());
+                    RunEvent::SettingChanged { change, plan_now }
+                }
+                Err(error) => RunEvent::SettingNotChanged { field, reason: error.to_string() },
+            };
+            // Before the event is sent, so that its receiver sees the generation that the change is for.
+            self.show_next_generation(experiment);
+            self.send(event);
+        }
+    }
+
+    /// Shows the progress of the next generation, of which nothing is done; after the last one, of that one.
+    fn show_next_generation(&self, experiment: &Experiment) {
+        if !experiment.is_over() {
+            self.shared.control.start_generation();
+        }
+        self.shared.population.store(experiment.population(), Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,83 @@
+//! Settings that change during a run: proposed, then recorded by the caller, then applied.
+
+use std::borrow::Cow;
+
+use super::Experiment;
+use snakes_core::check::{Invalid, within};
+use snakes_core::evolve::{RunPlan, SettingChange, Settings};
+
+impl Experiment {
+    /// The settings of the next generation.
+    pub fn settings(&self) -> Cow<'_, Settings> {
+        match self.next_plan() {
+            Cow::Borrowed(plan) => Cow::Borrowed(&plan.settings),
+            Cow::Owned(plan) => Cow::Owned(plan.settings),
+        }
+    }
+
+    /// The plan of the next generation.
+    pub fn next_plan(&self) -> Cow<'_, RunPlan> {
+        self.plan_with(|change| change.generation <= self.finished + 1)
+    }
+
+    /// The plan as it is now: with all changes that were recorded, even those of later generations.
+    pub fn plan_now(&self) -> Cow<'_, RunPlan> {
+        self.plan_with(|_| true)
+    }
+
+    fn plan_with(&self, is_included: impl Fn(&SettingChange) -> bool) -> Cow<'_, RunPlan> {
+        let mut plan = Cow::Borrowed(&self.plan);
+        for change in self.ahead.iter().take_while(|change| is_included(change)) {
+            // All were checked before.
+            let _ = plan.to_mut().change(change);
+        }
+        plan
+    }
+
+    /// The change of a setting from the next generation on that a user asks for; none if it changes nothing. This
+    /// only checks it: see [`Self::apply_change`].
+    ///
+    /// # Errors
+    /// The setting may not change during a run, its value is not allowed, or an earlier change has not taken effect
+    /// yet.
+    pub fn propose_change(
+        &self,
+        field: &str,
+        text: &str,
+    ) -> Result<Option<SettingChange>, Invalid> {
+        let next = self.finished + 1;
+        if let Some(later) = self.ahead.iter().find(|change| change.generation > next) {
+            let later = later.generation;
+            let allowed =
+                format!("none before generation {later}, for which a change is already recorded");
+            return Err(Invalid::new("changed setting", format!("{field:?}"), allowed));
+        }
+        self.next_plan().proposed(next, field, text)
+    }
+
+    /// Applies a proposed change, which takes effect with the next generation. Known evaluations of that generation
+    /// were made under the old setting and are dropped.
+    ///
+    /// # Errors
+    /// As [`Self::propose_change`]; nothing is changed then.
+    pub fn apply_change(&mut self, change: &SettingChange) -> Result<(), Invalid> {
+        let next = self.finished + 1;
+        within("generation", change.generation, next..=next)?;
+        self.apply_due_changes();
+        self.plan.change(change)?;
+        self.strategy.apply_settings(&self.plan);
+        self.known.clear();
+        Ok(())
+    }
+
+    /// Applies the recorded changes of the next generation.
+    pub(super) fn apply_due_changes(&mut self) {
+        let next = self.finished + 1;
+        // One by one, as they were made: changing a setting there and back differs from not changing it.
+        while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
+            // All were checked before.
+            let _ = self.plan.change(&change);
+            self.strategy.apply_settings(&self.plan);
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! The program without a window: evolves a run and prints it as a table or as JSON lines.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::evaluator::{Evaluator, WorkersError};
+use super::json::{short, with_short_numbers};
+use super::progress_bar::{beside_bar, run_generation_with_bar};
+use super::recorder::{RecordedRun, RunSource};
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
+use snakes_core::evolve::{Champion, RunPlan, SettingChange};
+use snakes_core::save::{Rung, SaveError, SpeciesCount, StairsCount};
+
+/// A headless command failed.
+#[derive(Debug, thiserror::Error)]
+pub enum HeadlessError {
+    /// A file could not be read or written.
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// The workers could not be started.
+    #[error(transparent)]
+    Workers(#[from] WorkersError),
+    /// Standard output was closed or is full.
+    #[error("standard output: cannot be written: {0}")]
+    Output(#[from] io::Error),
+    /// The interrupt key stopped a run.
+    #[error(
+        "cancelled after generation {finished} of {generations}; continue it with: snakes --no-render --resume {}{flags}",
+        folder.display()
+    )]
+    Stopped {
+        /// Number of generations that are finished.
+        finished: u32,
+        /// Number of generations in the run.
+        generations: u32,
+        /// The run's folder.
+        folder: PathBuf,
+        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        flags: String,
+    },
+    /// A generation could not be saved.
+    #[error(
+        "{source}; generations up to {saved} are saved; continue the run with: snakes --no-render --resume {}{flags}",
+        folder.display()
+    )]
+    NotSaved {
+        /// The cause.
+        source: Box<SaveError>,
+        /// Number of generations that are saved.
+        saved: u32,
+        /// The run's folder.
+        folder: PathBuf,
+        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        flags: String,
+    },
+    /// The simulation of a saved genome panicked.
+    #[error("{}: simulating its genome failed: {message}", path.display())]
+    Crashed {
+        /// The save.
+        path: PathBuf,
+        /// The message of the panic.
+        message: String,
+    },
+    /// The interrupt key was pressed.
+    #[error("cancelled; {}", match kept {
+        Some(path) => format!("the best so far is saved to {}", path.display()),
+        None => "nothing was finished, so nothing is saved".to_owned(),
+    })]
+    Cancelled {
+        /// The file of the best so far.
+        kept: Option<PathBuf>,
+    },
+    /// A replay differs from its record.
+    #[error("{path}: replay differs from the record: {difference}")]
+    Differs {
+        /// The save.
+        path: PathBuf,
+        /// The difference, and a possible reason.
+        difference: String,
+    },
+    /// Every agent of every generation was disqualified.
+    #[error("no champion: every snake of every generation was disqualified")]
+    NoChampion,
+}
+
+impl HeadlessError {
+    /// Names, in a cancellation, the file with what was finished, if it exists.
+    pub fn keeping(self, file: &Path) -> Self {
+        match self {
+            Self::Cancelled { .. } => {
+                Self::Cancelled { kept: file.exists().then(|| file.to_owned()) }
+            }
+            other => other,
+        }
+    }
+}
+
+/// Evolves a run to its end and prints a line per generation to `out`, beginning with those that earlier sessions
+/// finished. Each generation is saved before its line is printed.
+///
+/// # Errors
+/// See [`HeadlessError`]. The folder is opened before the first evaluation.
+pub fn evolve(
+    source: RunSource,
+    evaluator: &dyn Evaluator,
+    json: bool,
+    control: &RunControl,
+    out: &mut dyn Write,
+) -> Result<(), HeadlessError> {
+    let RunPlan { preset, seed, founder, .. } = source.plan.clone();
+    let run = source.open("snakes --no-render")?;
+    let RecordedRun { mut experiment, mut recorder, reports, .. } = run;
+    let folder = recorder.folder().to_owned();
+    let settings = experiment.settings().into_owned();
+    let generations = settings.evolution.generations;
+    let bodies_vary = settings.genome.bodies.vary;
+    let earlier = match reports.len() {
+        0 => String::new(),
+        _ if experiment.is_over() => "; already finished (--restart starts over)".to_owned(),
+        finished => format!("; continues after generation {finished}"),
+    };
+    let founder = founder.map(|founder| format!(", from {}", founder.name()));
+    let from = founder.unwrap_or_default();
+    say(&format!(
+        "preset {preset}, seed {seed}{from}: generations {generations}, population {}, {}{earlier}",
+        settings.evolution.population,
+        evaluator.place()
+    ));
+    if !recorder.changes().is_empty() {
+        say(&format!("changed during the run: {}", list_changes(recorder.changes())));
+    }
+    if !json {
+        writeln!(out, "{TABLE_HEAD}")?;
+    }
+    let mut landing = Landing::default();
+    let mut print = |report: &GenerationReport| {
+        landing.add(report);
+        let line =
+            if json { report_json(report, bodies_vary).to_string() } else { table_row(report) };
+        writeln!(out, "{line}")?;
+        out.flush()
+    };
+    reports.iter().try_for_each(&mut print)?;
+    drop(reports);
+    while !experiment.is_over() {
+        let record = |generation, individual, evaluation: &_| {
+            recorder.record_evaluation(generation, individual, evaluation);
+        };
+        let report = run_generation_with_bar(&mut experiment, evaluator, control, record);
+        let finished = experiment.finished();
+        let report = report.map_err(|Cancelled| HeadlessError::Stopped {
+            finished,
+            generations,
+            folder: folder.clone(),
+            flags: evaluator.flags(),
+        })?;
+        let crashes = recorder.record_generation(&experiment, &report).map_err(|source| {
+            HeadlessError::NotSaved {
+                source: Box::new(source),
+                saved: experiment.finished() - 1,
+                folder: folder.clone(),
+                flags: evaluator.flags(),
+            }
+        })?;
+        crashes.iter().for_each(|crash| say(crash));
+        print(&report)?;
+    }
+    let run_hash = format!("{:016x}", experiment.run_hash());
+    let best = experiment.best();
+    if json {
+        let last = json!({
+            "done": true,
+            "run_hash": run_hash,
+            "first_on_landing": landing.first,
+            "best": best.map(|best| short(best.evaluation.fitness)),
+            "champion": recorder.best(),
+        });
+        writeln!(out, "{last}")?;
+    } else if let (Some(best), Some(path)) = (best, recorder.best()) {
+        writeln!(out, "\nchampion  {}", about(best))?;
+        writeln!(out, "saved to  {}", path.display())?;
+        if let Some(first) = landing.first {
+            writeln!(out, "landing   first reached by evaluation {first}")?;
+        }
+        writeln!(out, "run hash  {run_hash}")?;
+    }
+    best.map(|_| ()).ok_or(HeadlessError::NoChampion)
+}
+
+/// The changes in a line; of many, the latest.
+fn list_changes(changes: &[SettingChange]) -> String {
+    const MAX_LISTED: usize = 6;
+    let left_out = changes.len().saturating_sub(MAX_LISTED);
+    let mut texts: Vec<String> = Vec::new();
+    if left_out > 0 {
+        texts.push(format!("{left_out} earlier"));
+    }
+    texts.extend(changes.iter().skip(left_out).map(|change| {
+        let SettingChange { generation, field, value } = change;
+        let name = field.strip_prefix("evolution.").unwrap_or(field);
+        format!("{name} {value} from generation {generation}")
+    }));
+    texts.join(", ")
+}
+
+/// Finds the first individual on the landing, in the order of all evaluations.
+#[derive(Debug, Default)]
+struct Landing {
+    /// Number of evaluations so far.
+    spent: u64,
+    /// Its number; the first evaluation is 1.
+    first: Option<u64>,
+}
+
+impl Landing {
+    fn add(&mut self, report: &GenerationReport) {
+        let number = report.first_on_landing.map(|index| self.spent + u64::from(index) + 1);
+        self.first = self.first.or(number);
+        self.spent += u64::from(report.evaluations);
+    }
+}
+
+/// Writes a line for the user to standard error; standard output is for results.
+pub fn say(line: &str) {
+    // If standard error is closed, there is no other place to report to.
+    let _ = beside_bar(|| writeln!(io::stderr(), "{line}"));
+}
+
+const TABLE_HEAD: &str =
+    "generation     mean     best   median  std.dev.  disqualified  mean in words";
+
+fn table_row(report: &GenerationReport) -> String {
+    let generation = report.generation;
+    let disqualified = report.disqualified;
+    let numbers = match report.statistics {
+        Some(s) => format!("{:>9.2}{:>9.2}{:>9.2}{:>10.2}", s.mean, s.best, s.median, s.std),
+        None => format!("{:>9}{:>9}{:>9}{:>10}", "-", "-", "-", "-"),
+    };
+    format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
+}
+
+fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
+    let statistics = report.statistics;
+    let mut line = json!({
+        "generation": report.generation,
+        "mean": statistics.map(|s| s.mean),
+        "best": statistics.map(|s| with_short_numbers(&s.best.into())),
+        "median": statistics.map(|s| s.median),
+        "std": statistics.map(|s| s.std),
+        "worst": statistics.map(|s| with_short_numbers(&s.worst.into())),
+        "disqualified": report.disqualified,
+        "crashed": report.crashed,
+        "on_landing": report.on_landing,
+        "first_on_landing": report.first_on_landing,
+        "evaluations": report.evaluations,
+        "elapsed_s": report.elapsed_s,
+        "meaning": report.meaning,
+        "hash": format!("{:016x}", report.hash),
+    });
+    if !report.species.is_empty() {
+        let (list, number) = if bodies_vary { ("bodies", "blocks") } else { ("species", "id") };
+        let of = |species: &SpeciesCount| json!({number: species.id, "size": species.size, "best": species.best.map(short)});
+        line[list] = report.species.iter().map(of).collect();
+    }
+    if let Some(Rung { rise_m, successes }) = report.rung {
+        line["rung"] = json!({"rise_m": short(rise_m), "successes": successes});
+    }
+    if let Some(StairsCount { rounds, all, active, solved, challenges }) = report.stairs {
+        line["stairs"] = json!({
+            "rounds": rounds, "all": all, "active": active, "solved": solved, "challenges": challenges,
+        });
+    }
+    line
+}
+
+/// A champion in one line.
+fn about(champion: &Champion) -> String {
+    format!(
+        "{} (generation {}, snake {})",
+        champion.reached(),
+        champion.origin.generation,
+        champion.origin.individual + 1,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::report::Statistics;
+
+    fn report() -> GenerationReport {
+        let statistics = Statistics {
+            mean: -7.225,
+            best: 1.5,
+            median: -7.0,
+            std: 0.25,
+            worst: -9.0,
+            mean_centre_y_m: -7.225,
+            quartiles: None,
+        };
+        GenerationReport {
+            generation: 1,
+            evaluations: 500,
+            disqualified: 12,
+            reasons: Default::default(),
+            crashed: 0,
+            crashes: Vec::new(),
+            on_landing: 0,
+            first_on_landing: None,
+            rung: None,
+            stairs: None,
+            statistics: Some(statistics),
+            species: Vec::new(),
+            meaning: "starting position".to_owned(),
+            hash: 0,
+            elapsed_s: 0.0,
+            champion: None,
+        }
+    }
+
+    #[test]
+    fn the_first_on_the_landing_is_counted_over_generations() {
+        let mut landing = Landing::default();
+        for (evaluations, first_on_landing) in [(50, None), (50, Some(7)), (50, Some(0))] {
+            landing.add(&GenerationReport { evaluations, first_on_landing, ..report() });
+        }
+        assert_eq!(landing.first, Some(58));
+    }
+
+    #[test]
+    fn table_rows_align_with_the_head() {
+        let report = report();
+        let row = table_row(&report);
+        for (number, column) in [("-7.22", "mean"), ("1.50", "best"), ("12", "disqualified")] {
+            let end_of = |line: &str, word: &str| line.find(word).map(|at| at + word.len());
+            assert_eq!(end_of(&row, number), end_of(TABLE_HEAD, column), "{row}\n{TABLE_HEAD}");
+        }
+        assert_eq!(row.find("starting"), TABLE_HEAD.find("mean in words"));
+    }
+}

@@ -1,0 +1,253 @@
+//! The last generation, and the ancestry of individuals over all generations. A run's results do not depend on it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use snakes_core::evolve::{IndividualId, OwnStairs, Parents, ranking};
+use snakes_core::genome::Genome;
+use snakes_core::save::{IndividualRecord, LineageRecord, MAX_SPREAD};
+use snakes_core::score::Evaluation;
+
+/// A finished generation. All three lists are in the order of the individuals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Generation {
+    /// The first is 1.
+    pub number: u32,
+    /// The individuals.
+    pub genomes: Vec<Arc<Genome>>,
+    /// Their evaluations.
+    pub evaluations: Vec<Evaluation>,
+    /// Their parents.
+    pub parents: Vec<Parents>,
+    /// Their stairs; empty if all have those of their run.
+    pub stairs: Vec<OwnStairs>,
+}
+
+/// An individual that has, or may have, descendants.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ancestor {
+    /// Its place in the run.
+    pub place: IndividualId,
+    /// Its fitness; none if it was disqualified.
+    pub fitness: Option<f32>,
+    /// Its genome; none if an earlier session found it.
+    pub genome: Option<Arc<Genome>>,
+    /// Its parents.
+    pub parents: Parents,
+}
+
+/// Distribution of a generation's fitness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitnessSpread {
+    /// The generation; the first is 1.
+    pub generation: u32,
+    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
+    pub fitness: Vec<f32>,
+}
+
+/// The ancestry of an individual.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ancestry {
+    /// The individual, its first parent, that one's first parent, and so on, as far as known.
+    pub line: Vec<Arc<Ancestor>>,
+    /// The second parents of those in the line, as far as known.
+    pub others: Vec<Arc<Ancestor>>,
+    /// Fitness in all generations, the first generation first.
+    pub spreads: Vec<Arc<FitnessSpread>>,
+}
+
+/// The ancestors of the individuals that may have descendants. Extinct lines are removed.
+#[derive(Debug, Default)]
+pub(super) struct Lineage {
+    known: BTreeMap<IndividualId, Arc<Ancestor>>,
+    spreads: Vec<Arc<FitnessSpread>>,
+}
+
+/// Maximum number of ancestors, to limit memory; the earliest are removed.
+const MAX_ANCESTORS: usize = 60_000;
+
+impl Lineage {
+    /// The lineage that earlier sessions saved.
+    pub fn recalled(records: &[LineageRecord]) -> Self {
+        let mut lineage = Self::default();
+        for record in records {
+            let place = |individual| IndividualId { generation: record.generation, individual };
+            let ancestors =
+                record.born.iter().map(|&IndividualRecord(individual, fitness, parents)| {
+                    let place = place(individual);
+                    Ancestor { place, fitness, genome: None, parents: parents.into() }
+                });
+            let ancestors = ancestors.map(|ancestor| (ancestor.place, Arc::new(ancestor)));
+            lineage.known.extend(ancestors);
+            let (generation, fitness) = (record.generation, record.spread.clone());
+            lineage.spreads.push(Arc::new(FitnessSpread { generation, fitness }));
+        }
+        lineage
+    }
+
+    /// Adds the champion of a generation and its individuals that may have children. Returns the record to be saved.
+    pub fn add(
+        &mut self,
+        generation: &Generation,
+        parent_pool: &[IndividualId],
+        champion: Option<IndividualId>,
+    ) -> LineageRecord {
+        let number = generation.number;
+        let champion = champion.filter(|champion| !parent_pool.contains(champion));
+        let born = parent_pool.iter().copied().chain(champion);
+        let born = born.filter(|place| place.generation == number);
+        let ancestors = born.filter_map(|place| generation.ancestor(place.individual));
+        let ancestors: Vec<Arc<Ancestor>> = ancestors.map(Arc::new).collect();
+        let born = ancestors.iter().map(|ancestor| {
+            IndividualRecord(ancestor.place.individual, ancestor.fitness, ancestor.parents.into())
+        });
+        let fitness = generation.spread();
+        let record =
+            LineageRecord { generation: number, spread: fitness.clone(), born: born.collect() };
+        self.spreads.push(Arc::new(FitnessSpread { generation: number, fitness }));
+        self.known.extend(ancestors.into_iter().map(|ancestor| (ancestor.place, ancestor)));
+        record
+    }
+
+    /// Removes all individuals but these and their ancestors.
+    pub fn retain(&mut self, roots: impl Iterator<Item = IndividualId>) {
+        let mut lines = BTreeSet::new();
+        let mut kept = BTreeSet::new();
+        for root in roots {
+            let mut next = Some(root);
+            while let Some(place) = next.take() {
+                let Some(ancestor) = self.known.get(&place) else { break };
+                if !lines.insert(place) {
+                    break;
+                }
+                kept.insert(place);
+                kept.extend(ancestor.parents.ids());
+                next = ancestor.parents.ids().next();
+            }
+        }
+        self.known.retain(|place, _| kept.contains(place));
+        while self.known.len() > MAX_ANCESTORS {
+            self.known.pop_first();
+        }
+    }
+
+    /// A known individual.
+    pub fn get(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
+        self.known.get(&place)
+    }
+
+    /// The ancestry of an individual.
+    pub fn ancestry(&self, of: Option<IndividualId>) -> Ancestry {
+        let first = of.and_then(|place| self.get(place));
+        let parent = |ancestor: &&Arc<Ancestor>| self.get(ancestor.parents.ids().next()?);
+        let line: Vec<_> = std::iter::successors(first, parent).cloned().collect();
+        let seconds = line.iter().filter_map(|ancestor| ancestor.parents.ids().nth(1));
+        let others = seconds.filter_map(|place| self.get(place).cloned()).collect();
+        Ancestry { line, others, spreads: self.spreads.clone() }
+    }
+}
+
+impl Generation {
+    /// One of its individuals, as an ancestor.
+    fn ancestor(&self, individual: u32) -> Option<Ancestor> {
+        let index = individual as usize;
+        let evaluation = self.evaluations.get(index)?;
+        Some(Ancestor {
+            place: IndividualId { generation: self.number, individual },
+            fitness: evaluation.disqualified.is_none().then_some(evaluation.fitness),
+            genome: self.genomes.get(index).cloned(),
+            parents: self.parents.get(index).copied().unwrap_or(Parents::Unknown),
+        })
+    }
+
+    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
+    fn spread(&self) -> Vec<f32> {
+        let ranked = ranking(&self.evaluations);
+        let count = ranked.len().min(MAX_SPREAD);
+        let place = |index: usize| index * (ranked.len() - 1) / (count - 1).max(1);
+        let chosen = (0..count).rev().map(|index| ranked[place(index)]);
+        chosen.map(|index| self.evaluations[index].fitness).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use snakes_core::evolve::{RunPlan, Settings, StrategyKind, begin};
+
+    /// Evolves without simulating: `best` has the index of the best individual of each generation.
+    fn lineage(strategy: StrategyKind, best: &[usize]) -> (Lineage, Vec<LineageRecord>) {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = strategy;
+        settings.evolution.population = 6;
+        settings.evolution.generations = 100;
+        settings.evolution.halving.parents = 2;
+        settings.trial.duration_s = 0.5;
+        let mut strategy = begin(&RunPlan::new("test", 1, settings));
+        let mut lineage = Lineage::default();
+        let mut records = Vec::new();
+        for (number, best) in (1..).zip(best) {
+            let (genomes, parents) = (strategy.ask(), strategy.parents());
+            let evaluations: Vec<Evaluation> = (0..6)
+                .map(|i| Evaluation::of_fitness(if i == *best { 9.0 } else { i as f32 }))
+                .collect();
+            strategy.tell(&genomes, &evaluations);
+            let genomes = genomes.into_iter().map(Arc::new).collect();
+            let generation =
+                Generation { number, genomes, evaluations, parents, stairs: Vec::new() };
+            let champion = IndividualId { generation: number, individual: *best as u32 };
+            let parent_pool = strategy.parent_pool();
+            records.push(lineage.add(&generation, &parent_pool, Some(champion)));
+            lineage.retain(parent_pool.into_iter().chain(Some(champion)));
+        }
+        (lineage, records)
+    }
+
+    #[test]
+    fn the_ancestry_of_the_reports_method_goes_back_parent_by_parent() {
+        // In turn: even indices are children of the best, odd ones of the second.
+        let (lineage, records) = lineage(StrategyKind::Halving, &[3, 2, 1, 4]);
+        let of = IndividualId { generation: 4, individual: 4 };
+        let line = lineage.ancestry(Some(of)).line;
+        let places: Vec<(u32, u32)> =
+            line.iter().map(|a| (a.place.generation, a.place.individual)).collect();
+        // 4 of the last comes from the best of the third, 1; that from the second best of the second, 5 (of 2 and
+        // 5); that, odd, from the second best of the first (of 3 and 5).
+        assert_eq!(places, [(4, 4), (3, 1), (2, 5), (1, 5)]);
+        assert!(line.iter().all(|ancestor| ancestor.genome.is_some()));
+        let again = Lineage::recalled(&records).ancestry(Some(of));
+        let known: Vec<IndividualId> = again.line.iter().map(|ancestor| ancestor.place).collect();
+        assert_eq!(known, line.iter().map(|ancestor| ancestor.place).collect::<Vec<_>>());
+        assert_eq!(again.spreads.len(), 4);
+    }
+
+    #[test]
+    fn individuals_without_descendants_are_removed() {
+        let best: Vec<usize> = (0..60).map(|generation| generation % 6).collect();
+        let (lineage, _) = self::lineage(StrategyKind::Halving, &best);
+        assert!(lineage.known.len() < 60 + 2 * 6, "{} are known", lineage.known.len());
+        let (crossed, _) = self::lineage(StrategyKind::Ga, &best);
+        let ancestry = crossed.ancestry(Some(IndividualId { generation: 60, individual: 5 }));
+        assert_eq!(ancestry.line.len(), 60);
+        assert!(!ancestry.others.is_empty(), "some have two parents");
+    }
+
+    #[test]
+    fn the_fitness_sample_includes_the_least_and_the_greatest() {
+        let evaluations: Vec<Evaluation> =
+            (0..100).map(|i| Evaluation::of_fitness(i as f32)).collect();
+        let generation = Generation {
+            number: 1,
+            genomes: Vec::new(),
+            evaluations,
+            parents: Vec::new(),
+            stairs: Vec::new(),
+        };
+        let spread = generation.spread();
+        assert_eq!(spread.len(), MAX_SPREAD);
+        assert_eq!((spread.first(), spread.last()), (Some(&0.0), Some(&99.0)));
+        assert!(spread.is_sorted());
+        let none = Generation { evaluations: Vec::new(), ..generation };
+        assert_eq!(none.spread(), [0.0; 0]);
+    }
+}

@@ -1,0 +1,80 @@
+//! Progress bars on the terminal; where standard error is no terminal, none is drawn.
+
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::RecvTimeoutError;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
+use super::report::GenerationReport;
+use super::run_control::{Cancelled, RunControl};
+use snakes_core::score::Evaluation;
+
+/// Runs one generation with a progress bar; for `record`, see [`Experiment::run_generation_recording`].
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn run_generation_with_bar(
+    experiment: &mut Experiment,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+    record: impl Fn(u32, u32, &Evaluation) + Sync,
+) -> Result<GenerationReport, Cancelled> {
+    let bar = ProgressBar::new(experiment.population().into());
+    // The template is a constant; if it were wrong, the default bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("generation {}", experiment.finished() + 1));
+    with_bar(&bar, control, || experiment.run_generation_recording(evaluator, control, record))
+}
+
+/// A bar for a number of things, such as evaluations.
+pub fn bar_of(count: u64, things: &str) -> ProgressBar {
+    let bar = ProgressBar::new(count).with_message(things.to_owned());
+    // The template is a constant; if it were wrong, the default bar would do.
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The bar on the terminal, if one is drawn.
+static DRAWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+fn set_drawn(bar: Option<ProgressBar>) {
+    *DRAWN.lock().unwrap_or_else(PoisonError::into_inner) = bar;
+}
+
+/// Writes to the terminal while no bar stands in the line.
+pub fn beside_bar<T>(write: impl FnOnce() -> T) -> T {
+    let bar = DRAWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    match bar {
+        Some(bar) => bar.suspend(write),
+        None => write(),
+    }
+}
+
+/// Does `work` while a bar shows the number of evaluations that `control` has counted.
+pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
+    set_drawn(Some(bar.clone()));
+    let result = std::thread::scope(|scope| {
+        let (finished, is_finished) = crossbeam_channel::bounded::<()>(0);
+        scope.spawn(move || {
+            // Ends when the sender is dropped.
+            while is_finished.recv_timeout(Duration::from_millis(100))
+                == Err(RecvTimeoutError::Timeout)
+            {
+                bar.set_position(control.done().into());
+            }
+        });
+        let result = work();
+        drop(finished);
+        result
+    });
+    set_drawn(None);
+    bar.finish_and_clear();
+    result
+}

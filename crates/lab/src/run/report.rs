@@ -1,0 +1,428 @@
+//! Results of a generation in numbers.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::experiment::GenerationTrials;
+use snakes_core::evolve::{Champion, Origin, RunPlan, StairsTree};
+use snakes_core::genome::Genome;
+use snakes_core::save::{
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
+};
+use snakes_core::score::{Evaluation, Trial};
+use snakes_core::world::Disqualification;
+
+/// The result of one generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GenerationReport {
+    /// Its number; the first is 1.
+    pub generation: u32,
+    /// Number of individuals that were evaluated.
+    pub evaluations: u32,
+    /// Number of them that were disqualified, for any reason.
+    pub disqualified: u32,
+    /// Number of disqualified individuals by reason; empty for a generation that was read from its log.
+    pub reasons: BTreeMap<Disqualification, u32>,
+    /// Number of them whose simulation panicked.
+    pub crashed: u32,
+    /// The first few of these.
+    pub crashes: Vec<Crash>,
+    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads, and where stairs
+    /// evolve, of their own.
+    pub on_landing: u32,
+    /// The index of the first of them.
+    pub first_on_landing: Option<u32>,
+    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    pub rung: Option<Rung>,
+    /// Numbers of the stairs after it; none unless stairs evolve.
+    pub stairs: Option<StairsCount>,
+    /// Fitness statistics over the healthy ones; none if all were disqualified.
+    pub statistics: Option<Statistics>,
+    /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
+    /// numbers of blocks. Empty for a strategy without both and in logs of earlier versions of the program.
+    pub species: Vec<SpeciesCount>,
+    /// Meaning of the mean, in the words of the report's Table 1.
+    pub meaning: String,
+    /// Hash over the bits of every evaluation, in the order of the individuals.
+    pub hash: u64,
+    /// Wall-clock time the generation took, in seconds. Not part of any hash.
+    pub elapsed_s: f64,
+    /// The best individual; none if all were disqualified.
+    pub champion: Option<Champion>,
+}
+
+/// An individual whose simulation panicked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crash {
+    /// The individual; its evaluation is void.
+    pub individual: Champion,
+    /// The message of the panic.
+    pub message: String,
+}
+
+/// Maximum number of crashes in a report; more would add nothing new.
+const MAX_CRASHES: usize = 3;
+
+/// A generation that was just evaluated.
+pub(super) struct EvaluatedGeneration<'a> {
+    pub plan: &'a RunPlan,
+    /// Its number; the first is 1.
+    pub generation: u32,
+    /// The trials of its individuals.
+    pub trials: &'a GenerationTrials,
+    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    pub rung: Option<Rung>,
+    /// In the order of the individuals, as the evaluations.
+    pub genomes: &'a [Genome],
+    pub evaluations: &'a [Evaluation],
+    /// The number of the species of each individual, or of its blocks where bodies evolve; empty without both.
+    pub species: &'a [u32],
+}
+
+impl EvaluatedGeneration<'_> {
+    /// One of its individuals.
+    pub fn individual(&self, index: usize) -> Champion {
+        Champion {
+            genome: self.genomes[index].clone(),
+            trial: self.trials.of(index).clone(),
+            evaluation: self.evaluations[index],
+            chosen_by: None,
+            origin: Origin {
+                preset: self.plan.preset.clone(),
+                seed: self.plan.seed,
+                generation: self.generation,
+                individual: index as u32,
+            },
+        }
+    }
+
+    /// Its report. `messages` has those of the panics, in the order of the individuals.
+    pub fn report(
+        &self,
+        champion: Option<Champion>,
+        messages: Vec<Option<String>>,
+        elapsed: Duration,
+    ) -> GenerationReport {
+        let (evaluations, trial) = (self.evaluations, &self.trials.common);
+        let is_goal = trial.stairs == self.plan.settings.trial.stairs;
+        let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
+            Some(Crash { individual: self.individual(index), message: message? })
+        });
+        let reasons = reasons(evaluations);
+        let statistics = Statistics::of(evaluations);
+        let landed = |index: &usize| {
+            is_goal && evaluations[*index].is_on_landing(&self.trials.of(*index).stairs)
+        };
+        let first_on_landing = (0..evaluations.len()).find(landed);
+        GenerationReport {
+            generation: self.generation,
+            on_landing: (0..evaluations.len()).filter(landed).count() as u32,
+            first_on_landing: first_on_landing.map(|index| index as u32),
+            evaluations: evaluations.len() as u32,
+            disqualified: reasons.values().sum(),
+            crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
+            reasons,
+            crashes: crashes.take(MAX_CRASHES).collect(),
+            rung: self.rung,
+            stairs: None,
+            statistics,
+            species: species(self.species, evaluations),
+            meaning: meaning(statistics.as_ref(), trial, self.rung),
+            hash: generation_hash(evaluations),
+            elapsed_s: elapsed.as_secs_f64(),
+            champion,
+        }
+    }
+}
+
+impl GenerationReport {
+    /// Adds the numbers of the stairs that evolve, if they do.
+    pub fn set_stairs(&mut self, tree: Option<&StairsTree>) {
+        self.stairs = tree.map(StairsCount::of);
+        if let Some(count) = self.stairs {
+            self.meaning = count.words();
+        }
+    }
+
+    /// The numbers by which the champions of a run are compared: the greater are the better one. None without a champion.
+    pub fn champion_rank(&self) -> Option<[f32; 2]> {
+        let champion = self.champion.as_ref()?;
+        match self.stairs {
+            // Such a run keeps only the champions that are better than all before.
+            Some(_) => Some([self.generation as f32, 0.0]),
+            None => Some(champion.rank()),
+        }
+    }
+
+    /// This report as a line of the log.
+    pub fn record(&self) -> GenerationRecord {
+        GenerationRecord {
+            generation: self.generation,
+            evaluations: self.evaluations,
+            disqualified: self.disqualified,
+            crashed: self.crashed,
+            on_landing: self.on_landing,
+            first_on_landing: self.first_on_landing,
+            statistics: self.statistics.map(|statistics| {
+                let Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles } =
+                    statistics;
+                let (lower_quartile, upper_quartile) = quartiles.unzip();
+                StatisticsRecord {
+                    mean,
+                    best,
+                    median,
+                    std,
+                    worst,
+                    mean_centre_y_m,
+                    lower_quartile,
+                    upper_quartile,
+                }
+            }),
+            chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
+            species: self.species.clone(),
+            rung: self.rung,
+            stairs: self.stairs,
+            hash: format!("{:016x}", self.hash),
+            elapsed_s: self.elapsed_s,
+        }
+    }
+
+    /// The report that a line of the log stands for, under the trial of its run.
+    pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
+        let statistics = record.statistics.map(|statistics| {
+            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
+                statistics;
+            let quartiles = statistics.lower_quartile.zip(statistics.upper_quartile);
+            Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles }
+        });
+        Self {
+            generation: record.generation,
+            evaluations: record.evaluations,
+            disqualified: record.disqualified,
+            reasons: BTreeMap::new(),
+            crashed: record.crashed,
+            crashes: Vec::new(),
+            on_landing: record.on_landing,
+            first_on_landing: record.first_on_landing,
+            rung: record.rung,
+            stairs: record.stairs,
+            statistics,
+            species: record.species.clone(),
+            meaning: match record.stairs {
+                Some(count) => count.words(),
+                None => meaning(statistics.as_ref(), trial, record.rung),
+            },
+            // Reading the log has checked it.
+            hash: record.generation_hash().unwrap_or(0),
+            elapsed_s: record.elapsed_s,
+            champion,
+        }
+    }
+}
+
+/// Meaning of a generation's mean, and the rung of the ladder.
+fn meaning(statistics: Option<&Statistics>, trial: &Trial, rung: Option<Rung>) -> String {
+    let words = match statistics {
+        Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
+        None => "all disqualified".to_owned(),
+    };
+    match rung {
+        Some(Rung { rise_m, .. }) => {
+            format!("{words}, rise {} m", (rise_m * 1000.0).round() / 1000.0)
+        }
+        None => words,
+    }
+}
+
+/// Number of disqualified individuals by reason.
+fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
+    let mut counts = BTreeMap::new();
+    for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
+        *counts.entry(reason).or_default() += 1;
+    }
+    counts
+}
+
+/// The largest species of a generation, from the number of the species of each individual.
+fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
+    let mut counts: BTreeMap<u32, SpeciesCount> = BTreeMap::new();
+    for (&id, evaluation) in numbers.iter().zip(evaluations) {
+        let count = counts.entry(id).or_insert(SpeciesCount { id, size: 0, best: None });
+        count.size += 1;
+        if evaluation.disqualified.is_none() {
+            let fitness = evaluation.fitness;
+            count.best = Some(count.best.map_or(fitness, |best| best.max(fitness)));
+        }
+    }
+    let mut species: Vec<SpeciesCount> = counts.into_values().collect();
+    species.sort_by_key(|count| (Reverse(count.size), count.id));
+    species.truncate(MOST_SPECIES_RECORDED);
+    species.sort_by_key(|count| count.id);
+    species
+}
+
+/// Statistics over the fitness of the healthy individuals of one generation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statistics {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Greatest fitness.
+    pub best: f64,
+    /// Median; of an even number, the mean of the two middle ones.
+    pub median: f64,
+    /// Standard deviation of the whole population (divided by n).
+    pub std: f64,
+    /// Least fitness.
+    pub worst: f64,
+    /// Mean final y of the centre, in m, independent of what is rewarded.
+    pub mean_centre_y_m: f64,
+    /// Lower and upper quartile; none in logs of earlier versions of the program.
+    pub quartiles: Option<(f64, f64)>,
+}
+
+impl Statistics {
+    /// Statistics over the healthy ones among `evaluations`, summed in a fixed order.
+    pub fn of(evaluations: &[Evaluation]) -> Option<Self> {
+        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+        let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness)).collect();
+        fitness.sort_by(f64::total_cmp);
+        let (&worst, &best) = (fitness.first()?, fitness.last()?);
+        let count = fitness.len() as f64;
+        let mean = fitness.iter().sum::<f64>() / count;
+        let variance = fitness.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
+        let (low, high) = (fitness[(fitness.len() - 1) / 2], fitness[fitness.len() / 2]);
+        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+        let mean_centre_y_m = healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count;
+        let median = (low + high) / 2.0;
+        let quartiles = Quartiles::of(fitness).map(|quartiles| (quartiles.low, quartiles.high));
+        Some(Self { mean, best, median, std: variance.sqrt(), worst, mean_centre_y_m, quartiles })
+    }
+}
+
+/// Median and quartiles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quartiles {
+    /// A quarter is below.
+    pub low: f64,
+    /// Half is below.
+    pub median: f64,
+    /// Three quarters are below.
+    pub high: f64,
+}
+
+impl Quartiles {
+    /// The quartiles of some values, by linear interpolation between them (definition 7 of Hyndman and Fan, The
+    /// American Statistician 50 (1996)); none if there are no values.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)?;
+        let at = |share: f64| {
+            let place = share * last as f64;
+            let (below, part) = (place as usize, place - (place as usize) as f64);
+            let (low, high) = (values[below], values[(below + 1).min(last)]);
+            // Infinity times zero is not a number.
+            if part == 0.0 || low == high { low } else { low + (high - low) * part }
+        };
+        Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
+    }
+
+    /// The median with the quartiles of some values, such as "3 [1 4]"; a dash if there are no values.
+    pub fn words(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
+        Self::of(values).map_or("–".to_owned(), |Self { low, median, high }| {
+            format!("{median:.digits$} [{low:.digits$} {high:.digits$}]")
+        })
+    }
+}
+
+/// The hash of a generation: every evaluation's bits, in the order of the individuals.
+fn generation_hash(evaluations: &[Evaluation]) -> u64 {
+    let mut hash = Xxh3Default::new();
+    for evaluation in evaluations {
+        hash.update(&evaluation.trace_hash.to_le_bytes());
+        hash.update(&evaluation.fitness.to_bits().to_le_bytes());
+        hash.update(&evaluation.steps.to_le_bytes());
+        hash.update(&[u8::from(evaluation.disqualified.is_some())]);
+    }
+    hash.digest()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn evaluation(fitness: f32, disqualified: Option<Disqualification>) -> Evaluation {
+        let centre_y_m = fitness + 1.0;
+        Evaluation { centre_y_m, disqualified, ..Evaluation::of_fitness(fitness) }
+    }
+
+    #[test]
+    fn statistics_leave_the_disqualified_out() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, None),
+            evaluation(1.0, None),
+            evaluation(5.0, None),
+        ];
+        let statistics = Statistics::of(&evaluations).expect("four are healthy");
+        assert_eq!((statistics.mean, statistics.median), (2.0, 2.5));
+        assert_eq!((statistics.best, statistics.worst), (5.0, -2.0));
+        assert_eq!(statistics.mean_centre_y_m, 3.0);
+        assert_eq!(statistics.std, 7.5_f64.sqrt());
+        assert_eq!(statistics.quartiles, Some((0.25, 4.25)), "of -2, 1, 4, 5");
+        assert_eq!(Statistics::of(&evaluations[1..2]), None);
+    }
+
+    #[test]
+    fn the_disqualified_are_counted_by_reason() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, Some(Disqualification::LeftArena)),
+            evaluation(190.0, Some(Disqualification::TooFast)),
+        ];
+        let counts = [(Disqualification::TooFast, 2), (Disqualification::LeftArena, 1)];
+        assert_eq!(reasons(&evaluations), BTreeMap::from(counts));
+    }
+
+    #[test]
+    fn species_are_counted_in_order_with_the_best_of_their_healthy_members() {
+        let evaluations = [
+            evaluation(4.0, None),
+            evaluation(180.0, Some(Disqualification::TooFast)),
+            evaluation(-2.0, None),
+            evaluation(5.0, None),
+        ];
+        let counts = [
+            SpeciesCount { id: 2, size: 2, best: Some(5.0) },
+            SpeciesCount { id: 7, size: 1, best: None },
+            SpeciesCount { id: 9, size: 1, best: Some(-2.0) },
+        ];
+        assert_eq!(species(&[2, 7, 9, 2], &evaluations), counts);
+        assert_eq!(species(&[], &evaluations), []);
+        // Of 30 species only the largest are kept; of equal ones the older.
+        let numbers: Vec<u32> = (0..60).map(|index| index % 30).chain([29, 28]).collect();
+        let kept = species(&numbers, &vec![evaluation(1.0, None); numbers.len()]);
+        let ids: Vec<u32> = kept.iter().map(|count| count.id).collect();
+        assert_eq!(ids, (0..22).chain([28, 29]).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn the_hash_depends_on_the_order_of_the_individuals() {
+        let [a, b] = [evaluation(1.0, None), evaluation(2.0, None)];
+        assert_ne!(generation_hash(&[a, b]), generation_hash(&[b, a]));
+    }
+
+    #[test]
+    fn quartiles_are_those_of_definition_7() {
+        let quartiles = Quartiles::of([4.0, 1.0, 3.0, 2.0]).expect("four values");
+        assert_eq!((quartiles.low, quartiles.median, quartiles.high), (1.75, 2.5, 3.25));
+        let with_infinity = Quartiles::of([1.0, 2.0, f64::INFINITY]).expect("three values");
+        assert_eq!((with_infinity.low, with_infinity.median), (1.5, 2.0));
+        assert_eq!(Quartiles::of([]), None);
+    }
+}

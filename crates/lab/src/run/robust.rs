@@ -1,0 +1,110 @@
+//! Robustness of a champion: the same genome in many slightly perturbed trials.
+
+use super::evaluator::Evaluator;
+use super::exam::exam_ends;
+use super::run_control::{Cancelled, RunControl};
+use snakes_core::evolve::Champion;
+use snakes_core::score::{PerturbationRange, varied};
+
+/// Results of the trials.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Robustness {
+    /// Number of trials.
+    pub trials: u32,
+    /// Number of trials in which the agent was disqualified.
+    pub disqualified: u32,
+    /// Number of trials in which the agent ended at least one step high, at least two steps high, and so on.
+    pub reached: Vec<u32>,
+}
+
+/// A share and its 95 % confidence interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// The observed share.
+    pub seen: f64,
+    /// Lower end of the interval.
+    pub least: f64,
+    /// Upper end of the interval.
+    pub most: f64,
+}
+
+/// Runs a champion through `trials` perturbed trials, drawn from `seed`.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn robustness(
+    champion: &Champion,
+    range: &PerturbationRange,
+    trials: u32,
+    seed: u64,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Robustness, Cancelled> {
+    let trial = &champion.trial;
+    control.start_generation();
+    let ends =
+        exam_ends(&champion.genome, &varied(trial, range, trials, seed), evaluator, control)?;
+    let reached = |steps: u32| ends.iter().filter(|end| end.steps >= steps).count() as u32;
+    Ok(Robustness {
+        trials,
+        disqualified: ends.iter().filter(|end| end.is_disqualified).count() as u32,
+        reached: (1..=trial.stairs.steps).map(reached).collect(),
+    })
+}
+
+impl Share {
+    /// The share of `count` in `of`, with the score interval of Wilson (Probable inference, the law of
+    /// succession, and statistical inference, 1927) at 95 %.
+    pub fn of(count: u32, of: u32) -> Self {
+        // The 97.5th percentile of the normal distribution.
+        const Z: f64 = 1.959_963_984_540_054;
+        let n = f64::from(of.max(1));
+        let seen = f64::from(count) / n;
+        let middle = (seen + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+        let half = Z / (1.0 + Z * Z / n) * (seen * (1.0 - seen) / n + Z * Z / (4.0 * n * n)).sqrt();
+        Self { seen, least: (middle - half).max(0.0), most: (middle + half).min(1.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::LocalPool;
+    use snakes_core::save::shipped_champion;
+
+    #[test]
+    fn the_interval_is_the_score_interval_of_wilson() {
+        // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263 and 15 of 148.
+        for (count, of, least, most) in
+            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)]
+        {
+            let share = Share::of(count, of);
+            assert!((share.least - least).abs() < 5e-5, "{share:?}");
+            assert!((share.most - most).abs() < 5e-5, "{share:?}");
+        }
+    }
+
+    #[test]
+    fn only_perturbed_trials_differ_from_the_record() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let measured = |range: &PerturbationRange, threads| {
+            let pool = LocalPool::new(threads).expect("threads");
+            robustness(&champion, range, 12, 1, &pool, &RunControl::default())
+                .expect("not cancelled")
+        };
+        let none = PerturbationRange {
+            friction: 0.0,
+            rise: 0.0,
+            density: 0.0,
+            start_m: 0.0,
+            turn_deg: 0.0,
+            ..PerturbationRange::default()
+        };
+        let still = measured(&none, 1);
+        assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 12));
+        let shaken = measured(&PerturbationRange::default(), 1);
+        assert_eq!(shaken, measured(&PerturbationRange::default(), 3), "for any number of threads");
+        assert_ne!(shaken, still);
+        assert!(shaken.reached.windows(2).all(|pair| pair[1] <= pair[0]));
+    }
+}

@@ -1,0 +1,91 @@
+//! Tuning the controller of a snake to its body by a few evaluations: a (1+4) evolution strategy with a step that adapts
+//! by the rule of one fifth (Rechenberg, Evolutionsstrategie, 1973).
+
+use super::background_task::TaskProgress;
+use super::panics::caught;
+use snakes_core::genome::{Genome, GenomeSpace};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::score::{Evaluation, Trial, evaluate};
+
+/// Children of a parent.
+const CHILDREN: usize = 4;
+/// First standard deviation of the steps, as a share of each gene's range.
+const FIRST_STEP: f64 = 0.1;
+/// Factor of the step after a generation with an improvement; without one it shrinks so that one in five keeps it.
+const GROWTH: f64 = 1.5;
+/// Factor of the step after a generation without one: `GROWTH` to the power of -1/4.
+const SHRINKAGE: f64 = 0.9036;
+
+/// A tuned snake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// Its genes: the body is that of the beginning.
+    pub genome: Genome,
+    /// Its evaluation.
+    pub evaluation: Evaluation,
+    /// The evaluation at the beginning.
+    pub before: Evaluation,
+}
+
+/// The order of results: healthy ones by fitness, before those that were disqualified, by the time they lasted.
+fn worth(evaluation: &Evaluation) -> (bool, f32) {
+    let is_healthy = evaluation.disqualified.is_none();
+    (is_healthy, if is_healthy { evaluation.fitness } else { evaluation.steps as f32 })
+}
+
+/// Changes the genes of the controller only, with this many evaluations, the first of which is that of the beginning, and
+/// returns the best. Each attempt tries other genes. Ends early when cancelled. None if the simulation fails.
+pub fn tune_controller(
+    genome: &Genome,
+    trial: &Trial,
+    (evaluations, attempt): (usize, u32),
+    progress: &TaskProgress,
+) -> Option<Tuned> {
+    let evaluated = |genome: &Genome| caught(|| evaluate(genome, trial)).ok();
+    let before = evaluated(genome)?;
+    let space = GenomeSpace::default().widened_for(genome);
+    let (mut best, mut best_evaluation, mut step) = (genome.clone(), before, FIRST_STEP);
+    progress.set_done(1);
+    for first in (1..evaluations).step_by(CHILDREN) {
+        let parent = best.clone();
+        let mut has_improved = false;
+        for number in first..(first + CHILDREN).min(evaluations) {
+            if progress.is_cancelled() {
+                return Some(Tuned { genome: best, evaluation: best_evaluation, before });
+            }
+            let mut rng = stream(genome.hash(), attempt, number as u32, Purpose::Study);
+            let mut child = space.with_small_changes(&parent, step, &mut rng);
+            child.body.clone_from(&genome.body);
+            if let Some(found) = evaluated(&child)
+                && worth(&found) > worth(&best_evaluation)
+            {
+                (best, best_evaluation, has_improved) = (child, found, true);
+            }
+            progress.set_done(number + 1);
+        }
+        step *= if has_improved { GROWTH } else { SHRINKAGE };
+    }
+    Some(Tuned { genome: best, evaluation: best_evaluation, before })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tuning_keeps_the_body_and_never_loses() {
+        let champion = snakes_core::save::shipped_champion().expect("shipped").champion;
+        let trial = Trial { duration_s: 2.0, ..champion.trial.clone() };
+        let own = trial.with_own_blocks(&champion.genome).expect("a gait");
+        let mut changed = own.clone();
+        changed.body.segments[1].length_m = 1.2;
+        let progress = TaskProgress::default();
+        let tuned = tune_controller(&changed, &trial, (13, 1), &progress).expect("it simulates");
+        assert_eq!(progress.done(), 13);
+        assert_eq!(tuned.genome.body, changed.body);
+        assert!(worth(&tuned.evaluation) >= worth(&tuned.before));
+        assert_eq!(evaluate(&tuned.genome, &trial), tuned.evaluation);
+        let again = tune_controller(&changed, &trial, (13, 1), &TaskProgress::default());
+        assert_eq!(again, Some(tuned), "the same each time");
+    }
+}

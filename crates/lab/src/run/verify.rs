@@ -1,0 +1,256 @@
+//! Checks that this machine computes the same bits as every other.
+//!
+//! Short runs that together cover everything that affects bits: each controller, each strategy, each feature of
+//! surface, body and stairs. Their hashes are in `assets/golden.ron`, which is part of the program. A new setting
+//! needs a run that changes it: a test checks that.
+
+mod cases;
+mod drawn_points;
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::evaluator::Evaluator;
+use super::experiment::Experiment;
+use super::run_control::{Cancelled, RunControl};
+use snakes_core::check::Invalid;
+use snakes_core::evolve::RunPlan;
+use snakes_core::save::SaveError;
+use snakes_core::schema::is_default;
+use snakes_core::world::PhysicsEngine;
+use snakes_core::{ENGINE_VERSION, Processors};
+
+use cases::cases;
+use drawn_points::drawn_points;
+
+/// A case with at most this many evaluations is short.
+const SHORT_BUDGET: u64 = 12;
+/// Maximum number of short cases.
+const SHORT_CASES: usize = 12;
+
+/// A computation and the hash of its bits.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trajectory {
+    /// Description of the computation.
+    pub what: String,
+    /// Hash over all its bits, in 16 hexadecimal digits.
+    pub hash: String,
+}
+
+/// The results of an engine.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trajectories {
+    /// The version of the engine.
+    pub engine: u32,
+    /// The processors.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub processors: Processors,
+    /// In a fixed order.
+    pub trajectories: Vec<Trajectory>,
+}
+
+/// The trajectories cannot be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    /// An embedded preset is broken, which a test rules out.
+    #[error(transparent)]
+    Preset(#[from] SaveError),
+    /// A case is not allowed, which a test rules out.
+    #[error(transparent)]
+    Case(#[from] Invalid),
+    /// The embedded reference is broken, which a test rules out.
+    #[error("the reference is broken: {0}")]
+    Reference(#[from] ron::error::SpannedError),
+    /// This build computes other bits than all for which there is a reference.
+    #[error(
+        "there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64"
+    )]
+    NoReference,
+    /// This machine computes other bits than its reference.
+    #[error("{0}: this machine computes other bits than the reference (see snakes verify)")]
+    OtherBits(String),
+    /// The interrupt key was pressed.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// The runs whose bits are compared, with their descriptions.
+///
+/// # Errors
+/// An embedded preset or a case is broken, which a test rules out.
+pub fn golden_plans() -> Result<Vec<(String, RunPlan)>, VerifyError> {
+    cases()
+}
+
+impl Trajectories {
+    /// One hash over all, in 16 hexadecimal digits.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = Xxh3Default::new();
+        hash.update(&self.engine.to_le_bytes());
+        for Trajectory { what, hash: bits } in &self.trajectories {
+            hash.update(what.as_bytes());
+            hash.update(bits.as_bytes());
+        }
+        format!("{:016x}", hash.digest())
+    }
+
+    /// The results of the reference machine with this engine and processors like these.
+    ///
+    /// # Errors
+    /// There is no reference for processors like these; or it is broken, which a test rules out.
+    pub fn reference() -> Result<Self, VerifyError> {
+        Self::reference_of(Processors::THIS)
+    }
+
+    fn reference_of(processors: Processors) -> Result<Self, VerifyError> {
+        let text = match processors {
+            Processors::X86_64 => include_str!("../../../../assets/golden.ron"),
+            Processors::Arm64 => include_str!("../../../../assets/golden-arm64.ron"),
+            Processors::Other => return Err(VerifyError::NoReference),
+        };
+        Ok(ron::from_str(text)?)
+    }
+
+    /// The results of this machine in some short cases, which show within a second or two whether it computes the same bits
+    /// as the reference machine.
+    ///
+    /// # Errors
+    /// [`VerifyError::NoReference`] or [`VerifyError::OtherBits`], if it does not; [`VerifyError::Cancelled`], if `control`
+    /// was cancelled.
+    pub fn short(evaluator: &dyn Evaluator, control: &RunControl) -> Result<Self, VerifyError> {
+        let reference = Self::reference()?;
+        let is_short = |(_, plan): &&(String, RunPlan)| plan.budget() <= SHORT_BUDGET;
+        let mut trajectories = Vec::new();
+        let cases = cases()?;
+        let in_lanes = |(_, plan): &&(String, RunPlan)| is_in_lanes(plan);
+        let of_rapier = cases.iter().filter(|case| is_short(case) && !in_lanes(case));
+        let of_rapier = of_rapier.take(SHORT_CASES);
+        let of_lanes = cases.iter().filter(in_lanes).take(1);
+        for (what, plan) in of_rapier.chain(of_lanes) {
+            trajectories.push(trajectory(what.clone(), plan.clone(), evaluator, control)?);
+        }
+        trajectories.push(drawn_points());
+        match trajectories.iter().find(|found| !reference.trajectories.contains(found)) {
+            Some(other) => Err(VerifyError::OtherBits(other.what.clone())),
+            None => Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories }),
+        }
+    }
+
+    /// The results of this machine. Calls `progress` with the number of finished trajectories and their total.
+    ///
+    /// # Errors
+    /// [`VerifyError::Cancelled`], if `control` was.
+    pub fn computed(
+        evaluator: &dyn Evaluator,
+        control: &RunControl,
+        mut progress: impl FnMut(usize, usize),
+    ) -> Result<Self, VerifyError> {
+        let cases = cases()?;
+        let all = cases.len() + 1;
+        let mut trajectories = Vec::with_capacity(all);
+        for (index, (what, plan)) in cases.into_iter().enumerate() {
+            progress(index, all);
+            trajectories.push(trajectory(what, plan, evaluator, control)?);
+        }
+        trajectories.push(drawn_points());
+        progress(all, all);
+        Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories })
+    }
+}
+
+/// The result of a case.
+fn trajectory(
+    what: String,
+    plan: RunPlan,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Trajectory, Cancelled> {
+    let mut experiment = Experiment::new(plan);
+    while !experiment.is_over() {
+        experiment.run_generation(evaluator, control)?;
+    }
+    Ok(Trajectory { what, hash: format!("{:016x}", experiment.run_hash()) })
+}
+
+fn is_in_lanes(plan: &RunPlan) -> bool {
+    plan.settings.trial.physics.engine == PhysicsEngine::Lanes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use snakes_core::evolve::fields;
+    use snakes_core::save::load_preset;
+
+    #[test]
+    fn every_setting_is_changed_by_some_case() {
+        let mut report = load_preset("report").expect("well formed").settings;
+        report.trial.ground = Some(report.trial.surface.clone());
+        let unchanged = fields(&report);
+        let cases = cases().expect("allowed");
+        let changed = |(path, value): &(String, String)| {
+            cases.iter().any(|(_, plan)| {
+                fields(&plan.settings).iter().any(|(p, v)| p == path && v != value)
+            })
+        };
+        // A setting that is newer than the reference is not written at its default, where it has no effect. Its case
+        // belongs to the next reference.
+        let written = serde_json::to_value(&report).expect("written");
+        let is_written =
+            |path: &str| written.pointer(&format!("/{}", path.replace('.', "/"))).is_some();
+        let missing: Vec<&String> = unchanged
+            .iter()
+            .filter(|field| !changed(field) && is_written(&field.0))
+            .map(|(path, _)| path)
+            .collect();
+        assert_eq!(missing, Vec::<&String>::new(), "add a case to src/run/verify/cases.rs");
+    }
+
+    #[test]
+    fn no_two_cases_have_the_same_hash() {
+        let reference = Trajectories::reference().expect("well formed");
+        assert_eq!(reference.engine, ENGINE_VERSION);
+        let mut hashes: Vec<&String> = reference.trajectories.iter().map(|t| &t.hash).collect();
+        let all = hashes.len();
+        hashes.sort();
+        hashes.dedup();
+        assert_eq!(hashes.len(), all, "two cases compute the same");
+    }
+
+    /// The reference for ARM named no processors, so that `snakes verify` found equal bits there and still failed.
+    #[test]
+    fn each_reference_names_its_processors_and_holds_the_same_cases() {
+        let names = |of: &Trajectories| -> Vec<String> {
+            of.trajectories.iter().map(|trajectory| trajectory.what.clone()).collect()
+        };
+        let first = Trajectories::reference_of(Processors::X86_64).expect("well formed");
+        for processors in [Processors::X86_64, Processors::Arm64] {
+            let reference = Trajectories::reference_of(processors).expect("well formed");
+            assert_eq!((reference.engine, reference.processors), (ENGINE_VERSION, processors));
+            assert_eq!(names(&reference), names(&first), "{processors:?}");
+        }
+    }
+
+    #[test]
+    fn the_references_of_all_processors_agree_in_lanes() {
+        let cases = cases().expect("well formed");
+        let is_of_lanes =
+            |what: &String| cases.iter().any(|(case, plan)| case == what && is_in_lanes(plan));
+        let of_lanes = |processors| -> Vec<Trajectory> {
+            let reference = Trajectories::reference_of(processors).expect("well formed");
+            let all = reference.trajectories.into_iter();
+            all.filter(|trajectory| is_of_lanes(&trajectory.what)).collect()
+        };
+        let first = of_lanes(Processors::X86_64);
+        assert!(first.len() >= 20);
+        assert_eq!(of_lanes(Processors::Arm64), first);
+    }
+
+    #[test]
+    fn a_changed_hash_changes_the_fingerprint() {
+        let reference = Trajectories::reference().expect("well formed");
+        let mut other = reference.clone();
+        other.trajectories[7].hash.replace_range(0..1, "x");
+        assert_ne!(reference.fingerprint(), other.fingerprint());
+    }
+}
