@@ -328,26 +328,29 @@ const REACH_TOLERANCE_M: f64 = 0.1;
 /// A mean this near the start is "starting position": Table 1's own -7.23 has no digits to spare.
 const START_TOLERANCE_M: f64 = 0.25;
 
-#[cfg(test)]
 impl Stairs {
-    /// Up by a slope, up by a riser with a nosing, down by a slope, down to the ground, up again.
-    pub(crate) fn uneven() -> Self {
-        let stairs = Self {
+    /// Stairs with every kind of step, for tests: up by a slope, up by a riser with a nosing, down by a slope, down to the
+    /// ground, up again.
+    pub fn uneven() -> Self {
+        Self {
             steps: 5,
             rise_m: PerPart::Each(vec![0.5, 0.5, -0.4, -0.6, 1.0]),
             tread_m: PerPart::Each(vec![2.0, 3.0, 2.5, 1.0, 2.0]),
             slope_m: PerPart::Each(vec![1.0, 0.0, 1.5, 0.0, 0.0]),
             nosing_m: 0.2,
             ..Self::default()
-        };
-        crate::schema::check(&stairs).expect("allowed");
-        stairs
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_stairs_with_every_kind_of_step_are_allowed() {
+        crate::schema::check(&Stairs::uneven()).expect("allowed");
+    }
 
     #[test]
     fn the_descriptions_of_table_1_follow_from_the_geometry() {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::studio::state::current_run::prepared_run;
-use crate::{ENGINE_VERSION, Processors};
+use snakes_core::{ENGINE_VERSION, Processors};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_cluster::{Machines, RunNotice, RunQueue, WorkerNotice};
