@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use pyo3::prelude::*;
 use snakes_core::genome::Genome;
+use snakes_core::score::{Evaluation, Scored, Trial};
+use snakes_core::world::Disqualification;
 use snakes_lab::run::{
     Evaluator, LocalPool, RunControl, THREADS_RANGE, available_cores, evaluate_caught,
 };
-use snakes_core::score::{Evaluation, Scored, Trial};
-use snakes_core::world::Disqualification;
 
 use crate::convert::whole_as;
 use crate::errors::{crashed, no_threads};

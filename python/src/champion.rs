@@ -11,12 +11,12 @@ use serde_json::{Value, json};
 use snakes_core::Engine;
 use snakes_core::evolve;
 use snakes_core::genome::Genome;
-use snakes_lab::run;
-use snakes_lab::run::headless::HeadlessError;
 use snakes_core::save::{self, LoadedChampion, RecordedV5, load_log};
 use snakes_core::schema::Choices;
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::Disqualification;
+use snakes_lab::run;
+use snakes_lab::run::headless::HeadlessError;
 
 use crate::batch::score_all;
 use crate::convert::{parsed, to_python};

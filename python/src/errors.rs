@@ -4,8 +4,8 @@
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use snakes_core::check::Invalid;
-use snakes_lab::run::WorkersError;
 use snakes_core::save::SaveError;
+use snakes_lab::run::WorkersError;
 
 /// A value that is not allowed.
 pub fn invalid(error: Invalid) -> PyErr {

@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use snakes_core::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
 use snakes_core::genome::{Genome, Segment};
-use snakes_lab::run::caught;
 use snakes_core::score::{Evaluation, FITNESS_RANGE, Scored};
 use snakes_core::world::Disqualification;
+use snakes_lab::run::caught;
 
 use crate::batch::{score_all, threads_of};
 use crate::champion::{Champion, evaluated};

@@ -4,9 +4,9 @@ use pyo3::prelude::*;
 use snakes_core::control::{ExternalControl, Perception, SenseInfo, SenseKind};
 use snakes_core::genome::{ControllerKind, Genome, GenomeSpace};
 use snakes_core::rng::{Purpose, stream};
-use snakes_lab::run::caught;
 use snakes_core::score::{Evaluation, Perturbation, PerturbationRange, Rollout, Trial};
 use snakes_core::world::{BodyPlan, Disqualification, JointTorque};
+use snakes_lab::run::caught;
 
 use crate::errors::{crashed, invalid};
 

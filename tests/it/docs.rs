@@ -29,13 +29,16 @@ fn the_citation_names_the_version_of_the_program() {
 
 #[test]
 fn every_link_between_documents_leads_to_a_file() {
-    let docs = fs::read_dir(root().join("docs")).expect("docs").map(|entry| entry.expect("a page").path());
+    let docs =
+        fs::read_dir(root().join("docs")).expect("docs").map(|entry| entry.expect("a page").path());
     let pages = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
     let others = ["README.md", "CONTRIBUTING.md", "python/README.md"].map(|name| root().join(name));
     for page in pages.chain(others) {
         let text = fs::read_to_string(&page).expect("a page");
         let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-        for link in links.filter(|link| !link.contains("://") && !link.contains(char::is_whitespace)) {
+        for link in
+            links.filter(|link| !link.contains("://") && !link.contains(char::is_whitespace))
+        {
             let (file, _) = link.split_once('#').unwrap_or((link, ""));
             let target = page.parent().expect("a folder").join(file);
             assert!(file.is_empty() || target.exists(), "{} links to {link}", page.display());

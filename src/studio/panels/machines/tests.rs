@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::studio::state::current_run::prepared_run;
-use snakes_core::{ENGINE_VERSION, Processors};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_cluster::{Machines, RunNotice, RunQueue, WorkerNotice};
+use snakes_core::{ENGINE_VERSION, Processors};
 
 const URL: &str = "nats://192.168.1.5:4222";
 const PROOF: &str = "0123456789abcdef";
