@@ -1,6 +1,6 @@
 //! Claims about evolving bodies that take longer than a test may, as tables:
 //!
-//!     cargo test --release --no-default-features --test it bodies:: -- --ignored --nocapture
+//!     cargo test --release --test it bodies:: -- --ignored --nocapture
 
 use rayon::prelude::*;
 use snakes_core::evolve::{Settings, with_fields};

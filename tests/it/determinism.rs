@@ -1,6 +1,6 @@
 //! The same seed and settings give the same bits.
 //!
-//! `cargo test --no-default-features --test it golden -- --ignored` writes the golden values to
+//! `cargo test --release --test it golden -- --ignored` writes the golden values to
 //! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in
 //! all of these builds.
 
@@ -24,7 +24,7 @@ fn runs_have_the_golden_bits() {
         "\n\nThis build computes other bits than the golden ones (right).\n\
          If you did not intend to change results, your change is the bug: every save would replay\n\
          differently. If you did: raise ENGINE_VERSION in src/engine.rs, regenerate with\n    \
-         cargo test --no-default-features --test it golden -- --ignored\n\
+         cargo test --release --test it golden -- --ignored\n\
          find new champions for saves/, and describe the change in CHANGELOG.md.\n\
          If only this machine differs, a step called a float function of its C library: see invariant 3.\n"
     );

@@ -2,7 +2,8 @@
 //!
 //! Cargo builds a shared dependency once, with the features that all its users ask for together. A feature that
 //! the window switches on in the physics engine could change bits, which the golden trajectories would only show in
-//! a release build with the window. That build takes long, so this test compares the features themselves.
+//! the program with its window. Python, pages and the command line alone are built without the window, so this test compares
+//! the features themselves.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
@@ -41,6 +42,7 @@ const HARMLESS: [(&str, &[&str]); 4] = [
 fn features(arguments: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--locked", "--offline", "--edges", "normal", "--prefix", "none"])
+        .args(["--package", "snakes-and-stairs"])
         .args(["--format", "{p}\t{f}", "--manifest-path"])
         .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
         .args(arguments)
@@ -78,7 +80,7 @@ fn the_window_adds_no_feature_that_could_change_bits() {
     assert_eq!(
         with_window, core,
         "\n\nThe window (left) compiles the core's dependencies with other features than the core alone (right).\n\
-         Run `cargo test --release --test it determinism` to see whether bits change. If they do not, and the\n\
+         Run `cargo test --release determinism` to see whether bits change. If they do not, and the\n\
          feature has no part in a computation, add it to HARMLESS.\n"
     );
 }

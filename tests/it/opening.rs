@@ -1,6 +1,6 @@
 //! How long saved champions take to open: read, checked, and ready for their first step.
 //!
-//!     cargo test --release --no-default-features --test it opening -- --ignored --nocapture
+//!     cargo test --release --test it opening -- --ignored --nocapture
 //!
 //! `SNAKES_OPENING=FOLDER` measures the champions of another folder, those of its subfolders included.
 

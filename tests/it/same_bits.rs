@@ -1,8 +1,8 @@
 //! The same bits with other compiler settings, on other processors, and under a memory checker.
 //!
-//! The test builds the program several times and runs it in emulation, which takes about a quarter of an hour on two cores:
+//! `.ci/run` runs the case without optimisation. The others run in emulation, which takes about a quarter of an hour on two cores:
 //!
-//!     cargo test --release --no-default-features --test it same_bits -- --ignored --nocapture
+//!     cargo test --release --test it same_bits -- --ignored --nocapture
 //!
 //! WebAssembly has no case: plotters, which draws the charts, does not compile for `wasm32-wasip1` without its fonts.
 //!
@@ -38,7 +38,7 @@ fn build_for(
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let mut command = Command::new(env!("CARGO"));
     command.args(["build", "--no-default-features", "--locked", "--profile", profile]);
-    command.args(["--bin", "snakes", "--manifest-path"]);
+    command.args(["--package", "snakes-and-stairs", "--manifest-path"]);
     command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
     command.arg("--target-dir").arg(&target).env("RUSTFLAGS", rustflags);
     command.args(platform.into_iter().flat_map(|platform| ["--target", platform]));
@@ -60,12 +60,11 @@ fn has_platform(platform: &str) -> bool {
     })
 }
 
-/// Settings for a build without any optimisation, in this package and in its dependencies.
-fn unoptimised() -> Vec<String> {
-    let packages = ["\"*\"", "rapier3d", "parry3d", "nalgebra", "simba", "glam"];
+/// Builds the program without any optimisation, in this package and in its dependencies.
+fn build_unoptimised() -> PathBuf {
+    let packages = ["\"*\"", "rapier3d", "parry3d", "nalgebra", "simba", "glam", "snakes-core"];
     let package = |name| format!("profile.dev.package.{name}.opt-level=0");
-    let all = packages.into_iter().map(package);
-    all.chain(["profile.dev.opt-level=0".to_owned()]).collect()
+    build("opt-0", "dev", "", &packages.map(package))
 }
 
 fn is_found(program: &str) -> bool {
@@ -111,6 +110,15 @@ fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> S
     last["fingerprint"].as_str().expect("a fingerprint").to_owned()
 }
 
+/// The program under test, which is optimised as a user's.
+fn tested() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_snakes"))
+}
+
+/// Tells the C library to leave out its variants for newer processors.
+const NO_VARIANTS: (&str, &str) =
+    ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");
+
 /// Another family of processors has bits of its own, and one reference for all of them.
 #[test]
 #[ignore = "builds the program for 64-bit ARM and runs it in emulation: minutes"]
@@ -132,58 +140,42 @@ struct Case<'p> {
     what: &'static str,
     program: &'p Path,
     runner: Vec<&'static str>,
-    variables: Vec<(&'static str, &'static str)>,
+}
+
+#[test]
+#[ignore = "builds the program another time: minutes"]
+fn a_build_without_optimisation_gives_the_fingerprint_of_the_reference() {
+    let reference = Trajectories::reference().expect("well formed").fingerprint();
+    assert_eq!(fingerprint(&build_unoptimised(), &[], &[]), reference);
+    assert_eq!(fingerprint(tested(), &[], &[NO_VARIANTS]), reference, "{}", NO_VARIANTS.1);
 }
 
 #[test]
 #[ignore = "builds the program several times and runs it in emulation: a quarter of an hour"]
-fn every_build_and_every_processor_gives_the_fingerprint_of_the_reference() {
-    const NO_VARIANTS: (&str, &str) =
-        ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");
+fn every_processor_gives_the_fingerprint_of_the_reference() {
     const MAX: [&str; 3] = ["qemu-x86_64", "-cpu", "max"];
     let reference = Trajectories::reference().expect("well formed").fingerprint();
-    let tested = Path::new(env!("CARGO_BIN_EXE_snakes"));
-    // Where this test is optimised, so is the program under test.
-    let own_release = cfg!(debug_assertions).then(|| build("release", "release", "", &[]));
-    let release = own_release.as_deref().unwrap_or(tested);
-    // At the same time: the last crates of a build leave processors idle.
-    let (unoptimised, v3) = thread::scope(|scope| {
-        let unoptimised = scope.spawn(|| build("opt-0", "dev", "", &unoptimised()));
-        let v3 = build("v3", "release", "-Ctarget-cpu=x86-64-v3", &[]);
-        (unoptimised.join().expect("it is built"), v3)
-    });
-    let case = |what, program, runner: &[&'static str]| Case {
-        what,
-        program,
-        runner: runner.to_vec(),
-        variables: Vec::new(),
-    };
+    let v3 = build("v3", "release", "-Ctarget-cpu=x86-64-v3", &[]);
+    let case =
+        |what, program, runner: &[&'static str]| Case { what, program, runner: runner.to_vec() };
     // The longest first.
     let mut cases = Vec::new();
     if is_installed("valgrind") {
         let checker = ["valgrind", "--quiet", "--error-exitcode=9", "--num-callers=30"];
-        cases.push(case("under valgrind's memory checker", release, &checker));
+        cases.push(case("under valgrind's memory checker", tested(), &checker));
     }
     if is_installed("qemu-x86_64") {
         let core_2 = ["qemu-x86_64", "-cpu", "core2duo"];
-        cases.push(case("emulated Core 2 of 2006", release, &core_2));
+        cases.push(case("emulated Core 2 of 2006", tested(), &core_2));
         // QEMU knows no feature beyond those of x86-64-v3.
         if !is_v3() {
-            cases.push(case("emulated, all features known to QEMU", release, &MAX));
+            cases.push(case("emulated, all features known to QEMU", tested(), &MAX));
             cases.push(case("the same, for x86-64-v3", &v3, &MAX));
         }
     }
-    cases.push(case("opt-level 0", &unoptimised, &[]));
     if is_v3() {
-        cases.push(case("opt-level 3 for x86-64-v3", &v3, &[]));
+        cases.push(case("for x86-64-v3", &v3, &[]));
     }
-    cases.push(case("opt-level 3", release, &[]));
-    if own_release.is_some() {
-        cases.push(case("the program under test", tested, &[]));
-    }
-    let without = "opt-level 3 without the C library's AVX and FMA variants";
-    cases.push(Case { variables: vec![NO_VARIANTS], ..case(without, release, &[]) });
-
     println!("{reference}  the reference");
     let workers = thread::available_parallelism().map_or(1, usize::from);
     let waiting = Mutex::new(cases.into_iter());
@@ -191,8 +183,8 @@ fn every_build_and_every_processor_gives_the_fingerprint_of_the_reference() {
         for _ in 0..workers {
             scope.spawn(|| {
                 let next = || waiting.lock().expect("no case has failed").next();
-                while let Some(Case { what, program, runner, variables }) = next() {
-                    let found = fingerprint(program, &runner, &variables);
+                while let Some(Case { what, program, runner }) = next() {
+                    let found = fingerprint(program, &runner, &[]);
                     println!("{found}  {what}");
                     assert_eq!(found, reference, "{what}");
                 }

@@ -1,6 +1,6 @@
 //! A long run of half an hour: memory stays flat, logs stay small.
 //!
-//!     cargo test --release --no-default-features --test it soak -- --ignored --nocapture
+//!     cargo test --release --test it soak -- --ignored --nocapture
 //!
 //! `SNAKES_SOAK_MINUTES` changes the duration. A million evaluations take about fifteen minutes on two
 //! cores, or thirty on one.

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "writes fuzz/corpus/wire: cargo test --lib write_the_corpus_of_messages -- --ignored"]
+    #[ignore = "writes fuzz/corpus/wire: cargo test --release -p snakes-cluster write_the_corpus_of_messages -- --ignored"]
     fn write_the_corpus_of_messages() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/wire");
         std::fs::create_dir_all(folder).expect("a folder");

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::tokens::tokens;
 
-/// For each file, the other files on which it depends. Paths are relative to `src/`.
+/// For each file, the other files on which it depends. Paths are relative to the root.
 pub type ImportGraph = BTreeMap<String, BTreeSet<String>>;
 
 type Module = Vec<String>;
@@ -36,14 +36,11 @@ enum Target {
     External,
 }
 
-/// The graph of the given files: their paths below `src/`, and their texts.
+/// The graph of the given files: their paths below the root, and their texts. Paths into another of these crates are resolved there.
 pub fn import_graph(files: &[(String, String)]) -> ImportGraph {
-    let modules: BTreeMap<Module, SourceFile> = files
-        .iter()
-        .filter(|(path, _)| path != "main.rs")
-        .map(|(path, text)| (module_of(path), SourceFile::new(path, text)))
-        .collect();
-    let source = Crate { modules };
+    let modules: BTreeMap<Module, SourceFile> =
+        files.iter().map(|(path, text)| (module_of(path), SourceFile::new(path, text))).collect();
+    let source = Crates { modules };
     source
         .modules
         .iter()
@@ -77,10 +74,15 @@ pub fn circles(graph: &ImportGraph) -> Vec<BTreeSet<String>> {
     circles
 }
 
+/// The path of a file's module, which begins with the name by which others call its crate.
 fn module_of(path: &str) -> Module {
+    let (folder, path) = path.split_once("src/").unwrap_or_default();
+    let name = folder.trim_start_matches("crates/").trim_end_matches('/');
     let path = path.strip_suffix(".rs").unwrap_or(path);
     let path = path.strip_suffix("/mod").unwrap_or(path);
-    if path == "lib" { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
+    let below = path.split('/').filter(|name| !["lib", "main"].contains(name)).map(str::to_owned);
+    let start = if name.is_empty() { "snakes".to_owned() } else { format!("snakes_{name}") };
+    [start].into_iter().chain(below).collect()
 }
 
 impl SourceFile {
@@ -151,11 +153,11 @@ fn read_use(tokens: &[String], mut index: usize, prefix: &[String], uses: &mut V
     index
 }
 
-struct Crate {
+struct Crates {
     modules: BTreeMap<Module, SourceFile>,
 }
 
-impl Crate {
+impl Crates {
     /// The other files that a module names, in a `use` or in a path.
     fn imports(&self, module: &Module) -> BTreeSet<String> {
         let file = &self.modules[module];
@@ -179,7 +181,7 @@ impl Crate {
         found
     }
 
-    /// Finds what a path means in a module; `None` outside this crate.
+    /// Finds what a path means in a module; `None` outside these crates.
     fn resolve(&self, module: &Module, path: &[String], depth: u32) -> Option<Target> {
         // A name that is re-exported in a circle is no name.
         if depth > 20 {
@@ -187,10 +189,15 @@ impl Crate {
         }
         let (first, rest) = path.split_first()?;
         let start = match first.as_str() {
-            "crate" => Target::Module(Vec::new()),
+            "crate" => Target::Module(module[..1].to_vec()),
             "self" => Target::Module(module.clone()),
             "super" => Target::Module(module.split_last()?.1.to_vec()),
-            name => self.member(module, name, depth + 1)?,
+            name => match self.member(module, name, depth + 1) {
+                Some(found) => found,
+                None => {
+                    Target::Module(self.modules.get_key_value(&vec![name.to_owned()])?.0.clone())
+                }
+            },
         };
         rest.iter().try_fold(start, |target, name| match target {
             Target::Item(_) | Target::External => Some(target),
@@ -257,18 +264,26 @@ fn path_at(tokens: &[String], index: usize) -> Vec<String> {
 #[test]
 fn imports_are_resolved_through_re_exports_to_the_defining_file() {
     let files = [
-        ("lib.rs", "pub mod a; pub mod b;"),
-        ("a/mod.rs", "mod deep; pub use deep::Thing; pub struct Own;"),
-        ("a/deep.rs", "use super::Own; pub struct Thing;"),
-        ("b.rs", "use crate::a::{self, Thing as T}; fn f() { a::Own; std::fs::read(); }"),
+        ("crates/core/src/lib.rs", "pub mod a; pub mod b;"),
+        ("crates/core/src/a/mod.rs", "mod deep; pub use deep::Thing; pub struct Own;"),
+        ("crates/core/src/a/deep.rs", "use super::Own; pub struct Thing;"),
+        (
+            "crates/core/src/b.rs",
+            "use crate::a::{self, Thing as T}; fn f() { a::Own; std::fs::read(); }",
+        ),
+        ("src/main.rs", "mod c; use snakes_core::a::Thing; fn main() {}"),
+        ("src/c.rs", "fn g() { snakes_core::a::Own; crate::main(); }"),
     ];
     let files = files.map(|(path, text)| (path.to_owned(), text.to_owned()));
     let graph = import_graph(&files);
     let targets = |path: &str| graph[path].iter().map(String::as_str).collect::<Vec<_>>();
-    assert_eq!(targets("lib.rs"), [""; 0]);
-    assert_eq!(targets("a/mod.rs"), ["a/deep.rs"]);
-    assert_eq!(targets("a/deep.rs"), ["a/mod.rs"]);
-    assert_eq!(targets("b.rs"), ["a/deep.rs", "a/mod.rs"]);
-    let circle = ["a/deep.rs", "a/mod.rs"].map(str::to_owned);
+    let (deep, module) = ("crates/core/src/a/deep.rs", "crates/core/src/a/mod.rs");
+    assert_eq!(targets("crates/core/src/lib.rs"), [""; 0]);
+    assert_eq!(targets(module), [deep]);
+    assert_eq!(targets(deep), [module]);
+    assert_eq!(targets("crates/core/src/b.rs"), [deep, module]);
+    assert_eq!(targets("src/main.rs"), [deep]);
+    assert_eq!(targets("src/c.rs"), [module, "src/main.rs"]);
+    let circle = [deep, module].map(str::to_owned);
     assert_eq!(circles(&graph), [BTreeSet::from(circle)]);
 }

@@ -1,6 +1,6 @@
 //! A random hand: clicks, drags, keys, texts, scrolls and resizes from a seed, in the real window, while a run evolves.
 //!
-//!     cargo test --test it random_hand -- --ignored --nocapture
+//!     cargo test --release --test it random_hand -- --ignored --nocapture
 //!
 //! `SNAKES_HAND_SEED` changes the seed, `SNAKES_HAND_ACTIONS` the number of actions. The choices depend on the controls
 //! that the window shows at each moment, so a seed repeats a session only as far as the machine is equally fast; a

@@ -1,7 +1,7 @@
 //! Screenshots of every view in every size of window, at every scale that fits, in both themes: for a look at what is
 //! cut, covered or misaligned.
 //!
-//! `SNAKES_SCREENSHOTS=target/screenshots cargo test --test it views_at_every_size -- --ignored` takes them all, in half
+//! `SNAKES_SCREENSHOTS=target/screenshots cargo test --release --test it views_at_every_size -- --ignored` takes them all, in half
 //! an hour or more. `SNAKES_SCREENSHOTS_SIZE=1280x720` and `SNAKES_SCREENSHOTS_SCALE=1.5` take those of one size or
 //! scale.
 

@@ -1,6 +1,6 @@
 //! The README's screenshots of the studio, taken from the real window.
 //!
-//! `cargo test --test it screenshots -- --ignored` writes them to `assets/screenshots`. Environment variables take
+//! `cargo test --release --test it screenshots -- --ignored` writes them to `assets/screenshots`. Environment variables take
 //! other screenshots: a folder, a window size, a UI scale and a theme, as in `SNAKES_SCREENSHOTS=target/screenshots
 //! SNAKES_SCREENSHOTS_SIZE=2560x1440 SNAKES_SCREENSHOTS_SCALE=1.5 SNAKES_SCREENSHOTS_THEME=dark`.
 

@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "takes minutes: cargo test --release --no-default-features --lib report_the_best_fixed_cycles -- --ignored --nocapture"]
+    #[ignore = "takes minutes: cargo test --release -p snakes-core report_the_best_fixed_cycles -- --ignored --nocapture"]
     fn report_the_best_fixed_cycles() {
         let mut settings = load_preset("climb").expect("shipped").settings;
         settings = with_fields(

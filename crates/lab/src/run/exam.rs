@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "takes about ten seconds: cargo test --release --lib a_typical_trial -- --ignored"]
+    #[ignore = "takes about ten seconds: cargo test --release -p snakes-lab a_typical_trial -- --ignored"]
     fn a_typical_trial_of_a_cell_ends_as_in_the_exam_when_it_is_simulated_again() {
         let champion = shipped_champion().expect("well formed").champion;
         let pool = LocalPool::new(2).expect("threads");

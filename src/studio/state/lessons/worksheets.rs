@@ -282,7 +282,7 @@ fn the_worksheets_are_up_to_date() {
         assert_eq!(
             lesson.worksheet,
             text(index),
-            "worksheet {}: run `cargo test --lib write_the_worksheets -- --ignored`",
+            "worksheet {}: run `cargo test --release --bin snakes write_the_worksheets -- --ignored`",
             index + 1
         );
     }

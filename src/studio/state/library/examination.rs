@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "takes about ten seconds: cargo test --release --lib the_results_of_an_exam_are -- --ignored"]
+    #[ignore = "takes about ten seconds: cargo test --release --bin snakes the_results_of_an_exam_are -- --ignored"]
     fn the_results_of_an_exam_are_written_into_the_file() {
         let mut tried = Tried::new(&["a"]);
         let a = tried.place("a");

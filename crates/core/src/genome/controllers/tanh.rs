@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Takes a minute: `cargo test --release --no-default-features --lib all_numbers -- --ignored`.
+    /// Takes a minute: `cargo test --release -p snakes-core all_numbers -- --ignored`.
     #[test]
     #[ignore = "takes a minute"]
     fn all_numbers_have_the_bits_of_libm() {

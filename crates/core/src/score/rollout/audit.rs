@@ -79,7 +79,7 @@ fn random_snakes_gain_no_energy_from_nothing_or_are_disqualified() {
 }
 
 #[test]
-#[ignore = "a minute: cargo test --lib a_thousand_random_snakes -- --ignored"]
+#[ignore = "a minute: cargo test --release -p snakes-core a_thousand_random_snakes -- --ignored"]
 fn a_thousand_random_snakes_gain_no_energy_from_nothing_or_are_disqualified() {
     audit(250);
 }

@@ -108,7 +108,7 @@ fn random_chains_end_or_stay_finite() {
     assert!(healthy > 4_000, "{healthy} healthy steps");
 }
 
-/// A million of them: `cargo test --release --no-default-features --lib a_million_random_chains -- --ignored`.
+/// A million of them: `cargo test --release -p snakes-core a_million_random_chains -- --ignored`.
 #[test]
 #[ignore = "takes half a minute"]
 fn a_million_random_chains_end_or_stay_finite() {
