@@ -86,15 +86,6 @@ pub fn of_flag(flag: &str) -> impl Fn(Invalid) -> Invalid {
     move |invalid| Invalid { field: flag.to_owned(), ..invalid }
 }
 
-/// Names the flag of a run's size, `--evaluations` or `--duration`, in the place of its field.
-pub fn of_size_flag(invalid: Invalid) -> Invalid {
-    match invalid.field.as_str() {
-        "evaluations" => of_flag("--evaluations")(invalid),
-        "trial.duration_s" => of_flag("--duration")(invalid),
-        _ => invalid,
-    }
-}
-
 impl CliError {
     /// 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {
@@ -145,6 +136,7 @@ impl From<SaveError> for CliError {
         match error {
             SaveError::UnknownPreset(invalid) => of_flag("--preset")(invalid).into(),
             SaveError::UnknownStairs(invalid) => of_flag("--stairs")(invalid).into(),
+            SaveError::Study(invalid) => invalid.into(),
             other => Self::Headless(other.into()),
         }
     }

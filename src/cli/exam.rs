@@ -24,8 +24,9 @@ use snakes_lab::run::mujoco::{
     CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials,
 };
 use snakes_lab::run::progress_bar::with_bar;
-use snakes_lab::run::robust::Share;
 use snakes_lab::run::{Evaluator, RunControl, short};
+use snakes_lab::statistics::Share;
+use snakes_lab::study::suites_named;
 
 /// Examines champions and prints the results; if `writes`, also into their files.
 pub fn exam(
@@ -100,19 +101,9 @@ fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
         invalid.allowed += &format!(", {MUJOCO}");
         invalid
     };
-    Ok((chosen(&own, default).map_err(with_mujoco)?, own.len() < names.len()))
-}
-
-/// The suites that the user names; the default ones, if none.
-pub(super) fn chosen(names: &[String], default: &[ExamSuite]) -> Result<Vec<ExamSuite>, Invalid> {
-    if names.is_empty() {
-        return Ok(default.to_vec());
-    }
-    let named = names.iter().map(|name| ExamSuite::named("--suite", name));
-    let mut suites = named.collect::<Result<Vec<_>, _>>()?;
-    suites.sort_unstable();
-    suites.dedup();
-    Ok(suites)
+    let chosen =
+        if own.is_empty() { default.to_vec() } else { suites_named(&own).map_err(with_mujoco)? };
+    Ok((chosen, own.len() < names.len()))
 }
 
 /// Plays a champion in MuJoCo, with a progress bar.
@@ -353,9 +344,9 @@ mod tests {
 
     #[test]
     fn an_unknown_suite_is_refused_with_the_known_ones() {
-        let error = chosen(&["stars".to_owned()], &[]).expect_err("unknown").to_string();
+        let error = suites_named(&["stars".to_owned()]).expect_err("unknown").to_string();
         assert!(error.contains("\"stars\"") && error.contains("step-rate, stairs"), "{error}");
         let twice = ["shove", "trials", "shove"].map(str::to_owned);
-        assert_eq!(chosen(&twice, &[]).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
+        assert_eq!(suites_named(&twice).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
     }
 }

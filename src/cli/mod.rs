@@ -5,16 +5,12 @@
 mod args;
 mod bench;
 mod body;
-mod body_study;
 #[cfg(feature = "cluster")]
 mod cluster;
-mod compare;
-mod engine_study;
 mod error;
 mod evaluators;
 mod exam;
 mod export;
-mod families;
 #[cfg(feature = "studio")]
 mod figures;
 #[cfg(feature = "studio")]
@@ -28,9 +24,7 @@ mod render;
 mod replay;
 mod resume;
 mod robust;
-mod stairs_study;
 mod study;
-mod table1;
 mod verify;
 
 use std::ffi::OsString;
@@ -84,18 +78,12 @@ fn perform(args: &Args) -> Result<(), CliError> {
         Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
         Some(Subcommand::Body { file }) => body::body(file, args.json),
         Some(Subcommand::Bench { file }) => bench::print_bench(args, file.as_deref()),
-        Some(Subcommand::BodyStudy(wanted)) => body_study::body_study(args, wanted),
-        Some(Subcommand::PoetStudy(wanted)) => poet_study::poet_study(args, wanted),
-        Some(Subcommand::StairsStudy(wanted)) => stairs_study::stairs_study(args, wanted),
-        Some(Subcommand::EngineStudy(wanted)) => engine_study::engine_study(args, wanted),
+        Some(Subcommand::Study(wanted)) => study::study(args, wanted),
         Some(Subcommand::Verify) => verify::verify(args),
         Some(Subcommand::Robust { file, trials, range }) => {
             robust::robust(args, file, *trials, &range.into())
         }
         Some(Subcommand::Exam { files, suite, write }) => exam::exam(args, files, suite, *write),
-        Some(Subcommand::Compare(compared)) => compare::compare(args, compared),
-        Some(Subcommand::Families(wanted)) => families::families(args, wanted),
-        Some(Subcommand::Table1 { seeds, first_seed }) => table1::table1(args, *first_seed, *seeds),
         #[cfg(feature = "studio")]
         Some(Subcommand::Figures { run }) => {
             crate::studio::name_runtime_folder(|_| ());
@@ -146,7 +134,7 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         _ => &[],
     };
     let replay::Opened { champions, problems } = replay::opened(files, args.desktop)?;
-    let comparison = args.comparison.as_deref().map(snakes_core::save::load_comparison).transpose();
+    let comparison = args.comparison.as_deref().map(snakes_core::save::load_study).transpose();
     let (run, saves) = (args.run_source()?, args.saves_folder());
     // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
     let names_run = args.names_run();

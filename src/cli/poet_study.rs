@@ -1,35 +1,61 @@
-//! `snakes poet-study`: whether POET solves stairs that a direct search does not.
+//! `snakes study poet`: whether POET solves stairs that a direct search does not.
 
 use std::path::Path;
 
-use super::args::{Args, PoetStudyArgs};
+use super::args::{Args, StudyArgs, number};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
-use super::study::published_settings;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::RunPlan;
 use snakes_core::save::{
-    ExistingRun, PoetStudy, SaveError, load_poet_study, settings_fingerprint, store_csv,
-    store_poet_study,
+    ExistingRun, PoetStudy, SaveError, load_poet_study, load_preset, settings_fingerprint,
+    store_csv, store_poet_study,
 };
+use snakes_core::world::PhysicsEngine;
 use snakes_lab::run::headless::{HeadlessError, say};
-use snakes_lab::run::poet_study::{
-    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
-};
 use snakes_lab::run::progress_bar::bar_of;
 use snakes_lab::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
+use snakes_lab::study::poet::{
+    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
+};
 
 /// Seed of the run unless one is given: no setting was chosen by it or by those of the direct searches after it.
 const FIRST_SEED: u64 = 401;
+/// Rounds of the run unless a number is given.
+const ROUNDS: u32 = 100;
+/// The question of the study.
+pub const ABOUT: &str = "Does POET solve stairs that a direct search does not?";
 
 /// Makes what the study's file does not have yet, and prints the results.
-pub fn poet_study(args: &Args, wanted: &PoetStudyArgs) -> Result<(), CliError> {
-    let settings = published_settings("poet")?;
+pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
+    let given = [
+        ("--arms", !wanted.arms.is_empty()),
+        ("--baseline", wanted.baseline.is_some()),
+        ("--strategies", !wanted.strategies.is_empty()),
+        ("--controllers", !wanted.controllers.is_empty()),
+        ("--seeds", wanted.seeds.is_some()),
+        ("--evaluations", wanted.evaluations.is_some()),
+        ("--suite", !wanted.suite.is_empty()),
+        ("--preset", args.named_preset().is_some()),
+        ("--stairs", args.named_stairs().is_some()),
+        ("--duration", args.duration_s()?.is_some()),
+        ("--set, --population, --generations or --fitness", !args.changes()?.is_empty()),
+    ];
+    if let Some((flag, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+        return Err(CliError::Usage(format!("{flag} has no effect with snakes study poet")));
+    }
+    let rounds = wanted
+        .rounds
+        .as_deref()
+        .map_or(Ok(ROUNDS), |text| number("--rounds", text, "a whole number from 0 up"))?;
+    let mut settings = load_preset("poet")?.settings;
+    // The published run is of this engine.
+    settings.trial.physics.engine = PhysicsEngine::Rapier;
     let plan = RunPlan::new("poet", args.seed_or(FIRST_SEED)?, settings);
     let folder = args.results_folder();
     folder.prepare()?;
-    let [ron, csv] = ["ron", "csv"].map(|kind| folder.path().join(format!("poet-study.{kind}")));
+    let [ron, csv] = ["ron", "csv"].map(|kind| folder.path().join(format!("poet.{kind}")));
     let fingerprint = settings_fingerprint(&plan);
     let mut study = PoetStudy::new(fingerprint, plan.seed);
     if ron.exists() && !args.restart {
@@ -46,11 +72,11 @@ pub fn poet_study(args: &Args, wanted: &PoetStudyArgs) -> Result<(), CliError> {
         study = earlier;
     }
     let control = cancel_on_interrupt();
-    let evaluator = evaluator(args, "poet-study", &ron)?;
-    if study.rounds < wanted.rounds {
+    let evaluator = evaluator(args, "study poet", &ron)?;
+    if study.rounds < rounds {
         let earlier = if args.restart { ExistingRun::Discard } else { ExistingRun::Keep };
         let source = RunSource::in_saves(&folder, plan.clone(), earlier);
-        let measured = measure_poet(source, study, wanted.rounds, &*evaluator, &control);
+        let measured = measure_poet(source, study, rounds, &*evaluator, &control);
         study = trusted(&*evaluator, measured.map_err(|error| error.keeping(&ron)))?;
         store_poet_study(&ron, &study)?;
     }
@@ -85,7 +111,7 @@ fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), 
     store_csv(csv, &poet_records(study))?;
     if args.json {
         let line = serde_json::json!({
-            "done": true, "rounds": study.rounds, "run_hash": study.run_hash, "stairs": study.stairs, "solved": study.solved,
+            "type": "done", "study": "poet", "rounds": study.rounds, "run_hash": study.run_hash, "stairs": study.stairs, "solved": study.solved,
             "challenges": study.challenges.last(), "searches": study.controls.len(), "files": [ron, csv],
         });
         return print(&format!("{line}\n"));
@@ -104,7 +130,7 @@ fn measure_poet(
 ) -> Result<PoetStudy, HeadlessError> {
     let plan = source.plan.clone();
     let RecordedRun { mut experiment, mut recorder, mut reports, .. } =
-        source.open("snakes poet-study")?;
+        source.open("snakes study poet")?;
     let cancelled = |Cancelled| HeadlessError::Cancelled { kept: None };
     let bar = bar_of(rounds.into(), "rounds");
     while !experiment.is_over() && experiment.stairs_tree().is_some_and(|tree| tree.rounds < rounds)

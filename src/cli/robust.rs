@@ -15,7 +15,8 @@ use snakes_core::schema;
 use snakes_core::score::PerturbationRange;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::progress_bar::with_bar;
-use snakes_lab::run::robust::{Robustness, Share, robustness};
+use snakes_lab::run::robust::{Robustness, robustness};
+use snakes_lab::statistics::Share;
 
 /// Runs a champion through perturbed trials and prints the shares.
 pub fn robust(

@@ -1,140 +1,139 @@
-//! The common part of the commands that make the runs of a study and print what they say.
+//! `snakes study`: the runs, exams and results of a built-in study or of a user's own.
 
-use std::path::PathBuf;
-
-use super::args::Args;
-use super::compare::seeds_from;
-use super::error::{CliError, of_size_flag};
+use super::args::{Args, StudyArgs, number};
+use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
+use super::poet_study;
 use snakes_core::check::{Invalid, within};
-use snakes_core::evolve::{RunPlan, Settings};
-use snakes_core::save::{
-    MAX_STUDY_RUNS, SaveError, StudiedRun, StudyRuns, load_preset, load_study,
-    settings_fingerprint, store_csv, store_study,
+use snakes_core::schema::Choices;
+use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::study::{
+    DURATION, Plain, Results, Study, StudyFiles, built_in_studies, json_lines, perform,
+    suites_named, tables,
 };
-use snakes_core::world::PhysicsEngine;
-use snakes_lab::run::headless::say;
-use snakes_lab::run::progress_bar::bar_of;
-use snakes_lab::run::study::{PlannedArm, StudyArm, train_arms};
 
-/// The settings of a preset, with the engine of the runs that are published.
-///
-/// # Errors
-/// There is no such preset.
-pub fn published_settings(preset: &str) -> Result<Settings, CliError> {
-    let mut settings = load_preset(preset)?.settings;
-    settings.trial.physics.engine = PhysicsEngine::Rapier;
-    Ok(settings)
-}
+const WHOLE: &str = "a whole number from 0 up";
 
-/// Seed of the first run of most studies unless one is given: no setting was chosen by it or by those after it.
-pub const FIRST_SEED: u64 = 101;
-
-/// The arguments, the files and the settings of a study.
-pub struct Study<'a> {
-    pub args: &'a Args,
-    /// The name of its command.
-    pub command: &'static str,
-    /// Seed of the first run unless one is given.
-    pub first_seed: u64,
-    /// Number of seeds.
-    pub seeds: u64,
-    /// Evaluations that each run may spend.
-    pub evaluations: u32,
-    /// The name of its files.
-    pub name: &'static str,
-    pub preset: &'static str,
-    pub settings: &'a Settings,
-}
-
-/// The paths of a study's two files, and all of its runs.
-pub type Finished<R> = ([PathBuf; 2], StudyRuns<R>);
-
-impl Study<'_> {
-    /// The runs of all arms, seed by seed, so that an interrupted study has about as many of each.
-    fn plans<A: StudyArm>(&self) -> Result<Vec<PlannedArm<A>>, CliError> {
-        let mut planned = Vec::new();
-        for seed in seeds_from(self.args.seed_or(self.first_seed)?, self.seeds)? {
-            for &arm in A::OPTIONS {
-                let plan = arm.plan(self.settings, seed, self.evaluations);
-                planned.push(PlannedArm { arm, plan: plan.map_err(of_size_flag)? });
-            }
-        }
-        within("runs", planned.len(), 1..=MAX_STUDY_RUNS)?;
-        Ok(planned)
+/// Makes what the study's files do not have yet, and prints the results; without a name, lists the studies.
+pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
+    let Some(named) = &wanted.study else { return list(args) };
+    if named == "poet" {
+        return poet_study::poet_study(args, wanted);
     }
+    if wanted.rounds.is_some() {
+        let problem = "--rounds has no effect with this study; only poet has rounds";
+        return Err(CliError::Usage(problem.to_owned()));
+    }
+    let study = asked(Study::load(named)?, args, wanted)?;
+    let folder = args.results_folder();
+    folder.prepare()?;
+    let files = StudyFiles::within(folder.path(), &study);
+    let evaluator = evaluator(args, &format!("study {}", study.name), &files.ron)?;
+    let control = cancel_on_interrupt();
+    let performed = perform(&study, &files, args.restart, &*evaluator, &control);
+    let performed = performed.map_err(|error| match error {
+        HeadlessError::Save(error) => CliError::from(error),
+        other => other.into(),
+    });
+    let (runs, findings) = trusted(&*evaluator, performed)?;
+    let results = Results { study: &study, runs: &runs, findings: &findings };
+    if args.json {
+        let lines = json_lines(&results, &files).into_iter().map(|line| format!("{line}\n"));
+        return print(&lines.collect::<String>());
+    }
+    let saved = files.all().map(|file| format!("saved to  {}\n", file.display())).concat();
+    print(&format!("{}\n{saved}", tables(&results)))
+}
 
-    /// Makes the runs that the study's file does not have yet; `words` describes one.
-    pub fn continued<A: StudyArm>(
-        &self,
-        words: impl Fn(&A::Run) -> String + Sync,
-    ) -> Result<Finished<A::Run>, CliError> {
-        let planned = self.plans::<A>()?;
-        let folder = self.args.results_folder();
-        folder.prepare()?;
-        let files = ["ron", "csv"].map(|kind| folder.path().join(format!("{}.{kind}", self.name)));
-        let ron = &files[0];
-        let common = RunPlan::new(self.preset, 0, self.settings.clone());
-        let fingerprint = settings_fingerprint(&common);
-        let mut runs: StudyRuns<A::Run> = StudyRuns::new(fingerprint, self.evaluations);
-        if ron.exists() && !self.args.restart {
-            let earlier = load_study(ron)?;
-            let now = (&runs.settings, runs.evaluations);
-            if (&earlier.settings, earlier.evaluations) != now {
-                let allowed = format!(
-                    "{} with {} evaluations, the fingerprint of the preset's settings; --restart begins again, and --out \
-                     names another folder",
-                    runs.settings, runs.evaluations
-                );
-                let found = format!("{} with {}", earlier.settings, earlier.evaluations);
-                let source = Invalid::new("settings", found, allowed);
-                return Err(SaveError::Invalid { path: ron.clone(), source }.into());
-            }
-            runs = earlier;
+/// Lists the built-in studies.
+fn list(args: &Args) -> Result<(), CliError> {
+    let poet = ("poet".to_owned(), poet_study::ABOUT.to_owned());
+    let studies = built_in_studies()?.into_iter().map(|study| (study.name, study.about));
+    let studies: Vec<(String, String)> = studies.chain([poet]).collect();
+    let width = studies.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, about): &(String, String)| match args.json {
+        true => format!("{}\n", serde_json::json!({"type": "study", "name": name, "about": about})),
+        false => format!("{name:<width$}  {about}\n"),
+    };
+    print(&studies.iter().map(line).collect::<String>())
+}
+
+/// The study with what the flags change.
+fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, CliError> {
+    if let Some(preset) = args.named_preset() {
+        if study.methods.is_none() && study.arms.iter().all(|arm| arm.preset.is_some()) {
+            let problem =
+                "--preset has no effect with this study, whose arms have presets of their own";
+            return Err(CliError::Usage(problem.to_owned()));
         }
-        let is_done = |planned: &PlannedArm<A>| {
-            let known = runs.of_arm(planned.arm.name());
-            known.iter().any(|run| run.seed() == planned.plan.seed)
+        study.preset = preset.to_owned();
+    }
+    study.first_seed = args.seed_or(study.first_seed)?;
+    if let Some(text) = &wanted.seeds {
+        study.seeds = number("--seeds", text, WHOLE)?;
+        within("--seeds", study.seeds, 1..=10_000)?;
+    }
+    if let Some(text) = &wanted.evaluations {
+        study.evaluations = Some(number("--evaluations", text, WHOLE)?);
+    }
+    study.stairs = args.named_stairs().map(str::to_owned).or(study.stairs);
+    let mut changes = args.changes()?;
+    if let Some(duration_s) = args.duration_s()? {
+        within("--duration", duration_s, 0.1..=600.0)?;
+        changes.push((DURATION, duration_s.to_string()));
+    }
+    if study.evaluations.is_some() && changes.iter().any(|(name, _)| name.ends_with("generations"))
+    {
+        let problem = "--generations has no effect with this study; --evaluations sets the budget";
+        return Err(CliError::Usage(problem.to_owned()));
+    }
+    let plain = |(name, value): (&str, String)| (name.to_owned(), Plain::Text(value));
+    study.settings.extend(changes.into_iter().map(plain));
+    if !(wanted.strategies.is_empty() && wanted.controllers.is_empty()) {
+        let Some(methods) = &mut study.methods else {
+            let flag = if wanted.strategies.is_empty() { "--controllers" } else { "--strategies" };
+            let problem = format!(
+                "{flag} has no effect with this study, which does not cross methods; try methods"
+            );
+            return Err(CliError::Usage(problem));
         };
-        let left: Vec<_> = planned.iter().filter(|of| !is_done(of)).cloned().collect();
-        say(&format!("{} of {} runs left", left.len(), planned.len()));
-        let control = cancel_on_interrupt();
-        let evaluator = evaluator(self.args, self.command, ron)?;
-        let bar = bar_of(left.iter().map(|of| of.plan.budget()).sum(), "evaluations");
-        let result = train_arms(
-            &left,
-            &*evaluator,
-            &control,
-            |spent| bar.inc(spent),
-            |arm, run| {
-                let (name, seed, words) = (arm.name(), run.seed(), words(&run));
-                bar.suspend(|| say(&format!("{name:<12} seed {seed}: {words}")));
-                runs.add(name, run);
-                // After each run, so that a kill loses none that is finished.
-                Ok(store_study(ron, &runs)?)
-            },
-        );
-        bar.finish_and_clear();
-        trusted(&*evaluator, result.map_err(|error| error.keeping(ron)))?;
-        store_study(ron, &runs)?;
-        Ok((files, runs))
-    }
-
-    /// Writes the table of all runs, and prints what they say.
-    pub fn report(
-        &self,
-        [ron, csv]: [PathBuf; 2],
-        records: &[Vec<String>],
-        claims: impl Fn() -> String,
-    ) -> Result<(), CliError> {
-        store_csv(&csv, records)?;
-        if self.args.json {
-            let line =
-                serde_json::json!({"done": true, "runs": records.len() - 1, "files": [ron, csv]});
-            return print(&format!("{line}\n"));
+        if !wanted.strategies.is_empty() {
+            methods.strategies = kinds("--strategies", &wanted.strategies)?;
         }
-        let [ron, csv] = [ron, csv].map(|file| file.display().to_string());
-        print(&format!("{}\nsaved to  {ron}\n          {csv}\n", claims()))
+        if !wanted.controllers.is_empty() {
+            methods.controllers = kinds("--controllers", &wanted.controllers)?;
+        }
     }
+    study.set_methods().map_err(|invalid| match invalid.field.as_str() {
+        "controllers" => of_flag("--controllers")(invalid),
+        _ => invalid,
+    })?;
+    study.baseline = wanted.baseline.clone().or(study.baseline);
+    for name in &wanted.arms {
+        study.named("--arms", name)?;
+    }
+    study.selected.clone_from(&wanted.arms);
+    if !wanted.suite.is_empty() {
+        study.suites = suites_named(&wanted.suite)?;
+    }
+    study.check().map_err(|invalid| match invalid.field.as_str() {
+        "baseline" => of_flag("--baseline")(invalid),
+        "first_seed" => of_flag("--seed")(invalid),
+        _ => invalid,
+    })?;
+    Ok(study)
+}
+
+/// The kinds that a flag names, each once, in the order in which they are named; none stand for all.
+fn kinds<K: Choices + PartialEq>(flag: &str, names: &[String]) -> Result<Vec<K>, Invalid> {
+    let mut found: Vec<K> = Vec::new();
+    for name in names.iter().filter(|name| *name != "all") {
+        let kind = K::named(flag, name.trim())
+            .map_err(|error| Invalid { allowed: format!("all, {}", error.allowed), ..error })?;
+        if !found.contains(&kind) {
+            found.push(kind);
+        }
+    }
+    Ok(found)
 }

@@ -3,8 +3,14 @@
 /// Experiments on worker threads, and the headless mode.
 pub mod run;
 
+/// Statistics over runs and trials.
+pub mod statistics;
+
 /// Plots as image files.
 pub mod plot;
+
+/// Studies: runs of several arms over several seeds, compared and held against demands.
+pub mod study;
 
 /// Champions in the formats of other programs.
 pub mod export;

@@ -1,8 +1,6 @@
-//! Plots as pictures: the report's Table 1 beside ours, a torque signal as in the report's Figure 4, and any figure
-//! that is given as data.
+//! Plots as pictures: a torque signal as in the report's Figure 4, and any figure that is given as data.
 
 mod colors;
-mod families;
 mod figure;
 mod film_text;
 mod labels;
@@ -14,20 +12,15 @@ use std::error::Error;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
-use crate::run::Quartiles;
-use crate::run::compare::{ComparisonRow, ComparisonTables};
-use crate::run::table1::{REPORT_MEANS, Table1};
 use snakes_core::evolve::Champion;
-use snakes_core::genome::{ControllerKind, JointCommands};
-use snakes_core::save::{CURVE_POINTS, Comparison, Picture};
+use snakes_core::genome::JointCommands;
+use snakes_core::save::Picture;
 use snakes_core::score::Rollout;
 
 pub use colors::{BAND_OPACITY, ink_on, ramp, role_color};
-pub use families::families;
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 pub use film_text::{FilmBand, FilmTitle, film_band, film_title};
 pub use labels::beside_line;
@@ -47,8 +40,6 @@ impl PlotError {
 
 /// Colour of our results, in all plots.
 const OURS: RGBColor = RGBColor(0x1f, 0x6f, 0xd0);
-/// Colour of the report's results.
-const THEIRS: RGBColor = RGBColor(0xd0, 0x6a, 0x10);
 /// Colour of text and axes.
 const INK: RGBColor = RGBColor(0x22, 0x26, 0x2e);
 /// Colour of grid lines and frames.
@@ -60,79 +51,6 @@ const TEXT_PIXELS: u32 = 18;
 /// The style of labels.
 fn text() -> TextStyle<'static> {
     (FONT, TEXT_PIXELS).into_font().color(&INK)
-}
-
-/// Plots the means of all seeds over the generations, their mean with one standard deviation, and the report's means.
-///
-/// # Errors
-/// The plotting library failed.
-pub fn table1(table: &Table1, title: &str) -> Result<Picture, PlotError> {
-    let spreads = table.spreads();
-    let ours: Vec<(f64, f64, f64)> = (1..)
-        .zip(&spreads)
-        .filter_map(|(generation, spread)| Some((f64::from(generation), (*spread)?)))
-        .map(|(generation, spread)| (generation, spread.mean, spread.std))
-        .collect();
-    let report: Vec<(f64, f64)> = (1..).map(f64::from).zip(REPORT_MEANS).collect();
-    let every_mean = table.seeds.iter().flat_map(|seed| &seed.means).filter_map(|mean| *mean);
-    let x_range = 0.7..(spreads.len().max(REPORT_MEANS.len()) as f64 + 0.3);
-    let y_range = padded(every_mean.chain(REPORT_MEANS));
-    draw((960, 600), |area| {
-        let mut chart = ChartBuilder::on(area)
-            .caption(title, (FONT, TITLE_PIXELS).into_font().color(&INK))
-            .margin(20)
-            .x_label_area_size(48)
-            .y_label_area_size(70)
-            .build_cartesian_2d(x_range, y_range)?;
-        chart
-            .configure_mesh()
-            .x_labels(spreads.len().max(REPORT_MEANS.len()))
-            .x_label_formatter(&|x| format!("{x:.0}"))
-            .x_desc("generation")
-            .y_label_formatter(&|mean| format!("{mean:.0}"))
-            .y_desc("mean fitness: y of the middle block, in m")
-            .light_line_style(WHITE)
-            .bold_line_style(FAINT)
-            .axis_style(INK)
-            .label_style(text())
-            .draw()?;
-        for seed in &table.seeds {
-            let line = (1..).map(f64::from).zip(&seed.means);
-            let line = line.filter_map(|(generation, mean)| Some((generation, (*mean)?)));
-            chart.draw_series(LineSeries::new(line, OURS.mix(0.22).stroke_width(1)))?;
-        }
-        let above = ours.iter().map(|&(x, mean, std)| (x, mean + std));
-        let below = ours.iter().rev().map(|&(x, mean, std)| (x, mean - std));
-        let band: Vec<(f64, f64)> = above.chain(below).collect();
-        chart.draw_series([Polygon::new(band, OURS.mix(0.14).filled())])?;
-        let mean = ours.iter().map(|&(x, mean, _)| (x, mean));
-        let sample = |color: RGBColor| {
-            move |(x, y)| PathElement::new(vec![(x, y), (x + 26, y)], color.stroke_width(3))
-        };
-        let seeds = table.seeds.len();
-        let label = format!("ours: mean of {seeds} seeds, band: one std.dev., thin: each seed");
-        chart
-            .draw_series(LineSeries::new(mean.clone(), OURS.stroke_width(3)).point_size(4))?
-            .label(label)
-            .legend(sample(OURS));
-        chart
-            .draw_series(LineSeries::new(report, THEIRS.stroke_width(3)).point_size(4))?
-            .label("the report's Table 1")
-            .legend(sample(THEIRS));
-        legend(&mut chart)
-    })
-}
-
-/// Draws the names of a chart's series into its upper left corner.
-fn legend<'a, 'b: 'a>(chart: &mut Axes<'a, 'b>) -> Result<(), Box<dyn Error>> {
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .background_style(WHITE.mix(0.85))
-        .border_style(FAINT)
-        .label_font(text())
-        .draw()?;
-    Ok(())
 }
 
 /// Plots the commands to the bend axis of a champion's first joint, as in the report's Figure 4.
@@ -188,66 +106,6 @@ fn applied_torques(champion: &Champion) -> JointCommands {
         }
     }
     JointCommands { quantity: "torque in N·m", least_range: 1000.0, is_held: false, joints }
-}
-
-/// Plots the learning curves of a comparison: a chart per controller, a line and a band per strategy.
-///
-/// # Errors
-/// The plotting library failed.
-pub fn comparison(comparison: &Comparison) -> Result<Picture, PlotError> {
-    let rows = comparison.rows();
-    let is_compared = |kind: &ControllerKind| rows.iter().any(|row| row.controller == *kind);
-    let controllers: Vec<ControllerKind> =
-        ControllerKind::ALL.into_iter().filter(is_compared).collect();
-    let curves: Vec<(&ComparisonRow<'_>, Vec<(usize, Quartiles)>)> =
-        rows.iter().map(|row| (row, row.curve())).collect();
-    let ends = curves.iter().flat_map(|(_, curve)| curve.iter().map(|(_, q)| [q.low, q.high]));
-    let y_range = padded(ends.flatten());
-    let budget = f64::from(comparison.evaluations);
-    let x_of = |point: usize| budget * (point + 1) as f64 / CURVE_POINTS as f64;
-    let columns = controllers.len().max(1);
-    draw((120 + 480 * columns as u32, 560), |area| {
-        let panels = area.split_evenly((1, columns));
-        for (column, (panel, controller)) in panels.iter().zip(&controllers).enumerate() {
-            let mut chart = ChartBuilder::on(panel)
-                .caption(controller.name(), (FONT, TITLE_PIXELS).into_font().color(&INK))
-                .margin(16)
-                .x_label_area_size(48)
-                .y_label_area_size(64)
-                .build_cartesian_2d(0.0..budget, y_range.clone())?;
-            chart
-                .configure_mesh()
-                .x_labels(5)
-                .x_label_formatter(&|x| format!("{x:.0}"))
-                .x_desc("evaluations")
-                .y_label_formatter(&|y| format!("{y:.0}"))
-                .y_desc(if column == 0 { "best fitness so far" } else { "" })
-                .light_line_style(WHITE)
-                .bold_line_style(FAINT)
-                .axis_style(INK)
-                .label_style(text())
-                .draw()?;
-            for (row, curve) in curves.iter().filter(|(row, _)| row.controller == *controller) {
-                let [red, green, blue] = row.strategy.info().color;
-                let color = RGBColor(red, green, blue);
-                let above = curve.iter().map(|&(point, q)| (x_of(point), q.high));
-                let below = curve.iter().rev().map(|&(point, q)| (x_of(point), q.low));
-                let band: Vec<(f64, f64)> = above.chain(below).collect();
-                chart.draw_series([Polygon::new(band, color.mix(0.13).filled())])?;
-                let median = curve.iter().map(|&(point, q)| (x_of(point), q.median));
-                chart
-                    .draw_series(LineSeries::new(median, color.stroke_width(3)))?
-                    .label(row.strategy.title())
-                    .legend(move |(x, y)| {
-                        PathElement::new(vec![(x, y), (x + 22, y)], color.stroke_width(3))
-                    });
-            }
-            if column == 0 {
-                legend(&mut chart)?;
-            }
-        }
-        Ok(())
-    })
 }
 
 /// Writes a line of text onto a picture, on a band along its lower edge.
@@ -314,9 +172,6 @@ fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     least - margin..most + margin
 }
 
-type Axes<'a, 'b> =
-    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
 type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 
 fn draw(
@@ -350,25 +205,6 @@ fn font() -> Result<(), PlotError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::table1::SeedResult;
-
-    #[test]
-    fn a_plot_shows_our_curve_and_the_reports() {
-        let seed = |shift: f64| SeedResult {
-            seed: 1,
-            means: REPORT_MEANS.map(|mean| Some(mean + shift)).to_vec(),
-            disqualified: vec![0; 6],
-            run_hash: 0,
-        };
-        let table = Table1 { seeds: vec![seed(-1.0), seed(2.0)] };
-        let picture = table1(&table, "Table 1").expect("drawn");
-        let has = |color: RGBColor| {
-            let color = [color.0, color.1, color.2];
-            picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color).count()
-        };
-        assert!(has(OURS) > 500, "{} pixels of ours", has(OURS));
-        assert!(has(THEIRS) > 500, "{} pixels of theirs", has(THEIRS));
-    }
 
     #[test]
     fn without_values_there_is_a_default_range() {

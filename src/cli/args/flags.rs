@@ -5,15 +5,10 @@ use std::path::PathBuf;
 use clap::Parser;
 use clap_complete::Shell;
 
-use super::body_study::BodyStudyArgs;
-use super::compare::CompareArgs;
-use super::engine_study::EngineStudyArgs;
 use super::export::ExportArgs;
-use super::families::FamiliesArgs;
-use super::poet_study::PoetStudyArgs;
 use super::render::RenderArgs;
 use super::robust::PerturbationArgs;
-use super::stairs_study::StairsStudyArgs;
+use super::study::StudyArgs;
 use snakes_core::save::built_in_stairs_names;
 use snakes_core::schema::Choices;
 use snakes_core::score::{ExamSuite, Fitness};
@@ -35,7 +30,7 @@ pub struct Args {
     /// Name of a preset (see `snakes presets`), or path of your own preset file
     #[arg(long, global = true, value_name = "NAME", help_heading = RUN)]
     pub(super) preset: Option<String>,
-    /// Seed of the run; the same seed gives the same bits [default: 1, of families and engine-study 201, of body-study and stairs-study 101, of poet-study 401; in the window, the first seed without a run]
+    /// Seed of the run; the same seed gives the same bits [default: 1; of a study, its own first seed; in the window, the first seed without a run]
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, help_heading = RUN)]
     pub(super) seed: Option<String>,
     /// Snakes per generation
@@ -109,7 +104,7 @@ pub struct Args {
     /// Folder of saved champions and runs [default: ./saves if it exists, else the platform's data folder]
     #[arg(long, global = true, value_name = "DIR", conflicts_with = "out", help_heading = FILES)]
     pub(super) saves: Option<PathBuf>,
-    /// Open the window with the result of `snakes compare`, a .ron file
+    /// Open the window with the runs of a study, the .ron file that `snakes study` writes
     #[arg(long, global = true, value_name = "FILE", help_heading = WINDOW)]
     pub comparison: Option<PathBuf>,
     /// Size of the window, in physical pixels
@@ -186,27 +181,8 @@ pub enum Subcommand {
         /// Saved champion
         file: PathBuf,
     },
-    /// Measure, over several seeds, whether protecting new bodies and an archive of bodies pay while bodies evolve
-    BodyStudy(BodyStudyArgs),
-    /// Run POET, and measure whether it solves stairs that a direct search does not
-    PoetStudy(PoetStudyArgs),
-    /// Measure, over several seeds, how many of the held-out stairs snakes climb that learned on many stairs, or on one
-    StairsStudy(StairsStudyArgs),
-    /// Measure whether snakes move and learn alike in the physics engines rapier and lanes
-    EngineStudy(EngineStudyArgs),
-    /// Compare search strategies and controllers under equal budgets
-    Compare(CompareArgs),
-    /// Train every family of controllers over several seeds, examine the champions, and hold the results against demands
-    Families(FamiliesArgs),
-    /// Run the report's protocol with several seeds, and print its Table 1 beside the result
-    Table1 {
-        /// Number of seeds
-        #[arg(long, value_name = "N", default_value_t = 10)]
-        seeds: u64,
-        /// First seed
-        #[arg(long, value_name = "N", default_value_t = 1)]
-        first_seed: u64,
-    },
+    /// Compare methods over several seeds: built-in studies, or your own as a file; without a name, list them
+    Study(StudyArgs),
     /// Draw the champion of each generation of a run, and one torque signal, as PNG files; opens no window
     Figures {
         /// Folder of the run, as `snakes --no-render` prints it

@@ -22,8 +22,8 @@ impl Args {
     /// The preset that is named, or the subcommand's default, as it stands in its file.
     pub fn preset(&self) -> Result<Preset, CliError> {
         let default = match self.command {
-            // These are about the report's run.
-            Some(Subcommand::Table1 { .. } | Subcommand::Bench { .. }) => "report",
+            // It is about the report's run.
+            Some(Subcommand::Bench { .. }) => "report",
             _ => DEFAULT_PRESET,
         };
         Ok(load_preset(self.preset.as_deref().unwrap_or(default))?)
@@ -112,6 +112,37 @@ impl Args {
         check_effects(settings, paths)
     }
 
+    /// The preset that is named.
+    pub fn named_preset(&self) -> Option<&str> {
+        self.preset.as_deref()
+    }
+
+    /// The stairs that are named.
+    pub fn named_stairs(&self) -> Option<&str> {
+        self.stairs.as_deref()
+    }
+
+    /// The settings that `--population`, `--generations`, `--fitness` and `--set` change, by their names.
+    pub fn changes(&self) -> Result<Vec<(&str, String)>, CliError> {
+        let mut changes = Vec::new();
+        for (flag, name, text) in [
+            ("--population", "evolution.population", &self.population),
+            ("--generations", "evolution.generations", &self.generations),
+        ] {
+            if let Some(text) = text {
+                changes.push((name, number::<u32>(flag, text, WHOLE)?.to_string()));
+            }
+        }
+        if let Some(text) = &self.fitness {
+            changes.push(("trial.fitness", Fitness::named("--fitness", text)?.to_string()));
+        }
+        for text in &self.set {
+            let (name, value) = named_value(text)?;
+            changes.push((name, value.to_owned()));
+        }
+        Ok(changes)
+    }
+
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
         if let Some(text) = &self.population {
@@ -131,11 +162,7 @@ impl Args {
         }
         let mut changes = Vec::new();
         for text in &self.set {
-            let (path, value) = text.split_once('=').ok_or_else(|| {
-                let allowed = "FIELD=VALUE, such as surface.friction=0.8";
-                Invalid::new("--set", format!("{text:?}"), allowed)
-            })?;
-            changes.push((path.trim(), value.trim()));
+            changes.push(named_value(text)?);
         }
         let changed = with_fields(&settings, changes).map_err(|invalid| {
             // The same error without --set comes from another flag.
@@ -165,6 +192,15 @@ impl Args {
             None => invalid,
         }
     }
+}
+
+/// Name and value of a setting, from `FIELD=VALUE`.
+fn named_value(text: &str) -> Result<(&str, &str), Invalid> {
+    let (path, value) = text.split_once('=').ok_or_else(|| {
+        let allowed = "FIELD=VALUE, such as surface.friction=0.8";
+        Invalid::new("--set", format!("{text:?}"), allowed)
+    })?;
+    Ok((path.trim(), value.trim()))
 }
 
 #[cfg(test)]

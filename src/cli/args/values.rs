@@ -17,7 +17,7 @@ use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
 /// Reads a number; `allowed` is what the error calls one.
-pub(super) fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
+pub fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
     text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
 }
 

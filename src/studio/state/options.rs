@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bevy::prelude::*;
 
 use crate::studio::ui::theme::Theme;
-use snakes_core::save::{Comparison, LoadedChampion, PreferencesFile, SavesFolder};
+use snakes_core::save::{LoadedChampion, PreferencesFile, SavesFolder, StudyRuns};
 #[cfg(test)]
 use snakes_lab::run::LocalPool;
 use snakes_lab::run::{Evaluator, RunSource};
@@ -26,8 +26,8 @@ pub struct Options {
     pub champions: Vec<(String, LoadedChampion)>,
     /// Problems with the files that the user opened, to show in the window.
     pub problems: Vec<String>,
-    /// A comparison of methods to show.
-    pub comparison: Option<Comparison>,
+    /// A study to show.
+    pub comparison: Option<StudyRuns>,
     /// Size of the window, in logical pixels; `None`: as last time.
     pub window_size: Option<(u32, u32)>,
     /// Colour theme; `None`: as last time.
@@ -64,6 +64,6 @@ impl Options {
     }
 }
 
-/// The comparison of methods that the studio was opened with.
+/// The study that the studio was opened with.
 #[derive(Resource, Debug, Clone, Default)]
-pub(crate) struct OpenedComparison(pub Option<Comparison>);
+pub(crate) struct OpenedComparison(pub Option<StudyRuns>);

@@ -20,6 +20,16 @@ pub struct Champion {
 }
 
 impl Champion {
+    /// Way of its middle towards the stairs, in m.
+    pub fn way_m(&self) -> f32 {
+        self.evaluation.centre_y_m - self.trial.middle_start_y_m(&self.genome)
+    }
+
+    /// Steps that its middle limb had climbed at the end.
+    pub fn steps_climbed(&self) -> u32 {
+        self.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed)
+    }
+
     /// The body that it has in its trial.
     pub fn body(&self) -> BodyPlan {
         self.trial.agent.body_plan(&self.genome)

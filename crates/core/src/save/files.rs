@@ -91,6 +91,9 @@ pub enum SaveError {
     /// No built-in stairs and no file have this name.
     #[error("{0}")]
     UnknownStairs(Invalid),
+    /// A study does not exist, or has a value that is not allowed.
+    #[error("{0}")]
+    Study(Invalid),
     /// A value in the file is not allowed.
     #[error("{}: {source}", path.display())]
     Invalid {
@@ -178,7 +181,12 @@ pub fn text_of(path: &Path, bytes: Vec<u8>) -> Result<String, SaveError> {
 
 /// Parses RON; the error names the line and column.
 pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, SaveError> {
-    ron::from_str(text).map_err(|error| SaveError::Damaged {
+    ron::from_str(text).map_err(|error| damaged(path, error))
+}
+
+/// The error of a text that is no RON of the expected type.
+pub fn damaged(path: &Path, error: ron::error::SpannedError) -> SaveError {
+    SaveError::Damaged {
         path: path.to_owned(),
         line: error.span.start.line,
         column: error.span.start.col,
@@ -191,7 +199,7 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
             }
             code => single_line(&code.to_string()),
         },
-    })
+    }
 }
 
 /// Shortens a parser's message to one line without control characters: it may quote the file, which must not be able to

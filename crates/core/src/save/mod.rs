@@ -6,16 +6,12 @@
 //! format stays readable (see `v5`).
 //! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
 
-mod body_study;
 mod champion;
 mod champion_exam;
 mod change;
 mod checkpoint;
-mod comparison;
 mod copies;
 mod engine_2;
-mod engine_study;
-mod families;
 mod file_structs;
 mod files;
 mod folder;
@@ -36,13 +32,11 @@ mod run;
 mod run_name;
 mod same_engine;
 mod stairs_file;
-mod stairs_study;
 mod study;
 mod v5;
 mod whole_file;
 mod whole_folder;
 
-pub use body_study::{BodyStudyRun, CreatureStudyRun};
 pub use champion::{
     LoadedChampion, champion_text, load_champion, load_champion_and_note, parse_champion,
     shipped_champion, store_champion,
@@ -50,16 +44,7 @@ pub use champion::{
 pub use champion_exam::{check_examinable, exam_in_words, store_exam};
 pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
-pub use comparison::{
-    CURVE_POINTS, ComparedBest, ComparedRun, Comparison, MAX_COMPARED_RUNS, load_comparison,
-    store_comparison,
-};
 pub use copies::ChampionCopies;
-pub use engine_study::EngineStudyRun;
-pub use families::{
-    FamilyChampion, FamilyProtocol, FamilyRun, FamilyRuns, MAX_FAMILY_RUNS, RuleUse, TrainedFamily,
-    load_families, store_families,
-};
 pub use files::{SaveError, hash_of, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
@@ -84,8 +69,10 @@ pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
     NamedStairs, built_in_stairs, built_in_stairs_names, is_stairs_file, load_stairs, parse_stairs,
 };
-pub use stairs_study::StairsStudyRun;
-pub use study::{MAX_STUDY_RUNS, StudiedRun, StudyRuns, load_study, store_study};
+pub use study::{
+    CURVE_POINTS, MAX_STUDY_RUNS, Protocol, StudiedArm, StudiedRun, StudyRuns, StudyValue,
+    load_definition, load_study, parse_definition, store_study,
+};
 pub use v5::RecordedV5;
 pub use whole_file::UnfinishedFile;
 pub use whole_folder::UnfinishedFolder;

@@ -1,89 +1,197 @@
-//! The finished runs of a study, as RON: `body-study.ron`, `creature-study.ron`.
+//! The finished runs of a study as RON, and studies that users write.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::files::{Header, parse, read_bytes, store_ron, text_of};
+use super::files::{Header, damaged, parse, read_bytes, read_text, store_ron, text_of};
 use crate::check::{Invalid, name, within};
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
+use crate::evolve::StrategyKind;
+use crate::genome::ControllerKind;
 use crate::schema::is_default;
+use crate::score::{FITNESS_RANGE, Fitness};
 
+const KIND: &str = "snakes-and-stairs study";
 const FORMAT: u32 = 1;
 
-/// Maximum number of runs in a file; each takes about 1 kB.
+/// Maximum number of runs in a file; each takes about 2 kB.
 pub const MAX_STUDY_RUNS: usize = 10_000;
 /// Maximum size of a file that is read, in MiB.
 const LARGEST_MIB: u64 = 64;
+/// Maximum number of values of a run, and of numbers in one of them.
+const MOST_VALUES: usize = 10_000;
+/// Numbers of runs lie in this range.
+const NUMBERS: std::ops::RangeInclusive<f64> = -1.0e15..=1.0e15;
 
-/// The measurements of a run of a study.
-pub trait StudiedRun: Serialize + DeserializeOwned {
-    /// What files of the study say that they are.
-    const KIND: &'static str;
+/// Number of points of a learning curve: the budget is divided into this number of equal parts.
+pub const CURVE_POINTS: usize = 100;
 
-    /// Its seed.
-    fn seed(&self) -> u64;
-
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// The first that is not allowed.
-    fn check(&self) -> Result<(), Invalid>;
-}
-
-/// The runs of a study.
+/// The finished runs of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StudyRuns<R> {
+pub struct StudyRuns {
     kind: String,
     format: u32,
     engine: u32,
     #[serde(default, skip_serializing_if = "is_default")]
     processors: Processors,
-    /// Fingerprint of the settings that all runs have in common; the study continues only with the same settings.
-    pub settings: String,
-    /// Maximum number of evaluations of each run.
-    pub evaluations: u32,
-    /// The finished runs, each with the name of its arm, in the order of arms and seeds.
-    runs: Vec<(String, R)>,
+    /// The name of the study.
+    pub study: String,
+    /// The arms that have runs, in the order in which they were added.
+    pub arms: Vec<StudiedArm>,
 }
 
-impl<R: StudiedRun> StudyRuns<R> {
-    /// A study without runs.
-    pub fn new(settings: String, evaluations: u32) -> Self {
-        Self {
-            kind: R::KIND.to_owned(),
-            format: FORMAT,
-            engine: ENGINE_VERSION,
-            processors: Processors::THIS,
-            settings,
-            evaluations,
-            runs: Vec::new(),
+/// The runs of one arm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudiedArm {
+    /// Its name.
+    pub name: String,
+    /// What all its runs have in common.
+    pub protocol: Protocol,
+    /// Its finished runs, in the order of their seeds.
+    pub runs: Vec<StudiedRun>,
+}
+
+/// What decides the runs of an arm, apart from their seeds. An arm continues only under the same protocol.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Protocol {
+    /// Name of the preset from which its settings come.
+    pub preset: String,
+    /// Fingerprint of its settings: see [`settings_fingerprint`](super::settings_fingerprint).
+    pub settings: String,
+    /// The strategy.
+    pub strategy: StrategyKind,
+    /// The controller.
+    pub controller: ControllerKind,
+    /// The fitness that was maximised.
+    pub fitness: Fitness,
+    /// Evaluations that a run may spend.
+    pub budget: u64,
+    /// Whether a run ends with the generation that reaches the goal.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub stops_at_goal: bool,
+}
+
+/// One run of an arm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudiedRun {
+    /// The seed.
+    pub seed: u64,
+    /// The measured values by their names. What does not exist, such as the first landing of a run without one, is missing.
+    pub values: BTreeMap<String, StudyValue>,
+    /// Best fitness so far after each hundredth of the budget; empty where it was not recorded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<Option<f32>>,
+    /// Hash over the run.
+    pub run_hash: String,
+}
+
+/// A measured value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum StudyValue {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+    /// A list, such as a number for each generation.
+    Numbers(Vec<Option<f64>>),
+}
+
+impl StudiedRun {
+    /// A value that is a number; none if the run has no such value.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.values.get(name)? {
+            StudyValue::Number(number) => Some(*number),
+            StudyValue::Text(_) | StudyValue::Numbers(_) => None,
         }
     }
 
-    /// The runs of an arm, in the order of their seeds.
-    pub fn of_arm(&self, arm: &str) -> Vec<&R> {
-        self.runs.iter().filter(|(name, _)| name == arm).map(|(_, run)| run).collect()
+    /// A value that is a list; empty if the run has no such value.
+    pub fn numbers(&self, name: &str) -> &[Option<f64>] {
+        match self.values.get(name) {
+            Some(StudyValue::Numbers(numbers)) => numbers,
+            _ => &[],
+        }
     }
 
-    /// Adds a run, in place of an earlier one of the same arm and seed.
-    pub fn add(&mut self, arm: &str, run: R) {
-        self.runs.retain(|(name, earlier)| name != arm || earlier.seed() != run.seed());
-        self.runs.push((arm.to_owned(), run));
-        self.runs.sort_by(|(a, run), (b, other)| a.cmp(b).then(run.seed().cmp(&other.seed())));
+    fn check(&self) -> Result<(), Invalid> {
+        within("number of values", self.values.len(), 0..=MOST_VALUES)?;
+        for (name, value) in &self.values {
+            match value {
+                StudyValue::Number(number) => within(name, *number, NUMBERS)?,
+                StudyValue::Text(text) => within(name, text.len(), 0..=1000)?,
+                StudyValue::Numbers(numbers) => {
+                    within(name, numbers.len(), 0..=MOST_VALUES)?;
+                    let mut numbers = numbers.iter().flatten();
+                    numbers.try_for_each(|number| within(name, *number, NUMBERS))?;
+                }
+            }
+        }
+        if !self.curve.is_empty() {
+            within("curve", self.curve.len(), CURVE_POINTS..=CURVE_POINTS)?;
+        }
+        self.curve.iter().flatten().try_for_each(|&fitness| within("curve", fitness, FITNESS_RANGE))
+    }
+}
+
+impl StudyRuns {
+    /// A study without runs.
+    pub fn new(study: &str) -> Self {
+        Self {
+            kind: KIND.to_owned(),
+            format: FORMAT,
+            engine: ENGINE_VERSION,
+            processors: Processors::THIS,
+            study: study.to_owned(),
+            arms: Vec::new(),
+        }
+    }
+
+    /// An arm, if it has runs.
+    pub fn arm(&self, name: &str) -> Option<&StudiedArm> {
+        self.arms.iter().find(|arm| arm.name == name)
+    }
+
+    /// The runs of an arm, in the order of their seeds.
+    pub fn of_arm(&self, name: &str) -> &[StudiedRun] {
+        self.arm(name).map_or(&[], |arm| &arm.runs)
+    }
+
+    /// Inserts a run in the order of the seeds, in the place of an earlier one with its seed. Earlier runs under another
+    /// protocol are removed.
+    pub fn add(&mut self, name: &str, protocol: &Protocol, run: StudiedRun) {
+        let place = self.arms.iter().position(|arm| arm.name == name).unwrap_or_else(|| {
+            let (name, protocol) = (name.to_owned(), protocol.clone());
+            self.arms.push(StudiedArm { name, protocol, runs: Vec::new() });
+            self.arms.len() - 1
+        });
+        let arm = &mut self.arms[place];
+        if arm.protocol != *protocol {
+            (arm.protocol, arm.runs) = (protocol.clone(), Vec::new());
+        }
+        arm.runs.retain(|earlier| earlier.seed != run.seed);
+        arm.runs.push(run);
+        arm.runs.sort_by_key(|run| run.seed);
     }
 
     fn check(&self) -> Result<(), Invalid> {
         Engine { version: self.engine, processors: self.processors }.check_this()?;
-        within("evaluations", self.evaluations, 1..=u32::MAX)?;
-        within("runs", self.runs.len(), 0..=MAX_STUDY_RUNS)?;
-        self.runs.iter().try_for_each(|(arm, run)| {
-            name("arm", arm)?;
-            run.check()
-        })
+        name("study", &self.study)?;
+        within("runs", self.arms.iter().map(|arm| arm.runs.len()).sum(), 0..=MAX_STUDY_RUNS)?;
+        for arm in &self.arms {
+            name("arm", &arm.name)?;
+            arm.runs.iter().try_for_each(StudiedRun::check)?;
+        }
+        Ok(())
     }
 }
 
@@ -91,10 +199,10 @@ impl<R: StudiedRun> StudyRuns<R> {
 ///
 /// # Errors
 /// The file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
-pub fn load_study<R: StudiedRun>(path: &Path) -> Result<StudyRuns<R>, SaveError> {
+pub fn load_study(path: &Path) -> Result<StudyRuns, SaveError> {
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
-    Header::check(path, &text, R::KIND, FORMAT)?;
-    let runs: StudyRuns<R> = parse(path, &text)?;
+    Header::check(path, &text, KIND, FORMAT)?;
+    let runs: StudyRuns = parse(path, &text)?;
     runs.check().map_err(SaveError::invalid(path))?;
     Ok(runs)
 }
@@ -103,6 +211,94 @@ pub fn load_study<R: StudiedRun>(path: &Path) -> Result<StudyRuns<R>, SaveError>
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn store_study<R: StudiedRun>(path: &Path, runs: &StudyRuns<R>) -> Result<(), SaveError> {
+pub fn store_study(path: &Path, runs: &StudyRuns) -> Result<(), SaveError> {
     store_ron(path, runs)
+}
+
+/// Reads the definition of a study that a user wrote. Optional values need no `Some`.
+///
+/// # Errors
+/// The file is unreadable, or no RON of this type.
+pub fn load_definition<T: DeserializeOwned>(path: &Path) -> Result<T, SaveError> {
+    parse_definition(path, &read_text(path)?)
+}
+
+/// The definition of a study from its text; `path` stands in errors.
+///
+/// # Errors
+/// It is no RON of this type.
+pub fn parse_definition<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, SaveError> {
+    let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| damaged(path, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn protocol(settings: &str) -> Protocol {
+        Protocol {
+            preset: "climb".to_owned(),
+            settings: settings.to_owned(),
+            strategy: StrategyKind::CmaEs,
+            controller: ControllerKind::Gait,
+            fitness: Fitness::Climb,
+            budget: 64,
+            stops_at_goal: false,
+        }
+    }
+
+    fn run(seed: u64) -> StudiedRun {
+        let values = [
+            ("fitness", StudyValue::Number(6.5)),
+            ("steps_climbed", StudyValue::Number(2.0)),
+            ("tree", StudyValue::Text("O(U)".to_owned())),
+            ("generation_means", StudyValue::Numbers(vec![Some(1.5), None, Some(2.0)])),
+        ];
+        StudiedRun {
+            seed,
+            values: values.map(|(name, value)| (name.to_owned(), value)).into(),
+            curve: vec![Some(1.0); CURVE_POINTS],
+            run_hash: "0".repeat(16),
+        }
+    }
+
+    #[test]
+    fn runs_are_kept_by_seed_and_a_new_protocol_replaces_those_of_the_old_one() {
+        let mut runs = StudyRuns::new("test");
+        for seed in [3, 1, 2, 1] {
+            runs.add("a", &protocol("x"), run(seed));
+        }
+        let seeds = |runs: &StudyRuns| -> Vec<u64> {
+            runs.of_arm("a").iter().map(|run| run.seed).collect()
+        };
+        assert_eq!(seeds(&runs), [1, 2, 3]);
+        runs.add("b", &protocol("x"), run(4));
+        runs.add("a", &protocol("y"), run(9));
+        assert_eq!((seeds(&runs), runs.arms.len()), (vec![9], 2));
+        assert!(runs.of_arm("c").is_empty());
+    }
+
+    #[test]
+    fn a_file_is_read_back_and_one_with_values_out_of_range_refused_by_their_names() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("study.ron");
+        let mut runs = StudyRuns::new("test");
+        runs.add("xcs", &protocol("x"), run(1));
+        store_study(&path, &runs).expect("written");
+        assert_eq!(load_study(&path).expect("read"), runs);
+        let text = fs::read_to_string(&path).expect("read");
+        for (from, to, message) in [
+            ("\"fitness\": 6.5", "\"fitness\": NaN", "fitness is NaN; allowed: "),
+            ("\"steps_climbed\": 2.0", "\"steps_climbed\": 1e300", "steps_climbed is 1"),
+            ("\"xcs\"", "\"../xcs\"", "arm is \"../xcs\"; allowed: "),
+            ("stairs study\"", "stairs comparison\"", "kind is"),
+        ] {
+            assert!(text.contains(from), "{from}: {text}");
+            fs::write(&path, text.replace(from, to)).expect("written");
+            let refusal = load_study(&path).expect_err("refused").to_string();
+            assert!(refusal.contains(message), "{refusal}");
+        }
+    }
 }

@@ -171,7 +171,7 @@ fn jobs_together(jobs: usize, workers: usize) -> usize {
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
-pub(super) fn evaluate_in_order(
+pub(crate) fn evaluate_in_order(
     trials: &[Trial],
     jobs: &[Job<'_>],
     evaluator: &dyn Evaluator,

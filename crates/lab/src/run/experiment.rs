@@ -16,7 +16,7 @@ use super::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
 use super::lineage::{Ancestor, Ancestry, Generation, Lineage};
 use super::report::{EvaluatedGeneration, GenerationReport};
 use super::run_control::{Cancelled, RunControl};
-use choice::choose_champion;
+use choice::{CANDIDATES, choose_champion};
 use ladder::Ladder;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{
@@ -40,6 +40,7 @@ pub struct Experiment {
     front: Front,
     finished: u32,
     evaluated: u64,
+    simulations: u64,
     hash: Xxh3Default,
     best: Option<Champion>,
     /// The best individuals of the last generation, the best first.
@@ -67,6 +68,7 @@ impl Experiment {
             front: Front::default(),
             finished: 0,
             evaluated: 0,
+            simulations: 0,
             hash: Xxh3Default::new(),
             best: None,
             leaders: Vec::new(),
@@ -148,6 +150,11 @@ impl Experiment {
     /// Number of evaluations in the finished generations.
     pub fn evaluated(&self) -> u64 {
         self.evaluated
+    }
+
+    /// Number of trials that this session has simulated: each repeat of an evaluation, and those that chose champions.
+    pub fn simulations(&self) -> u64 {
+        self.simulations
     }
 
     /// A copy of the strategy's archive of elites, if it has one.
@@ -281,6 +288,11 @@ impl Experiment {
         }
         let mut champion =
             choose_champion(&evaluated, &ranking, evaluator, control, |of| self.rank(of))?;
+        let repeats = |trial: &Trial| u64::from(trial.repeats.trials.max(1));
+        let of_choice = ranking.iter().take(CANDIDATES);
+        let of_choice = of_choice.filter_map(|&index| trials.of(index).that_chooses_champions());
+        let simulated = (0..genomes.len()).map(|index| repeats(trials.of(index))).sum::<u64>()
+            + of_choice.map(|trial| repeats(&trial)).sum::<u64>();
         if trials.are_own() {
             // There are thousands of generations. Those that are better than all before are enough.
             champion = champion.filter(|champion| self.is_better(champion));
@@ -319,6 +331,7 @@ impl Experiment {
             }
         }
         self.evaluated += evaluations.len() as u64;
+        self.simulations += simulated;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());

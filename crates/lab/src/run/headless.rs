@@ -64,6 +64,9 @@ pub enum HeadlessError {
         /// The message of the panic.
         message: String,
     },
+    /// A plot could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] crate::plot::PlotError),
     /// The interrupt key was pressed.
     #[error("cancelled; {}", match kept {
         Some(path) => format!("the best so far is saved to {}", path.display()),

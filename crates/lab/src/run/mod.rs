@@ -3,15 +3,10 @@
 mod background;
 mod background_task;
 pub mod bench;
-pub mod body_study;
-pub mod compare;
-pub mod creature_study;
-pub mod engine_study;
 mod evaluator;
 pub mod evaluators;
 pub mod exam;
 mod experiment;
-pub mod families;
 pub mod headless;
 mod json;
 mod library_reader;
@@ -19,26 +14,21 @@ mod lineage;
 mod lookahead;
 pub mod markdown;
 pub mod mujoco;
-mod paired;
 mod panics;
 mod parallel_runs;
-pub mod poet_study;
 pub mod progress_bar;
 mod recorder;
 mod replay;
 mod report;
 pub mod robust;
 mod run_control;
-mod sign_test;
-pub mod stairs_study;
-pub mod study;
-pub mod table1;
 mod tune;
 pub mod verify;
 mod whole_runs;
 
 pub use background::{BackgroundRun, Exploration, OpenedRun, RunEvent};
 pub use background_task::{BackgroundTask, TaskProgress};
+pub(crate) use evaluator::evaluate_in_order;
 pub use evaluator::{
     EvaluationResult, Evaluator, Job, LocalPool, THREADS_RANGE, WorkersError, available_cores,
     evaluate_caught, examine_caught,
@@ -52,6 +42,7 @@ pub use panics::caught;
 pub use parallel_runs::{ParallelRuns, ParallelRunsEvent};
 pub use recorder::{ChangeError, RecordedRun, RunRecorder, RunSource};
 pub use replay::{difference_from_record, replay};
-pub use report::{Crash, GenerationReport, Quartiles, Statistics};
+pub use report::{Crash, GenerationReport, Statistics};
 pub use run_control::{Cancelled, RunControl};
 pub use tune::{Tuned, tune_controller};
+pub(crate) use whole_runs::whole_runs;

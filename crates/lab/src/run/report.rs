@@ -7,6 +7,7 @@ use std::time::Duration;
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::experiment::GenerationTrials;
+use crate::statistics::Quartiles;
 use snakes_core::evolve::{Champion, Origin, RunPlan, StairsTree};
 use snakes_core::genome::Genome;
 use snakes_core::save::{
@@ -302,42 +303,6 @@ impl Statistics {
     }
 }
 
-/// Median and quartiles.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quartiles {
-    /// A quarter is below.
-    pub low: f64,
-    /// Half is below.
-    pub median: f64,
-    /// Three quarters are below.
-    pub high: f64,
-}
-
-impl Quartiles {
-    /// The quartiles of some values, by linear interpolation between them (definition 7 of Hyndman and Fan, The
-    /// American Statistician 50 (1996)); none if there are no values.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let mut values: Vec<f64> = values.into_iter().collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)?;
-        let at = |share: f64| {
-            let place = share * last as f64;
-            let (below, part) = (place as usize, place - (place as usize) as f64);
-            let (low, high) = (values[below], values[(below + 1).min(last)]);
-            // Infinity times zero is not a number.
-            if part == 0.0 || low == high { low } else { low + (high - low) * part }
-        };
-        Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
-    }
-
-    /// The median with the quartiles of some values, such as "3 [1 4]"; a dash if there are no values.
-    pub fn words(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
-        Self::of(values).map_or("–".to_owned(), |Self { low, median, high }| {
-            format!("{median:.digits$} [{low:.digits$} {high:.digits$}]")
-        })
-    }
-}
-
 /// The hash of a generation: every evaluation's bits, in the order of the individuals.
 fn generation_hash(evaluations: &[Evaluation]) -> u64 {
     let mut hash = Xxh3Default::new();
@@ -415,14 +380,5 @@ mod tests {
     fn the_hash_depends_on_the_order_of_the_individuals() {
         let [a, b] = [evaluation(1.0, None), evaluation(2.0, None)];
         assert_ne!(generation_hash(&[a, b]), generation_hash(&[b, a]));
-    }
-
-    #[test]
-    fn quartiles_are_those_of_definition_7() {
-        let quartiles = Quartiles::of([4.0, 1.0, 3.0, 2.0]).expect("four values");
-        assert_eq!((quartiles.low, quartiles.median, quartiles.high), (1.75, 2.5, 3.25));
-        let with_infinity = Quartiles::of([1.0, 2.0, f64::INFINITY]).expect("three values");
-        assert_eq!((with_infinity.low, with_infinity.median), (1.5, 2.0));
-        assert_eq!(Quartiles::of([]), None);
     }
 }

@@ -17,17 +17,6 @@ pub struct Robustness {
     pub reached: Vec<u32>,
 }
 
-/// A share and its 95 % confidence interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share {
-    /// The observed share.
-    pub seen: f64,
-    /// Lower end of the interval.
-    pub least: f64,
-    /// Upper end of the interval.
-    pub most: f64,
-}
-
 /// Runs a champion through `trials` perturbed trials, drawn from `seed`.
 ///
 /// # Errors
@@ -52,37 +41,11 @@ pub fn robustness(
     })
 }
 
-impl Share {
-    /// The share of `count` in `of`, with the score interval of Wilson (Probable inference, the law of
-    /// succession, and statistical inference, 1927) at 95 %.
-    pub fn of(count: u32, of: u32) -> Self {
-        // The 97.5th percentile of the normal distribution.
-        const Z: f64 = 1.959_963_984_540_054;
-        let n = f64::from(of.max(1));
-        let seen = f64::from(count) / n;
-        let middle = (seen + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
-        let half = Z / (1.0 + Z * Z / n) * (seen * (1.0 - seen) / n + Z * Z / (4.0 * n * n)).sqrt();
-        Self { seen, least: (middle - half).max(0.0), most: (middle + half).min(1.0) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::run::LocalPool;
     use snakes_core::save::shipped_champion;
-
-    #[test]
-    fn the_interval_is_the_score_interval_of_wilson() {
-        // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263 and 15 of 148.
-        for (count, of, least, most) in
-            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)]
-        {
-            let share = Share::of(count, of);
-            assert!((share.least - least).abs() < 5e-5, "{share:?}");
-            assert!((share.most - most).abs() < 5e-5, "{share:?}");
-        }
-    }
 
     #[test]
     fn only_perturbed_trials_differ_from_the_record() {

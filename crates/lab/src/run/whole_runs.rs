@@ -12,7 +12,7 @@ use super::run_control::{Cancelled, RunControl};
 ///
 /// # Errors
 /// `control` was cancelled, workers could not be started, or `done` failed.
-pub(super) fn whole_runs<T: Send>(
+pub(crate) fn whole_runs<T: Send>(
     count: usize,
     evaluator: &dyn Evaluator,
     control: &RunControl,

@@ -129,7 +129,7 @@ impl ChartKind {
             Self::Archive => "The best snake for each kind of behaviour will appear here.",
             Self::Runs => "The curves of this run will appear here after the first generation.",
             Self::Methods => {
-                "No comparison is open. \"snakes compare\" creates one, \"snakes --comparison FILE\" opens it."
+                "No comparison is open. \"snakes study methods\" creates one, \"snakes --comparison FILE\" opens it."
             }
         }
     }

@@ -35,7 +35,7 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
-use snakes_core::save::Comparison;
+use snakes_core::save::StudyRuns;
 use snakes_lab::plot::Figure;
 
 use archive_map::archive_map;
@@ -62,8 +62,8 @@ pub(super) struct ChartsPanel {
 }
 
 impl ChartsPanel {
-    /// Panel with an optional comparison of methods.
-    pub fn new(comparison: Option<&Comparison>) -> Self {
+    /// Panel with an optional study of methods.
+    pub fn new(comparison: Option<&StudyRuns>) -> Self {
         Self {
             // A comparison that was given at start is shown first.
             kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },

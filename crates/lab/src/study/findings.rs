@@ -1,0 +1,62 @@
+//! What a study measures beside its runs: motions of newborns, and built-in champions in the other engine.
+
+use super::definition::Study;
+use super::newborns::{NewbornStatistics, newborn_statistics};
+use crate::run::exam::examine;
+use crate::run::headless::{HeadlessError, say};
+use crate::run::{Cancelled, Evaluator, RunControl};
+use snakes_core::save::library::shipped_champions;
+use snakes_core::save::load_preset;
+use snakes_core::score::ExamSuite;
+
+/// What was measured beside the runs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    /// Motions of newborns.
+    pub newborns: Vec<NewbornStatistics>,
+    /// Number of newborns that are healthy in both engines, and of all.
+    pub healthy: [usize; 2],
+    /// The share of its way that each built-in champion keeps in the other engine, by its name.
+    pub built_in: Vec<(String, f32)>,
+}
+
+impl Findings {
+    /// The greatest relative difference of a quartile of newborns between the engines; none without newborns.
+    pub fn greatest_difference(&self) -> Option<f64> {
+        let differences: Option<Vec<f64>> =
+            self.newborns.iter().map(NewbornStatistics::greatest_difference).collect();
+        differences?.into_iter().reduce(f64::max)
+    }
+
+    /// Measures what a study asks for.
+    ///
+    /// # Errors
+    /// `control` was cancelled, or the study's preset cannot be read.
+    pub(super) fn of(
+        study: &Study,
+        evaluator: &dyn Evaluator,
+        control: &RunControl,
+    ) -> Result<Self, HeadlessError> {
+        let cancelled = |Cancelled| HeadlessError::Cancelled { kept: None };
+        let mut findings = Self::default();
+        if let Some(count) = study.newborns {
+            say(&format!("{count} newborns in both engines"));
+            let settings = load_preset(&study.preset)?.settings;
+            let (newborns, healthy) =
+                newborn_statistics(&settings, study.first_seed, count, evaluator, control)
+                    .map_err(cancelled)?;
+            (findings.newborns, findings.healthy) = (newborns, [healthy, count as usize]);
+        }
+        if study.built_in_champions {
+            say("built-in champions in the other engine");
+            for (name, loaded) in shipped_champions() {
+                let suites = [ExamSuite::Engine];
+                let results =
+                    examine(&loaded.champion, &suites, evaluator, control).map_err(cancelled)?;
+                let kept = results.first().map(|result| (name.to_owned(), result.kept));
+                findings.built_in.extend(kept);
+            }
+        }
+        Ok(findings)
+    }
+}

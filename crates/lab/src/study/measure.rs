@@ -1,0 +1,537 @@
+//! What is measured of an arm's runs, as a number and in words.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Deserialize;
+
+use super::definition::{Arm, Demand, Examined, Study};
+use super::findings::Findings;
+use super::values::{Form, ValueInfo, number, value};
+use crate::statistics::{PairedDifference, Quartiles, Share, median_difference, sign_test};
+use snakes_core::check::{Invalid, within};
+use snakes_core::save::{StudiedRun, StudyRuns, StudyValue};
+
+/// A measure of an arm, in terms of the values of its runs.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Measure {
+    /// The median of a value over the runs, or of its difference to another value of the same run.
+    Median {
+        /// The value.
+        of: String,
+        /// The value that is subtracted.
+        #[serde(default)]
+        less: Option<String>,
+    },
+    /// The share of the runs in which each of these values is at least the number beside it.
+    Share {
+        /// Values and their least numbers.
+        of: BTreeMap<String, f64>,
+    },
+    /// The median size of all numbers of a list, over all runs.
+    MedianSize {
+        /// The list.
+        of: String,
+    },
+    /// The number of different texts.
+    Distinct {
+        /// The text.
+        of: String,
+    },
+    /// The median difference to the baseline, seed by seed.
+    Difference {
+        /// The value.
+        of: String,
+    },
+    /// The probability of such a difference to the baseline by chance, by the sign test; 1 if the baseline is not lower.
+    SignTest {
+        /// The value.
+        of: String,
+    },
+    /// The median ratio to the baseline, seed by seed.
+    Ratio {
+        /// The value.
+        of: String,
+    },
+    /// The sum over all runs, divided by that of the baseline; per trial, if the value of their number is named.
+    TotalRatio {
+        /// The value.
+        of: String,
+        /// The number of trials in which it was counted.
+        #[serde(default)]
+        trials: Option<String>,
+    },
+    /// 1 if the interval of the share of successful trials lies above that of the baseline, else 0.
+    Apart {
+        /// The value that counts the successful trials.
+        of: String,
+        /// The value that counts all.
+        trials: String,
+    },
+    /// 1 if the 95 % intervals of the median and of the baseline's median overlap, else 0.
+    Overlap {
+        /// The value.
+        of: String,
+    },
+    /// The greatest relative difference of a quartile of newborns between the physics engines.
+    Newborns,
+    /// The share of the built-in champions that keep at least this share of their way in the other physics engine.
+    BuiltInChampions {
+        /// The share of the way.
+        keep: f64,
+    },
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// The number that is held against the demand.
+    pub value: f64,
+    /// The number with its spread and the number of runs.
+    pub text: String,
+}
+
+/// Whether a demand is met.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// What was measured; none if there are no results for it yet.
+    pub measured: Option<Measured>,
+    /// Whether it is what it must be; none without a result, or if nothing must be.
+    pub meets_must: Option<bool>,
+    /// Whether it is what would be hard; none likewise.
+    pub meets_hard: Option<bool>,
+}
+
+/// The results of a study.
+#[derive(Debug, Clone, Copy)]
+pub struct Results<'a> {
+    /// What was studied.
+    pub study: &'a Study,
+    /// The runs.
+    pub runs: &'a StudyRuns,
+    /// What was measured beside them.
+    pub findings: &'a Findings,
+}
+
+impl Results<'_> {
+    /// The runs of an arm with one of the study's seeds.
+    pub fn of(&self, arm: &Arm) -> Vec<&StudiedRun> {
+        let seeds = self.study.seeds();
+        self.runs.of_arm(&arm.name).iter().filter(|run| seeds.contains(&run.seed)).collect()
+    }
+
+    /// The numbers of a value, each with the seed of its run.
+    pub fn numbers(&self, arm: &Arm, info: &ValueInfo) -> Vec<(u64, f64)> {
+        let of_run = |run: &&StudiedRun| Some((run.seed, number_of(info, run)?));
+        self.of(arm).iter().filter_map(of_run).collect()
+    }
+
+    /// The values of an arm and of the one with which it is compared, for each seed that both have. A failed run has none.
+    pub fn pairs(&self, arm: &Arm, against: &Arm, info: &ValueInfo) -> Vec<[Option<f64>; 2]> {
+        let others = self.of(against);
+        let pair = |run: &&StudiedRun| {
+            let other = others.iter().find(|other| other.seed == run.seed)?;
+            Some([run, other].map(|run| number_of(info, run)))
+        };
+        self.of(arm).iter().filter_map(pair).collect()
+    }
+
+    /// Holds the results of an arm against a demand.
+    pub fn verdict(&self, arm: &Arm, demand: &Demand) -> Verdict {
+        let measured = demand.measure.of(arm, demand.against(self.study, arm), self);
+        let is_at_most = demand.is_at_most();
+        let meets = |bound: Option<f64>| {
+            let (bound, value) = (bound?, measured.as_ref()?.value);
+            Some(if is_at_most { value <= bound } else { value >= bound })
+        };
+        let (meets_must, meets_hard) = (meets(demand.must), meets(demand.hard));
+        Verdict { measured, meets_must, meets_hard }
+    }
+}
+
+/// A value of a run as a number: infinite for an event that never came.
+pub(super) fn number_of(info: &ValueInfo, run: &StudiedRun) -> Option<f64> {
+    match info.form {
+        Form::Until => Some(run.number(&info.name).unwrap_or(f64::INFINITY)),
+        _ => run.number(&info.name),
+    }
+}
+
+impl Demand {
+    /// The arm with which an arm is compared.
+    fn against<'a>(&self, study: &'a Study, arm: &Arm) -> Option<&'a Arm> {
+        match &self.against {
+            Some(name) => study.arms.iter().find(|arm| arm.name == *name),
+            None => study.baseline_of(arm),
+        }
+    }
+
+    /// Whether less is better.
+    pub fn is_at_most(&self) -> bool {
+        match &self.measure {
+            Measure::SignTest { .. } | Measure::MedianSize { .. } | Measure::Newborns => true,
+            Measure::Median { of, .. } => of == "rules" || info_of(of).form == Form::Until,
+            _ => false,
+        }
+    }
+
+    /// What is measured of an arm.
+    pub fn words(&self, study: &Study, arm: &Arm) -> String {
+        let against = self.against(study, arm).map_or("", |arm| arm.name.as_str());
+        let title = |name: &str| info_of(name).title;
+        match &self.measure {
+            Measure::Median { of, less: None } => title(of),
+            Measure::Median { of, less: Some(less) } => {
+                format!("{} less {}", title(of), title(less))
+            }
+            Measure::Share { of } => {
+                let one = |(name, least): (&String, &f64)| match info_of(name).form {
+                    Form::Flag => title(name),
+                    Form::Until => {
+                        format!("reach {}", title(name).trim_start_matches("evaluations to "))
+                    }
+                    _ => format!("{} ≥ {least}", title(name)),
+                };
+                format!("runs: {}", of.iter().map(one).collect::<Vec<_>>().join(" and "))
+            }
+            Measure::MedianSize { of } => format!("{}, median size", title(of)),
+            Measure::Distinct { of } => format!("different {}", title(of)),
+            Measure::Difference { of } => format!("{}, more than {against}", title(of)),
+            Measure::SignTest { of } => format!("{}, sign test against {against}", title(of)),
+            Measure::Ratio { of } => format!("{}, times that of {against}", title(of)),
+            Measure::TotalRatio { of, .. } => {
+                format!("{} in all, times those of {against}", title(of))
+            }
+            Measure::Apart { of, .. } => format!("{}, interval above that of {against}", title(of)),
+            Measure::Overlap { of } => {
+                format!("{}, interval overlaps that of {against}", title(of))
+            }
+            Measure::Newborns => "quartiles of newborns, difference between engines".to_owned(),
+            Measure::BuiltInChampions { keep } => {
+                format!("built-in champions that keep {:.0} % in the other engine", keep * 100.0)
+            }
+        }
+    }
+
+    /// A bound in words; a dash if there is none.
+    pub fn bound(&self, bound: Option<f64>) -> String {
+        let Some(bound) = bound else { return "–".to_owned() };
+        let sign = if self.is_at_most() { "≤" } else { "≥" };
+        match &self.measure {
+            Measure::SignTest { .. } => format!("p ≤ {bound}"),
+            Measure::Share { .. } | Measure::Newborns | Measure::BuiltInChampions { .. } => {
+                format!("{sign} {} %", number(bound * 100.0, 1))
+            }
+            Measure::Difference { .. } => format!("≥ {bound:+}"),
+            Measure::Ratio { .. } | Measure::TotalRatio { .. } => format!("≥ {bound} times"),
+            Measure::Apart { .. } | Measure::Overlap { .. } => "yes".to_owned(),
+            Measure::Median { of, .. } if !info_of(of).unit.is_empty() => {
+                format!("{sign} {bound} {}", info_of(of).unit)
+            }
+            _ => format!("{sign} {bound}"),
+        }
+    }
+}
+
+/// A value of a study that was checked.
+fn info_of(name: &str) -> ValueInfo {
+    value("of", name).unwrap_or_else(|_| ValueInfo {
+        name: name.to_owned(),
+        title: name.to_owned(),
+        unit: "",
+        digits: 3,
+        form: Form::Number,
+        about: String::new(),
+    })
+}
+
+impl Measure {
+    /// The names of the values that it is about.
+    pub fn values(&self) -> Vec<String> {
+        match self {
+            Self::Median { of, less } => [of].into_iter().chain(less).cloned().collect(),
+            Self::Share { of } => of.keys().cloned().collect(),
+            Self::MedianSize { of }
+            | Self::Distinct { of }
+            | Self::Difference { of }
+            | Self::SignTest { of }
+            | Self::Ratio { of }
+            | Self::TotalRatio { of, .. }
+            | Self::Apart { of, .. }
+            | Self::Overlap { of } => vec![of.clone()],
+            Self::Newborns | Self::BuiltInChampions { .. } => Vec::new(),
+        }
+    }
+
+    /// Checks the values that it names.
+    ///
+    /// # Errors
+    /// There is no such value, or it is of another form.
+    pub(super) fn check(&self, study: &Study) -> Result<(), Invalid> {
+        let field = "demands.measure.of";
+        let is_expected = |form: Form| match self {
+            Self::MedianSize { .. } => form == Form::List,
+            Self::Distinct { .. } => form == Form::Text,
+            _ => !matches!(form, Form::List | Form::Text),
+        };
+        for name in self.values() {
+            if !is_expected(value(field, &name)?.form) {
+                let allowed = match self {
+                    Self::MedianSize { .. } => "a list",
+                    Self::Distinct { .. } => "a text",
+                    _ => "a number",
+                };
+                return Err(Invalid::new(field, format!("{name:?}"), allowed));
+            }
+        }
+        match self {
+            Self::TotalRatio { trials: Some(name), .. } | Self::Apart { trials: name, .. } => {
+                value("demands.measure.trials", name).map(drop)
+            }
+            Self::Newborns if study.newborns.is_none() => {
+                Err(Invalid::new("newborns", "none", "a number, about which a demand is"))
+            }
+            Self::BuiltInChampions { .. } if !study.built_in_champions => Err(Invalid::new(
+                "built_in_champions",
+                false,
+                "true, because a demand is about them",
+            )),
+            Self::BuiltInChampions { keep } => within("demands.measure.keep", *keep, 0.0..=1.0),
+            _ => Ok(()),
+        }
+    }
+
+    /// The measure of an arm; none if there are no results for it.
+    fn of(&self, arm: &Arm, against: Option<&Arm>, results: &Results<'_>) -> Option<Measured> {
+        match self {
+            Self::Median { of, less } => {
+                let info = info_of(of);
+                let values = match less {
+                    None => results.numbers(arm, &info),
+                    Some(less) => {
+                        let others = results.numbers(arm, &info_of(less));
+                        let less = |(seed, value): (u64, f64)| {
+                            let (_, other) = others.iter().find(|(of, _)| *of == seed)?;
+                            Some((seed, value - other))
+                        };
+                        results.numbers(arm, &info).into_iter().filter_map(less).collect()
+                    }
+                };
+                median(values.into_iter().map(|(_, value)| value), &info)
+            }
+            Self::Share { of } => {
+                let runs = results.of(arm);
+                let is_met = |run: &&&StudiedRun| {
+                    of.iter()
+                        .all(|(name, least)| run.number(name).is_some_and(|value| value >= *least))
+                };
+                // An arm of which only the best champion was examined has no share of those.
+                let known = |run: &&&StudiedRun| {
+                    of.keys().all(|name| !name.starts_with("exam_") || run.number(name).is_some())
+                };
+                share(runs.iter().filter(is_met).count(), runs.iter().filter(known).count())
+            }
+            Self::MedianSize { of } => {
+                let info = info_of(of);
+                let runs = results.of(arm);
+                let numbers = runs.iter().flat_map(|run| run.numbers(of)).flatten();
+                median(numbers.map(|number| number.abs()), &info)
+            }
+            Self::Distinct { of } => {
+                let runs = results.of(arm);
+                let texts: BTreeSet<&str> =
+                    runs.iter().filter_map(|run| text_of(run, of)).collect();
+                (!runs.is_empty()).then(|| Measured {
+                    value: texts.len() as f64,
+                    text: format!("{} in {} runs", texts.len(), runs.len()),
+                })
+            }
+            Self::Difference { of } => difference(arm, against?, &info_of(of), results),
+            Self::SignTest { of } => {
+                let pairs = results.pairs(arm, against?, &info_of(of));
+                let PairedDifference { more, fewer, pairs, p, .. } = PairedDifference::of(&pairs);
+                let equal = pairs as u32 - more - fewer;
+                (pairs > 0).then(|| Measured {
+                    value: if more > fewer { sign_test(more, fewer) } else { 1.0 },
+                    text: format!("p = {p:.4}: more {more}, fewer {fewer}, equal {equal}"),
+                })
+            }
+            Self::Ratio { of } => {
+                let info = ValueInfo { digits: 2, unit: "", ..info_of(of) };
+                let pairs = results.pairs(arm, against?, &info).into_iter();
+                let ratio = |[a, b]: [Option<f64>; 2]| Some(a? / b?.max(f64::MIN_POSITIVE));
+                median(pairs.filter_map(ratio), &info)
+            }
+            Self::TotalRatio { of, trials } => {
+                let total = |arm: &Arm| totals(arm, of, trials.as_deref(), results);
+                let ([sum, count], [other, other_count]) = (total(arm)?, total(against?)?);
+                let (share, other_share) = (sum / count, other / other_count);
+                let text = match trials {
+                    None => format!("{} against {}", number(sum, 3), number(other, 3)),
+                    Some(_) => format!(
+                        "{}; {} against {}",
+                        if other > 0.0 {
+                            format!("{:.2} times", share / other_share)
+                        } else {
+                            "against none".to_owned()
+                        },
+                        with_interval(sum, count),
+                        with_interval(other, other_count)
+                    ),
+                };
+                let value = if sum == 0.0 { 0.0 } else { share / other_share };
+                Some(Measured { value, text })
+            }
+            Self::Apart { of, trials } => {
+                let total = |arm: &Arm| totals(arm, of, Some(trials), results);
+                let ([sum, count], [other, other_count]) = (total(arm)?, total(against?)?);
+                let (a, b) = (share_of(sum, count), share_of(other, other_count));
+                let (a_text, b_text) =
+                    (with_interval(sum, count), with_interval(other, other_count));
+                Some(yes_or_no(a.least > b.most, format!("{a_text} against {b_text}")))
+            }
+            Self::Overlap { of } => {
+                let info = info_of(of);
+                let interval = |arm: &Arm| {
+                    // A run that never came so far has spent all its evaluations.
+                    let of_run = |run: &&StudiedRun| match info.form {
+                        Form::Until => run.number(of).or(run.number("evaluations")),
+                        _ => run.number(of),
+                    };
+                    let (median, interval) =
+                        median_difference(results.of(arm).iter().filter_map(of_run).collect())?;
+                    Some((median, interval?))
+                };
+                let ((median, [low, high]), (other, [other_low, other_high])) =
+                    (interval(arm)?, interval(against?)?);
+                let words = |values: [f64; 3]| {
+                    let [median, low, high] = values.map(|value| number(value, info.digits));
+                    format!("{median} [{low} {high}]")
+                };
+                let text = format!(
+                    "{} against {}",
+                    words([median, low, high]),
+                    words([other, other_low, other_high])
+                );
+                Some(yes_or_no(low <= other_high && other_low <= high, text))
+            }
+            Self::Newborns => {
+                let greatest = results.findings.greatest_difference()?;
+                Some(Measured { value: greatest, text: format!("{:.1} %", greatest * 100.0) })
+            }
+            Self::BuiltInChampions { keep } => {
+                let kept = &results.findings.built_in;
+                share(kept.iter().filter(|(_, kept)| f64::from(*kept) >= *keep).count(), kept.len())
+            }
+        }
+    }
+}
+
+fn yes_or_no(is_so: bool, text: String) -> Measured {
+    Measured { value: f64::from(u8::from(is_so)), text }
+}
+
+fn text_of<'a>(run: &'a StudiedRun, name: &str) -> Option<&'a str> {
+    match run.values.get(name)? {
+        StudyValue::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// The sum of a value over all runs of an arm, and of the trials in which it was counted (1 if none are named).
+fn totals(arm: &Arm, of: &str, trials: Option<&str>, results: &Results<'_>) -> Option<[f64; 2]> {
+    let runs = results.of(arm);
+    let sum = |name: &str| {
+        let numbers: Vec<f64> = runs.iter().filter_map(|run| run.number(name)).collect();
+        (!numbers.is_empty()).then(|| numbers.iter().sum::<f64>())
+    };
+    // The landings of an exam are stored as those of 100 trials.
+    match trials {
+        None => Some([sum(of)?, 1.0]),
+        Some(trials) => {
+            let landed =
+                runs.iter().filter_map(|run| Some(run.number(of)? * run.number(trials)? / 100.0));
+            Some([landed.sum::<f64>().round(), sum(trials)?])
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts of trials")]
+fn share_of(count: f64, of: f64) -> Share {
+    Share::of(count as u32, of as u32)
+}
+
+fn with_interval(count: f64, of: f64) -> String {
+    let Share { seen, least, most } = share_of(count, of);
+    format!("{seen:.2} [{least:.2}, {most:.2}]")
+}
+
+/// A count of runs with the interval of their share.
+fn share(count: usize, of: usize) -> Option<Measured> {
+    let Share { seen, least, most } = Share::of(count as u32, of as u32);
+    let percent = [seen, least, most].map(|share| share * 100.0);
+    (of > 0).then(|| Measured {
+        value: seen,
+        text: format!("{count} of {of}: {:.0} % [{:.0} {:.0}]", percent[0], percent[1], percent[2]),
+    })
+}
+
+/// The median with its quartiles and the number of values.
+fn median(values: impl IntoIterator<Item = f64>, info: &ValueInfo) -> Option<Measured> {
+    let values: Vec<f64> = values.into_iter().collect();
+    let count = values.len();
+    let quartiles = Quartiles::of(values)?;
+    let text = format!("{}, n = {count}", quartiles_text(&quartiles, count, info));
+    Some(Measured { value: quartiles.median, text })
+}
+
+/// A median, with its quartiles if there are several values.
+pub(super) fn quartiles_text(quartiles: &Quartiles, count: usize, info: &ValueInfo) -> String {
+    let [low, median, high] =
+        [quartiles.low, quartiles.median, quartiles.high].map(|value| number(value, info.digits));
+    let unit = if info.unit.is_empty() { String::new() } else { format!(" {}", info.unit) };
+    if count == 1 { format!("{median}{unit}") } else { format!("{median}{unit} [{low} {high}]") }
+}
+
+/// The difference to another arm: seed by seed, or between the best champions, where only these were examined.
+fn difference(
+    arm: &Arm,
+    against: &Arm,
+    info: &ValueInfo,
+    results: &Results<'_>,
+) -> Option<Measured> {
+    let signed = |value: f64| {
+        let text = number(value, info.digits);
+        if value >= 0.0 && value.is_finite() { format!("+{text}") } else { text }
+    };
+    let (values, others) = (results.numbers(arm, info), results.numbers(against, info));
+    let is_of_best = [arm, against].iter().any(|arm| arm.examined == Examined::Best);
+    if let ([(_, value)], [(_, other)]) = (values.as_slice(), others.as_slice())
+        && is_of_best
+    {
+        let difference = value - other;
+        let text = format!(
+            "{}: {}, {} {}",
+            signed(difference),
+            number(*value, info.digits),
+            against.name,
+            number(*other, info.digits)
+        );
+        return Some(Measured { value: difference, text });
+    }
+    let pairs = results.pairs(arm, against, info);
+    let differences: Vec<f64> = pairs.iter().filter_map(|[a, b]| Some((*a)? - (*b)?)).collect();
+    let Quartiles { low, median, high } = Quartiles::of(differences.iter().copied())?;
+    let each: Vec<String> = differences.iter().map(|value| signed(*value)).collect();
+    let text = match differences.len() {
+        1 => format!("{}, n = 1", signed(median)),
+        count => format!(
+            "{} [{} {}], n = {count}: {}",
+            signed(median),
+            signed(low),
+            signed(high),
+            each.join(" ")
+        ),
+    };
+    Some(Measured { value: median, text })
+}

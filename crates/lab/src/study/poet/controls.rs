@@ -1,0 +1,96 @@
+//! Direct searches on hard stairs.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use super::{DIRECT, SEEDS};
+use crate::run::Evaluator;
+use crate::run::Experiment;
+use crate::run::headless::HeadlessError;
+use crate::run::whole_runs;
+use crate::run::{Cancelled, RunControl};
+use snakes_core::evolve::{RestartKind, RunPlan, StrategyKind};
+use snakes_core::save::{ControlRun, PoetStudy};
+
+/// Individuals of a generation of a direct search.
+const POPULATION: u32 = 12;
+
+/// A direct search that is to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedControl {
+    /// Index of its stairs in the run of POET.
+    pub node: u32,
+    /// Its plan.
+    pub plan: RunPlan,
+}
+
+/// The direct searches that a study does not have yet, one seed of all stairs after the other. Stairs on which one has come far
+/// enough need no more.
+pub fn planned_controls(study: &PoetStudy, poet: &RunPlan) -> Vec<PlannedControl> {
+    let mut planned = Vec::new();
+    for number in 1..=SEEDS {
+        for hard in &study.hardest {
+            let seed = poet.seed.wrapping_add(number);
+            let mut of_node = study.controls.iter().filter(|run| run.node == hard.node);
+            if of_node.any(|run| run.seed == seed || is_enough(run)) {
+                continue;
+            }
+            let mut settings = poet.settings.clone();
+            settings.trial = poet.settings.trial.on_stairs(hard.stairs.stairs());
+            let evolution = &mut settings.evolution;
+            evolution.strategy = StrategyKind::CmaEs;
+            evolution.population = POPULATION;
+            let generations = hard.trials.div_ceil(POPULATION.into());
+            evolution.generations = u32::try_from(generations).unwrap_or(u32::MAX).max(1);
+            evolution.cma_es.restarts = RestartKind::Bipop;
+            planned.push(PlannedControl {
+                node: hard.node,
+                plan: RunPlan::new("poet", seed, settings),
+            });
+        }
+    }
+    planned
+}
+
+/// Whether a direct search has come so far that its stairs are not solved by POET alone.
+pub fn is_enough(run: &ControlRun) -> bool {
+    run.share.is_some_and(|share| share >= DIRECT)
+}
+
+/// Makes direct searches, as many at the same time as `evaluator` has workers. A search ends once it has come far enough, and so
+/// do the others on its stairs. Calls `done` with each finished run, one at a time.
+///
+/// # Errors
+/// `control` was cancelled, workers could not be started, or `done` failed.
+pub fn run_controls(
+    planned: &[PlannedControl],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+    spent: impl Fn(u64) + Sync,
+    mut done: impl FnMut(ControlRun) -> Result<(), HeadlessError> + Send,
+) -> Result<(), HeadlessError> {
+    let settled: Mutex<BTreeSet<u32>> = Mutex::default();
+    let is_settled =
+        |node: u32| settled.lock().unwrap_or_else(PoisonError::into_inner).contains(&node);
+    let work = |index: usize, single: &dyn Evaluator| -> Result<Option<ControlRun>, Cancelled> {
+        let PlannedControl { node, plan } = &planned[index];
+        let mut experiment = Experiment::new(plan.clone());
+        while !experiment.is_over() {
+            if is_settled(*node) {
+                return Ok(None);
+            }
+            let report = experiment.run_generation(single, control)?;
+            spent(report.evaluations.into());
+            let best = experiment.best();
+            if best.is_some_and(|best| best.evaluation.fitness >= DIRECT) {
+                settled.lock().unwrap_or_else(PoisonError::into_inner).insert(*node);
+                break;
+            }
+        }
+        let share = experiment.best().map(|best| best.evaluation.fitness);
+        let evaluations = experiment.evaluated();
+        Ok(Some(ControlRun { node: *node, seed: plan.seed, evaluations, share }))
+    };
+    let done = |run: Option<ControlRun>| run.map_or(Ok(()), &mut done);
+    whole_runs(planned.len(), evaluator, control, work, done)
+}

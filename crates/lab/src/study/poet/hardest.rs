@@ -1,0 +1,79 @@
+//! The hardest of the stairs that a run of POET has solved.
+
+use super::{HARDEST, MUST_SUCCEED, SUCCESS, TRIALS};
+use crate::run::exam::exam_ends;
+use crate::run::{Cancelled, RunControl};
+use crate::run::{EvaluationResult, Evaluator, Job, evaluate_in_order};
+use snakes_core::evolve::{RunPlan, StairsNode, StairsTree};
+use snakes_core::genome::Genome;
+use snakes_core::save::HardStairs;
+use snakes_core::score::{PerturbationRange, Trial, varied};
+
+/// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
+///
+/// # Errors
+/// [`Cancelled`], if `control` was.
+pub fn hardest_stairs(
+    plan: &RunPlan,
+    tree: &StairsTree,
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Vec<HardStairs>, Cancelled> {
+    let agents: Vec<&Genome> =
+        tree.nodes.iter().filter_map(|node| Some(&node.agent.as_ref()?.genome)).collect();
+    let solved: Vec<(usize, &StairsNode)> =
+        tree.nodes.iter().enumerate().filter(|(_, node)| node.solved.is_some()).collect();
+    let trials: Vec<Trial> =
+        solved.iter().map(|(_, node)| node.trial(&plan.settings.trial)).collect();
+    let jobs: Vec<Job<'_>> = (0..trials.len())
+        .flat_map(|trial| agents.iter().map(move |genome| Job { genome, trial }))
+        .collect();
+    let shares = shares(&trials, &jobs, evaluator, control)?;
+    let mut order: Vec<(f32, usize)> = shares
+        .chunks(agents.len().max(1))
+        .map(|of| of.iter().sum::<f32>() / of.len() as f32)
+        .zip(0..)
+        .collect();
+    order.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let mut found = Vec::new();
+    for (mean_share, index) in order {
+        if found.len() >= HARDEST {
+            break;
+        }
+        let (node, of) = solved[index];
+        let Some(agent) = &of.agent else { continue };
+        let range = PerturbationRange::default();
+        let conditions = varied(&trials[index], &range, TRIALS, plan.seed);
+        let ends = exam_ends(&agent.genome, &conditions, evaluator, control)?;
+        let successes = ends.iter().filter(|end| end.way >= SUCCESS).count() as u32;
+        if successes >= MUST_SUCCEED {
+            let trials = ancestors(tree, node).map(|node| tree.nodes[node].trials).sum();
+            let (node, stairs) = (node as u32, of.stairs);
+            found.push(HardStairs { node, stairs, mean_share, successes, trials });
+        }
+    }
+    Ok(found)
+}
+
+/// A staircase and all its ancestors.
+fn ancestors(tree: &StairsTree, node: usize) -> impl Iterator<Item = usize> {
+    let parent = |&node: &usize| tree.nodes.get(node)?.parent.map(|parent| parent as usize);
+    std::iter::successors(Some(node), parent)
+}
+
+/// The share that each job covers.
+fn shares(
+    trials: &[Trial],
+    jobs: &[Job<'_>],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<Vec<f32>, Cancelled> {
+    let share = |result: EvaluationResult| {
+        result.map_or(0.0, |scored| match scored.evaluation.disqualified {
+            None => scored.evaluation.fitness.max(0.0),
+            Some(_) => 0.0,
+        })
+    };
+    let results = evaluate_in_order(trials, jobs, evaluator, control)?;
+    Ok(results.into_iter().map(share).collect())
+}

@@ -1,0 +1,347 @@
+//! The values that a run is measured by: their names, titles, units and digits.
+
+use std::collections::BTreeMap;
+
+use snakes_core::check::Invalid;
+use snakes_core::genome::StairsClass;
+use snakes_core::save::StudyValue;
+use snakes_core::schema::Choices;
+use snakes_core::score::{ExamSuite, SuiteResult};
+
+/// The form of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// A number; a run without it is left out.
+    Number,
+    /// A number of evaluations up to an event; a run without it never came there, which counts as infinite.
+    Until,
+    /// 1 or 0.
+    Flag,
+    /// A text.
+    Text,
+    /// A list of numbers.
+    List,
+}
+
+/// A value by which runs are measured.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ValueInfo {
+    /// Its name in files.
+    pub name: String,
+    /// Its title in tables.
+    pub title: String,
+    /// Its unit; empty for a count or a share.
+    pub unit: &'static str,
+    /// Maximum number of digits after the point in tables.
+    pub digits: usize,
+    /// Its form.
+    pub form: Form,
+    /// The value in a sentence.
+    pub about: String,
+}
+
+use Form::{Flag, List, Number, Text, Until};
+
+/// Name, title, unit, digits, form, sentence.
+type Row = (&'static str, &'static str, &'static str, usize, Form, &'static str);
+
+const ROWS: [Row; 26] = [
+    (
+        "evaluations",
+        "evaluations",
+        "",
+        0,
+        Number,
+        "Snakes that were evaluated, each in all its trials.",
+    ),
+    (
+        "simulations",
+        "simulations",
+        "",
+        0,
+        Number,
+        "Simulated trials: repeats of a trial, the choice of champions and the champion's exam included.",
+    ),
+    ("fitness", "best fitness", "", 3, Number, "Fitness of the run's champion."),
+    (
+        "steps_climbed",
+        "steps",
+        "",
+        1,
+        Number,
+        "Steps that the champion climbed in its own trial; 0 without a champion.",
+    ),
+    ("landed", "land", "", 0, Flag, "1 if the champion ended on the landing, else 0."),
+    (
+        "first_landing",
+        "first landing",
+        "",
+        1,
+        Until,
+        "Number of the first evaluation, counted from 1, that ended on the landing.",
+    ),
+    (
+        "goal_evaluations",
+        "evaluations to the goal",
+        "",
+        0,
+        Until,
+        "Evaluations up to the end of the first generation that reached the arm's goal.",
+    ),
+    ("last_mean", "final mean", "", 3, Number, "Mean fitness of the last generation."),
+    ("way_m", "way", "m", 2, Number, "Way of the champion's middle towards the stairs."),
+    ("blocks", "blocks", "", 1, Number, "Blocks of the champion."),
+    ("energy_j_per_m", "energy", "J/m", 0, Number, "Energy of the champion per metre of its way."),
+    (
+        "cost_of_transport",
+        "cost of transport",
+        "",
+        2,
+        Number,
+        "Energy of the champion per weight and way.",
+    ),
+    (
+        "climbing_efficiency",
+        "climbing efficiency",
+        "",
+        3,
+        Number,
+        "Share of the champion's energy that lifted it.",
+    ),
+    (
+        "rises",
+        "mean rises",
+        "",
+        0,
+        Flag,
+        "1 if the mean fitness rises with every generation, else 0.",
+    ),
+    ("generation_means", "mean fitness", "", 2, List, "Mean fitness of each generation."),
+    (
+        "generation_disqualified",
+        "disqualified",
+        "",
+        0,
+        List,
+        "Disqualified snakes of each generation.",
+    ),
+    ("rules", "rules", "", 1, Number, "Rules of the champion."),
+    (
+        "decisions_of_20",
+        "decisions by 20 rules",
+        "%",
+        1,
+        Number,
+        "Share of its decisions that the champion's twenty most used rules make.",
+    ),
+    (
+        "waves_used",
+        "waves used",
+        "",
+        1,
+        Number,
+        "Waves that the champion uses for a tenth of its decisions or more.",
+    ),
+    (
+        "tree",
+        "trees of joints",
+        "",
+        0,
+        Text,
+        "The champion's joints as a tree: one letter for the kind of each.",
+    ),
+    (
+        "changes",
+        "changes of structure",
+        "",
+        1,
+        Number,
+        "Changes of the number of blocks in the champion's line of descent.",
+    ),
+    ("late_changes", "late changes", "", 1, Number, "Those in the second half of the generations."),
+    (
+        "filled_cells",
+        "filled cells",
+        "%",
+        1,
+        Number,
+        "Feasible cells of an archive of all bodies that are filled.",
+    ),
+    ("qd_score", "QD score", "", 1, Number, "Quality-diversity score of that archive."),
+    (
+        "split_changes",
+        "change by a split",
+        "",
+        3,
+        List,
+        "Change of the fitness of the last generation's best twenty when a block of theirs is split.",
+    ),
+    (
+        "insertion_changes",
+        "change by an insertion",
+        "",
+        3,
+        List,
+        "The change when a block is inserted.",
+    ),
+];
+
+/// The values that only runs of evolving bodies are measured for, at the price of more simulations.
+const OF_BODIES: [&str; 6] =
+    ["changes", "late_changes", "filled_cells", "qd_score", "split_changes", "insertion_changes"];
+
+/// Whether a value needs the measurements of evolving bodies.
+pub(super) fn is_of_bodies(name: &str) -> bool {
+    OF_BODIES.contains(&name)
+}
+
+/// The name of a suite in names of values.
+fn suite_name(suite: ExamSuite) -> String {
+    suite.choice().name.replace('-', "_")
+}
+
+/// The values of a suite: ending of the name, title, digits, sentence.
+const OF_SUITE: [(&str, &str, usize, &str); 5] = [
+    ("", "", 1, "Landings of 100 trials"),
+    ("_trials", " trials", 0, "Number of trials"),
+    ("_disqualified", " disqualified", 0, "Disqualified trials"),
+    ("_median_steps", " steps", 1, "Median of the steps climbed"),
+    (
+        "_kept",
+        " kept",
+        2,
+        "Share of its way in its own trial that the champion keeps: the median, of step rates the least",
+    ),
+];
+
+/// All values, in the order of tables and files.
+pub fn values() -> Vec<ValueInfo> {
+    let row = |(name, title, unit, digits, form, about): Row| ValueInfo {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        unit,
+        digits,
+        form,
+        about: about.to_owned(),
+    };
+    let mut values: Vec<ValueInfo> = ROWS.map(row).to_vec();
+    for suite in ExamSuite::OPTIONS {
+        let name = suite_name(*suite);
+        let number = |name: String, title: String, digits, about: String| ValueInfo {
+            name,
+            title,
+            unit: "",
+            digits,
+            form: Number,
+            about,
+        };
+        for (ending, title, digits, about) in OF_SUITE {
+            let about = format!("{about} in the suite {}.", suite.choice().name);
+            let title = format!("{}{title}", suite.choice().name);
+            values.push(number(format!("exam_{name}{ending}"), title, digits, about));
+        }
+        if *suite == ExamSuite::HeldOut {
+            for class in StairsClass::OPTIONS.iter().map(|class| class.choice().name) {
+                let about =
+                    format!("Held-out stairs of the class {class} on which the champion lands.");
+                values.push(number(format!("exam_{name}_{class}"), class.to_owned(), 1, about));
+            }
+        }
+    }
+    values
+}
+
+/// The value of a name.
+///
+/// # Errors
+/// There is none.
+pub fn value(field: &str, name: &str) -> Result<ValueInfo, Invalid> {
+    let all = values();
+    all.iter().find(|info| info.name == name).cloned().ok_or_else(|| {
+        let names: Vec<&str> = all.iter().map(|info| info.name.as_str()).collect();
+        Invalid::new(field, format!("{name:?}"), names.join(", "))
+    })
+}
+
+impl ValueInfo {
+    /// Title and unit.
+    pub fn label(&self) -> String {
+        match self.unit {
+            "" => self.title.clone(),
+            unit => format!("{}, {unit}", self.title),
+        }
+    }
+}
+
+/// A number with as many digits as it needs, `digits` at most; – for an infinite one.
+pub fn number(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let text = format!("{value:.digits$}");
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    (if text == "-0" { "0" } else { text }).to_owned()
+}
+
+/// A 32-bit number with the fewest digits that give it back.
+pub(super) fn short(value: f32) -> StudyValue {
+    StudyValue::Number(value.to_string().parse().unwrap_or(0.0))
+}
+
+/// The name of a suite's value, such as `exam_held_out_trials`.
+pub fn of_suite(suite: ExamSuite, ending: &str) -> String {
+    format!("exam_{}{ending}", suite_name(suite))
+}
+
+/// Adds the results of an exam to the values of a run.
+pub(super) fn add_exam(values: &mut BTreeMap<String, StudyValue>, results: &[SuiteResult]) {
+    for result in results {
+        let (landed, trials) = (f64::from(result.landed), f64::from(result.trials.max(1)));
+        let mut add = |ending: &str, value| {
+            values.insert(of_suite(result.suite, ending), value);
+        };
+        add("", StudyValue::Number(100.0 * landed / trials));
+        add("_trials", StudyValue::Number(result.trials.into()));
+        add("_disqualified", StudyValue::Number(result.disqualified.into()));
+        add("_median_steps", short(result.median_steps));
+        add("_kept", short(result.kept));
+        for (class, climbed, _) in result.classes() {
+            add(&format!("_{class}"), StudyValue::Number(climbed.into()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_value_has_a_name_of_its_own_and_an_unknown_one_is_refused_with_all() {
+        let all = values();
+        for (index, info) in all.iter().enumerate() {
+            assert!(all[..index].iter().all(|other| other.name != info.name), "{}", info.name);
+            assert!(info.about.ends_with('.'), "{}", info.about);
+        }
+        assert_eq!(value("show", "exam_held_out_kept").expect("known").digits, 2);
+        let error = value("show", "speed").expect_err("refused").to_string();
+        assert!(
+            error.starts_with("show is \"speed\"; allowed: evaluations, simulations"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn numbers_have_the_digits_that_they_need() {
+        for (value, digits, text) in [
+            (2.0, 3, "2"),
+            (427.75, 1, "427.8"),
+            (0.0500, 3, "0.05"),
+            (100.0, 0, "100"),
+            (-0.01, 1, "0"),
+            (f64::INFINITY, 1, "–"),
+        ] {
+            assert_eq!(number(value, digits), text);
+        }
+    }
+}
