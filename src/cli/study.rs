@@ -10,13 +10,16 @@ use snakes_core::schema::Choices;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::study::{
     DURATION, Plain, Results, Study, StudyFiles, built_in_studies, json_lines, perform,
-    suites_named, tables,
+    suites_named, tables, values_as_markdown,
 };
 
 const WHOLE: &str = "a whole number from 0 up";
 
 /// Makes what the study's files do not have yet, and prints the results; without a name, lists the studies.
 pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
+    if wanted.markdown {
+        return print(&values_as_markdown());
+    }
     let Some(named) = &wanted.study else { return list(args) };
     if named == "poet" {
         return poet_study::poet_study(args, wanted);

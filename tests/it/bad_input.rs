@@ -52,10 +52,13 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let message = refusal(folder.path(), "--no-render --fitness speed", 2);
     let allowed = "centre, head, centre_of_mass, height, furthest_y, steps_climbed, climb, share";
     assert_eq!(message, format!("error: --fitness is \"speed\"; allowed: {allowed}"));
-    let message = refusal(folder.path(), "table1 --seeds 0", 2);
+    let message = refusal(folder.path(), "study table1 --seeds 0", 2);
     assert_eq!(message, "error: --seeds is 0; allowed: 1 to 10000");
-    let message = refusal(folder.path(), "table1 --fitness height", 2);
-    assert_eq!(message, "error: --fitness is height; allowed: centre, as in the report's table");
+    let message = refusal(folder.path(), "study table1 --fitness height", 2);
+    assert_eq!(
+        message,
+        "error: trial.fitness of report is height; allowed: centre, as of the published means"
+    );
 }
 
 #[cfg(feature = "studio")]

@@ -234,23 +234,22 @@ fn a_single_setting_and_the_fitness_can_be_set_by_flag() {
 #[test]
 fn table_1_is_printed_and_written_as_csv_and_png() {
     let folder = folder();
-    let arguments = "table1 --seeds 2 --population 6 --generations 2 --duration 0.5 --out out";
+    let arguments =
+        "study table1 --seeds 2 --population 6 --generations 2 --duration 0.5 --out out";
     let text = stdout_of(folder.path(), arguments);
-    assert!(text.lines().next().expect("a header").contains("report"), "{text}");
-    assert!(text.contains("-5.94  slightly forward"), "{text}");
-    assert!(text.contains("of 2 seeds"), "{text}");
-    let written = |kind: &str| {
-        let files = std::fs::read_dir(folder.path().join("out")).expect("a folder");
-        let mut paths = files.map(|file| file.expect("a file").path());
-        paths.find(|path| path.extension().is_some_and(|ending| ending == kind)).expect(kind)
-    };
-    let csv = std::fs::read_to_string(written("csv")).expect("read");
-    assert_eq!(csv.lines().count(), 5, "{csv}");
-    assert!(csv.starts_with("seed,generation,mean_m,disqualified,report_mean_m,run_hash\n1,1,"));
-    let png = std::fs::read(written("png")).expect("read");
+    assert!(text.contains("| published |"), "{text}");
+    assert!(text.contains("-5.94 | slightly forward"), "{text}");
+    assert!(text.contains("| runs: mean rises"), "{text}");
+    let written = |name: &str| std::fs::read(folder.path().join("out").join(name)).expect(name);
+    let csv = String::from_utf8(written("table1-runs.csv")).expect("text");
+    assert_eq!(csv.lines().count(), 3, "{csv}");
+    assert!(csv.starts_with("study,arm,seed,evaluations,simulations,fitness,"), "{csv}");
+    assert!(csv.contains("\ntable1,report,211,12,12,"), "{csv}");
+    let png = written("table1.png");
     assert!(png.starts_with(b"\x89PNG") && png.len() > 5_000);
     let lines = json_lines(folder.path(), &format!("{arguments} --json"));
-    assert_eq!((lines[0]["seed"].clone(), lines[2]["seeds"].clone()), (json!(1), json!(2)));
+    assert_eq!((lines[0]["seed"].clone(), lines[1]["seed"].clone()), (json!(211), json!(212)));
+    assert_eq!(lines.last().map(|line| line["runs"].clone()), Some(json!(2)));
 }
 
 #[test]

@@ -10,7 +10,6 @@ mod cluster;
 mod determinism;
 mod docs;
 mod exports;
-mod families;
 #[cfg(feature = "studio")]
 mod features;
 mod fuzz;
@@ -22,5 +21,6 @@ mod opening;
 mod program;
 mod same_bits;
 mod soak;
+mod studies;
 #[cfg(all(feature = "studio", target_os = "linux"))]
 mod window;

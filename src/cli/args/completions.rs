@@ -61,7 +61,7 @@ mod tests {
         let mut names =
             text.lines().filter(|line| line.contains("-l suite ") && line.contains("mujoco"));
         assert!(names.next().is_some_and(|line| line.contains("using_subcommand exam")));
-        assert_eq!(names.next(), None, "families know no mujoco");
+        assert_eq!(names.next(), None, "studies know no mujoco");
         assert!(!has("seed") && !has("theme") && !has("nats"), "{of_bench:#?}");
     }
 
@@ -69,7 +69,7 @@ mod tests {
     fn every_shell_completes_subcommands_and_names() {
         for shell in [Shell::Bash, Shell::Elvish, Shell::Fish, Shell::PowerShell, Shell::Zsh] {
             let text = completions(shell);
-            assert!(text.contains("families") && text.contains("no-render"), "{shell}");
+            assert!(text.contains("study") && text.contains("no-render"), "{shell}");
             // Elvish and PowerShell complete no values.
             if matches!(shell, Shell::Bash | Shell::Fish | Shell::Zsh) {
                 assert!(text.contains("trampoline") && text.contains("step-rate"), "{shell}");

@@ -18,8 +18,27 @@ pub enum Parsed {
     Print(String),
 }
 
+/// Earlier names of commands, with those that took their place.
+const EARLIER_NAMES: [(&str, &str); 7] = [
+    ("body-study", "study bodies"),
+    ("compare", "study methods"),
+    ("engine-study", "study engines"),
+    ("families", "study families"),
+    ("poet-study", "study poet"),
+    ("stairs-study", "study stairs"),
+    ("table1", "study table1"),
+];
+
 /// Parses the arguments, shortens clap's errors to one line, and refuses flags without effect.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    // The name of a command stands first, or after flags without values.
+    let command = arguments.iter().skip(1).find(|word| !word.to_string_lossy().starts_with('-'));
+    let named =
+        EARLIER_NAMES.iter().find(|(earlier, _)| command.is_some_and(|word| word == earlier));
+    if let Some((earlier, now)) = named {
+        return Err(CliError::Usage(format!("snakes {earlier} is now: snakes {now}")));
+    }
     let command = applicability::with_own_help(Args::command());
     let matches = command.try_get_matches_from(arguments);
     let parsed = matches.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
@@ -76,6 +95,12 @@ mod tests {
             Err(error) => error.to_string(),
             Ok(_) => unreachable!("{words} is refused"),
         }
+    }
+
+    #[test]
+    fn an_earlier_name_of_a_command_is_answered_with_the_present_one() {
+        assert_eq!(refusal("families --seeds 3"), "snakes families is now: snakes study families");
+        assert_eq!(refusal("--json compare"), "snakes compare is now: snakes study methods");
     }
 
     #[test]

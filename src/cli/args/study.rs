@@ -27,6 +27,9 @@ pub struct StudyArgs {
     pub evaluations: Option<String>,
     #[arg(long, value_name = "NAME", help = study_suite_help())]
     pub suite: Vec<String>,
+    /// Print the values that a study may name, as the table in docs/studies.md
+    #[arg(long, conflicts_with = "study")]
+    pub markdown: bool,
     /// Rounds of the run of POET, of the study poet only [default: 100]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rounds: Option<String>,

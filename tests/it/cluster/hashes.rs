@@ -53,7 +53,7 @@ fn comparisons_tables_and_exams_have_the_results_of_one_machine() {
     let Some((server, _workers)) = room() else { return };
     let champion = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
     for arguments in [
-        "table1 --seeds 2 --population 20 --generations 2 --duration 2".to_owned(),
+        "study table1 --seeds 2 --population 20 --generations 2 --duration 2".to_owned(),
         format!("exam {champion} --suite step-rate"),
         format!("robust {champion} --trials 8"),
     ] {
@@ -64,15 +64,12 @@ fn comparisons_tables_and_exams_have_the_results_of_one_machine() {
         assert_eq!(results(&distributed), results(&local), "{arguments}");
     }
     let (here, there) = (folder(), folder());
-    let compare = "compare --strategies ga,cma_es --controllers gait --seeds 2 --evaluations 40 --population 20 \
-                   --duration 2 --out";
+    let compare = "study methods --strategies ga,cma_es --controllers gait --baseline ga-gait --seeds 2 --evaluations 40 \
+                   --population 20 --duration 2 --out";
     json_lines(here.path(), &format!("{compare} . --json"));
     Run::start(there.path(), &format!("{compare} ."), &server.url()).lines();
     let csv = |folder: &std::path::Path| {
-        let files = std::fs::read_dir(folder).expect("a folder");
-        let paths = files.map(|file| file.expect("a file").path());
-        let csv = paths.into_iter().find(|path| path.extension().is_some_and(|of| of == "csv"));
-        std::fs::read_to_string(csv.expect("a table")).expect("read")
+        std::fs::read_to_string(folder.join("methods-runs.csv")).expect("read")
     };
     assert_eq!(csv(there.path()), csv(here.path()));
 }

@@ -29,3 +29,6 @@ pub use newborns::NewbornStatistics;
 pub use report::{json_lines, tables, values_as_markdown};
 pub use run::{FinishedRun, PlannedRun};
 pub use values::{Form, ValueInfo, value, values};
+
+#[cfg(test)]
+mod tests;

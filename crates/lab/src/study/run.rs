@@ -10,6 +10,7 @@ use crate::run::{Cancelled, Evaluator, Experiment, GenerationReport, RunControl}
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{Champion, RunPlan, check_effects};
 use snakes_core::save::{CURVE_POINTS, Protocol, SaveError, StudiedRun, StudyRuns, StudyValue};
+use snakes_core::score::Fitness;
 
 /// A run that is to be made.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +49,14 @@ impl Study {
         for arm in self.selected_arms() {
             let plan = self.plan(arm, self.first_seed)?;
             of_arms.push((arm, arm.protocol(&plan), plan));
+        }
+        for (arm, _, plan) in &of_arms {
+            let fitness = plan.settings.trial.fitness;
+            if !self.references.is_empty() && fitness != Fitness::Centre {
+                let allowed = "centre, as of the published means";
+                let field = format!("trial.fitness of {}", arm.name);
+                return Err(SaveError::Study(Invalid::new(field, fitness, allowed)));
+            }
         }
         for name in self.settings.keys() {
             let is_used = |plan: &RunPlan| check_effects(&plan.settings, [name.as_str()]).is_ok();

@@ -6,7 +6,7 @@ use clap::CommandFactory;
 use std::ffi::OsString;
 
 /// Every task, as words of the command line.
-const TASKS: [(Task, &str); 27] = [
+const TASKS: [(Task, &str); 21] = [
     (Window, ""),
     (Run, "--no-render"),
     (ReplayInWindow, "replay a.ron"),
@@ -14,18 +14,12 @@ const TASKS: [(Task, &str); 27] = [
     (Bench, "bench"),
     (BenchChampion, "bench a.ron"),
     (Body, "body a.ron"),
-    (BodyStudy, "body-study"),
-    (PoetStudy, "poet-study"),
-    (StairsStudy, "stairs-study"),
-    (EngineStudy, "engine-study"),
+    (Study, "study"),
     (Verify, "verify"),
     (Exam, "exam a.ron"),
     (Export, "export a.ron -o a.csv"),
     (Robust, "robust a.ron"),
-    (Compare, "compare"),
     (Completions, "completions bash"),
-    (Families, "families"),
-    (Table1, "table1"),
     (Figures, "figures run"),
     (Render, "render a.ron"),
     (Worker, "worker --nats nats://a"),
@@ -96,7 +90,7 @@ fn every_pair_of_a_flag_and_a_task_is_accepted_or_refused_by_name() {
 fn flags_of_a_server_are_refused_without_one_and_threads_with_one() {
     for (words, problem) in [
         ("--no-render --expect-workers 2", "--expect-workers has no effect without --nats"),
-        ("compare --tls-ca a.pem", "--tls-ca has no effect without --nats"),
+        ("study --tls-ca a.pem", "--tls-ca has no effect without --nats"),
         ("worker", "snakes worker needs --nats URL"),
         ("machines", "snakes machines needs --nats URL"),
         (
@@ -116,7 +110,7 @@ fn flags_of_a_server_are_refused_without_one_and_threads_with_one() {
 
 #[test]
 fn no_render_is_refused_where_no_window_opens() {
-    for words in ["bench", "verify", "robust a.ron", "compare", "table1", "presets"] {
+    for words in ["bench", "verify", "robust a.ron", "study", "presets"] {
         let message = parsed(&format!("{words} --no-render")).expect_err("refused");
         assert!(message.starts_with("--no-render has no effect with snakes"), "{message}");
     }
@@ -125,16 +119,10 @@ fn no_render_is_refused_where_no_window_opens() {
 #[test]
 fn the_help_of_a_task_lists_exactly_the_flags_that_the_task_accepts() {
     for (subcommand, tasks) in [
-        ("compare", &[Compare][..]),
-        ("body-study", &[BodyStudy]),
-        ("poet-study", &[PoetStudy]),
-        ("stairs-study", &[StairsStudy]),
-        ("engine-study", &[EngineStudy]),
-        ("families", &[Families]),
+        ("study", &[Study][..]),
         ("robust", &[Robust]),
         ("bench", &[Bench]),
         ("verify", &[Verify]),
-        ("table1", &[Table1]),
         ("figures", &[Figures]),
         ("render", &[Render]),
         ("export", &[Export]),
@@ -171,7 +159,7 @@ fn the_server_and_the_threads_mean_something_else_to_a_worker() {
         let Ok(Parsed::Print(help)) = parse(arguments) else { panic!("{subcommand} has help") };
         help.split_whitespace().collect::<Vec<&str>>().join(" ")
     };
-    assert!(help("compare").contains("Compute on the workers of this NATS server"));
+    assert!(help("study").contains("Compute on the workers of this NATS server"));
     for (subcommand, flag, text) in OTHER_HELP {
         assert!(help(subcommand).contains(text), "--{flag} of {subcommand}");
         assert!(!help(subcommand).contains("Compute on the workers"), "{subcommand}");
