@@ -126,12 +126,17 @@ impl Results<'_> {
         self.of(arm).iter().filter_map(of_run).collect()
     }
 
-    /// The values of an arm and of the one with which it is compared, for each seed that both have. A failed run has none.
+    /// The values of an arm and of the one with which it is compared, for each seed that both have. A run without a healthy snake
+    /// has none. A run with one that was not measured, such as a champion that took no exam, is left out.
     pub fn pairs(&self, arm: &Arm, against: &Arm, info: &ValueInfo) -> Vec<[Option<f64>; 2]> {
         let others = self.of(against);
+        let value = |run: &StudiedRun| {
+            let number = number_of(info, run);
+            (number.is_some() || run.number("fitness").is_none()).then_some(number)
+        };
         let pair = |run: &&StudiedRun| {
             let other = others.iter().find(|other| other.seed == run.seed)?;
-            Some([run, other].map(|run| number_of(info, run)))
+            Some([value(run)?, value(other)?])
         };
         self.of(arm).iter().filter_map(pair).collect()
     }

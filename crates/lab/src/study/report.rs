@@ -78,12 +78,14 @@ fn cell(results: &Results<'_>, arm: &Arm, runs: &[&StudiedRun], info: &ValueInfo
     let numbers: Vec<f64> =
         results.numbers(arm, info).into_iter().map(|(_, number)| number).collect();
     let (count, sum) = (numbers.len(), numbers.iter().sum::<f64>());
+    let came = numbers.iter().filter(|number| number.is_finite()).count();
     match Quartiles::of(numbers) {
         None => "–".to_owned(),
         Some(_) if info.form == Form::Flag => number(sum, 0),
-        // The unit stands in the head of the column.
         Some(quartiles) => {
-            quartiles_text(&quartiles, count, &ValueInfo { unit: "", ..info.clone() })
+            // The unit stands in the head of the column.
+            let words = quartiles_text(&quartiles, count, &ValueInfo { unit: "", ..info.clone() });
+            if info.form == Form::Until { format!("{words}: {came} of {count}") } else { words }
         }
     }
 }

@@ -237,7 +237,7 @@ pub fn values() -> Vec<ValueInfo> {
         };
         for (ending, title, digits, about) in OF_SUITE {
             let about = format!("{about} in the suite {}.", suite.choice().name);
-            let title = format!("{}{title}", suite.choice().name);
+            let title = format!("{}{title}", suite.choice().title.to_lowercase());
             values.push(number(format!("exam_{name}{ending}"), title, digits, about));
         }
         if *suite == ExamSuite::HeldOut {
