@@ -1,6 +1,5 @@
 //! `snakes bench`: the speed of the simulation, as a table or JSON.
 
-use std::io;
 use std::path::Path;
 use std::time::Duration;
 
@@ -30,8 +29,9 @@ pub fn print_bench(args: &Args, champion: Option<&Path>) -> Result<(), CliError>
     bar.finish_and_clear();
     let report = report.map_err(HeadlessError::from)?;
     if args.json {
-        let line = serde_json::to_string(&report).map_err(io::Error::other);
-        return print(&format!("{}\n", line.map_err(HeadlessError::from)?));
+        let mut line = serde_json::json!(report);
+        line["type"] = "bench".into();
+        return print(&format!("{line}\n"));
     }
     print(&table(&report))
 }

@@ -1,4 +1,4 @@
-//! `snakes body`: the body of a champion in numbers.
+//! `snakes show body`: the body of a champion in numbers.
 
 use std::path::Path;
 
@@ -23,6 +23,7 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
         let [width_m, length_m, height_m] = body.limb_size_m(index);
         let spring = body.spring_of(index);
         let line = serde_json::json!({
+            "type": "block",
             "block": index + 1,
             "joined_to": joint.map(|joint| body.parts[joint.parent].limb + 1),
             "length_m": length_m,

@@ -18,8 +18,12 @@ use snakes_lab::run::Evaluator;
 use snakes_lab::run::headless::say;
 
 fn server(args: &Args) -> BrokerOptions {
-    let url = args.nats.clone().unwrap_or_default();
-    BrokerOptions { url, creds: args.creds.clone(), tls_ca: args.tls_ca.clone() }
+    let url = args.workers.nats.clone().unwrap_or_default();
+    BrokerOptions {
+        url,
+        creds: args.workers.credentials.creds.clone(),
+        tls_ca: args.workers.credentials.tls_ca.clone(),
+    }
 }
 
 /// An evaluator on the workers of a server.
@@ -69,7 +73,7 @@ pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
         let found = purge(&broker, run)?;
         let line = match args.json {
             true => {
-                json!({"run": run, "batches": found.batches, "results": found.results}).to_string()
+                json!({"type": "removed", "run": run, "batches": found.batches, "results": found.results}).to_string()
             }
             false => {
                 format!("{run}: removed {} batches and {} results", found.batches, found.results)
@@ -82,9 +86,13 @@ pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
 }
 
 fn as_json(machines: &Machines) -> String {
-    let workers = machines.workers.values().map(|worker| json!({"worker": worker}));
-    let runs = machines.runs.values().map(|run| json!({"run": run}));
-    let queues = machines.queues.iter().map(|(run, queue)| json!({"queue": run, "waiting": queue}));
+    let workers =
+        machines.workers.values().map(|worker| json!({"type": "worker", "worker": worker}));
+    let runs = machines.runs.values().map(|run| json!({"type": "run", "run": run}));
+    let queues = machines
+        .queues
+        .iter()
+        .map(|(run, queue)| json!({"type": "queue", "queue": run, "waiting": queue}));
     workers.chain(runs).chain(queues).map(|line| format!("{line}\n")).collect()
 }
 

@@ -10,7 +10,7 @@ use snakes_lab::run::Evaluator;
 /// The evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
 /// results: the same command in the same place finds what is left of it there.
 pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
-    if args.nats.is_none() {
+    if args.workers.nats.is_none() {
         return args.local_evaluator();
     }
     #[cfg(feature = "cluster")]

@@ -88,7 +88,7 @@ pub fn exam(
         return result;
     }
     if args.json {
-        return print(&format!("{}\n", json!({"done": true, "files": files.len()})));
+        return print(&format!("{}\n", json!({"type": "done", "files": files.len()})));
     }
     print(&table(&suites, &rows))
 }
@@ -142,6 +142,7 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
         kept_in.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
     let classes: Vec<_> = result.classes().into_iter().map(class_json).collect();
     let line = json!({
+        "type": "suite",
         "file": file.display().to_string(),
         "suite": result.suite.choice().name,
         "trials": result.trials,
@@ -179,6 +180,7 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
         })
     };
     let line = json!({
+        "type": "suite",
         "file": file.display().to_string(),
         "suite": MUJOCO,
         "version": version,

@@ -14,6 +14,7 @@ use super::error::CliError;
 use super::film;
 use super::output::{cancel_on_interrupt, print};
 use super::replay::equals_record;
+use snakes_core::check::Invalid;
 use snakes_lab::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
 use snakes_lab::run::headless::{HeadlessError, say};
 use snakes_lab::run::progress_bar::bar_of;
@@ -24,14 +25,23 @@ const PER_MILLE: f64 = 1000.0;
 
 /// Writes the file, and prints its path.
 pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
-    let format = ExportFormat::of_path("--output", &wanted.output)?;
-    refuse_other_flags(args, wanted, format)?;
+    let Some(output) = wanted.output.as_deref().filter(|_| !wanted.figures) else {
+        return figures(args, wanted);
+    };
+    let format = ExportFormat::of_path("--output", output)?;
+    refuse_other_flags(wanted, format)?;
+    #[cfg(feature = "studio")]
+    if let Some(at) = &wanted.film.at {
+        refuse_json(args, "--at")?;
+        crate::studio::name_runtime_folder(|_| ());
+        return super::render::draw(wanted, at, output);
+    }
     #[cfg(feature = "studio")]
     if format.is_film() {
-        let film = film::ordered(args, wanted, format)?;
+        let film = film::ordered(wanted, format, output)?;
         return with_progress(args, wanted, |progress| film.carry_out(progress));
     }
-    let mut order = ExportOrder::new(ExportSource::read(&wanted.files)?, wanted.output.clone())?;
+    let mut order = ExportOrder::new(ExportSource::read(&wanted.files)?, output.to_owned())?;
     for champion in order.champions_mut() {
         if !equals_record(&champion.file, &champion.loaded)? {
             champion.take_result_of_this_engine();
@@ -41,20 +51,46 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     }
     with_progress(args, wanted, |progress| {
         order.carry_out(progress)?;
-        Ok(wanted.output.clone())
+        Ok(output.to_owned())
     })
 }
 
+/// Draws the figures of a run.
+fn figures(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
+    refuse_json(args, "--figures")?;
+    if let Some(flag) = wanted.film.given() {
+        return Err(CliError::Usage(format!("{flag} has no effect with --figures")));
+    }
+    let [run] = wanted.files.as_slice() else {
+        let problem = "--figures needs one file, the folder of a run".to_owned();
+        return Err(CliError::Usage(problem));
+    };
+    #[cfg(feature = "studio")]
+    {
+        crate::studio::name_runtime_folder(|_| ());
+        super::figures::draw(run, wanted.output.as_deref())
+    }
+    #[cfg(not(feature = "studio"))]
+    {
+        let _ = run;
+        Err(CliError::NoStudio)
+    }
+}
+
+fn refuse_json(args: &Args, flag: &str) -> Result<(), CliError> {
+    let problem = || CliError::Usage(format!("--json has no effect with {flag}"));
+    if args.json { Err(problem()) } else { Ok(()) }
+}
+
 /// Refuses flags that have no effect in this format.
-fn refuse_other_flags(
-    args: &Args,
-    wanted: &ExportArgs,
-    format: ExportFormat,
-) -> Result<(), CliError> {
-    let theme = args.has_theme().then_some("--theme");
-    let given = wanted.film.given().or(theme).filter(|_| !format.is_film());
+fn refuse_other_flags(wanted: &ExportArgs, format: ExportFormat) -> Result<(), CliError> {
+    let ending = format.info().ending;
+    if wanted.film.at.is_some() && format != ExportFormat::Png {
+        let allowed = "a name that ends in .png";
+        return Err(Invalid::new("--output", format!("\".{ending}\""), allowed).into());
+    }
+    let given = wanted.film.given().filter(|_| !format.is_film());
     given.map_or(Ok(()), |flag| {
-        let ending = format.info().ending;
         let problem = format!("{flag} has no effect with .{ending} (see snakes export --help)");
         Err(CliError::Usage(problem))
     })
@@ -77,8 +113,10 @@ fn with_progress(
             let per_mille = (share * PER_MILLE) as u32;
             if told.replace(Some(per_mille)) != Some(per_mille) {
                 // A reader that has gone away does not end the export.
-                let _ =
-                    print(&format!("{}\n", json!({"progress": f64::from(per_mille) / PER_MILLE})));
+                let _ = print(&format!(
+                    "{}\n",
+                    json!({"type": "progress", "progress": f64::from(per_mille) / PER_MILLE})
+                ));
             }
         };
         work(&ExportProgress::new(&show, &is_cancelled))?
@@ -97,7 +135,7 @@ fn with_progress(
 fn said(args: &Args, saved: &Path) -> String {
     let path = saved.display();
     if args.json {
-        format!("{}\n", json!({"saved": path.to_string()}))
+        format!("{}\n", json!({"type": "done", "saved": path.to_string()}))
     } else {
         format!("saved to {path}\n")
     }

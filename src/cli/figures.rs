@@ -1,25 +1,24 @@
-//! `snakes figures`: a picture of each generation's champion, and a plot of a torque signal.
+//! `snakes export RUN --figures`: a picture of each generation's champion, and a plot of a torque signal.
 
 use std::path::Path;
+use std::time::Duration;
 
-use indicatif::ProgressBar;
-
-use super::args::Args;
 use super::error::CliError;
 use super::output::print;
 use crate::studio::figures;
 use snakes_core::evolve::Champion;
 use snakes_core::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
 use snakes_lab::plot;
+use snakes_lab::run::progress_bar::bar_of;
 
 /// Size of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);
 
 /// Draws the champions of a run's folder (the report's Figures 5 to 10) and one torque signal (its Figure 4). The files
 /// go into the run's own folder `figures`, unless another is named.
-pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
+pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
     let (numbers, champions): (Vec<u32>, Vec<LoadedChampion>) = load_run(run)?.into_iter().unzip();
-    let folder = match args.out_folder() {
+    let folder = match named {
         Some(named) => SavesFolder::find(Some(named)),
         None => SavesFolder::within_run(run, "figures")?,
     };
@@ -35,7 +34,9 @@ pub fn draw(args: &Args, run: &Path) -> Result<(), CliError> {
         let title = format!("Bend torque of the first joint, champion of generation {number}");
         keep("signal.png".to_owned(), &plot::signal(&last.champion, &title)?)?;
     }
-    let bar = ProgressBar::new(champions.len() as u64);
+    let bar = bar_of(champions.len() as u64, "pictures");
+    // The first takes seconds to begin.
+    bar.enable_steady_tick(Duration::from_millis(200));
     let pictures = figures::draw(&champions, SIZE, |_| bar.inc(1));
     bar.finish_and_clear();
     for ((number, loaded), (mut picture, evaluation)) in

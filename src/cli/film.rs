@@ -1,9 +1,9 @@
 //! `snakes export` to a film.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use super::args::{Args, ExportArgs, FilmArgs, size};
+use super::args::{ExportArgs, FilmArgs, size};
 use super::error::{CliError, of_flag};
 use super::replay::{equals_record, named_champions};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
@@ -30,9 +30,9 @@ pub struct OrderedFilm {
 
 /// The film that the flags describe.
 pub fn ordered(
-    args: &Args,
     wanted: &ExportArgs,
     format: ExportFormat,
+    path: &Path,
 ) -> Result<OrderedFilm, CliError> {
     let flags = &wanted.film;
     let is_gif = format == ExportFormat::Gif;
@@ -54,12 +54,12 @@ pub fn ordered(
         fps,
         size,
         camera: CameraMode::named(camera).map_err(of_flag("--camera"))?,
-        theme: args.theme()?.unwrap_or_default(),
+        theme: flags.theme()?,
         overlays: overlays.collect::<Result<_, Invalid>>().map_err(of_flag("--show"))?,
         has_captions: !flags.no_captions,
     };
     check_moments(flags, &order)?;
-    Ok(OrderedFilm { order, format, path: wanted.output.clone() })
+    Ok(OrderedFilm { order, format, path: path.to_owned() })
 }
 
 impl OrderedFilm {

@@ -1,4 +1,4 @@
-//! `snakes presets` and `snakes settings`.
+//! `snakes show presets` and `snakes show settings`.
 
 use super::args::Args;
 use super::error::CliError;
@@ -15,7 +15,8 @@ pub fn print_presets(json: bool) -> Result<(), CliError> {
     let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
     for preset in presets {
         if json {
-            let line = serde_json::json!({"name": preset.name, "about": preset.about});
+            let line =
+                serde_json::json!({"type": "preset", "name": preset.name, "about": preset.about});
             text += &format!("{line}\n");
         } else {
             text += &format!("{:<width$}  {}\n", preset.name, preset.about);
@@ -37,12 +38,12 @@ pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
              The values below, and whether a setting is fixed, are those of the preset `{preset}`. If a setting may \
              change, a new value takes effect with the next generation of the current run, provided that the run's \
              strategy uses it; a fixed setting takes effect with the next run.\n\n\
-             The program generates this page: `snakes settings --markdown > docs/settings.md`.\n{}",
+             The program generates this page: `snakes show settings --markdown > docs/settings.md`.\n{}",
             markdown(&settings)
         ));
     }
     if args.json {
-        let line = serde_json::json!({"preset": preset, "settings": settings});
+        let line = serde_json::json!({"type": "settings", "preset": preset, "settings": settings});
         return print(&format!("{}\n", with_short_numbers(&line)));
     }
     let fields = fields(&settings);

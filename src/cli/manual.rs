@@ -1,14 +1,16 @@
 //! `snakes man`.
 
-use super::args::{self, Args};
+use std::path::Path;
+
+use super::args;
 use super::error::CliError;
 use super::output::print;
 use snakes_core::save::{SavesFolder, store_text};
 
 /// Prints the program's manual page, or writes those of all commands into a folder.
-pub fn manual(args: &Args) -> Result<(), CliError> {
+pub fn manual(named: Option<&Path>) -> Result<(), CliError> {
     let pages = args::manual();
-    let Some(named) = args.out_folder() else {
+    let Some(named) = named else {
         return pages.first().map_or(Ok(()), |page| print(&page.text));
     };
     let folder = SavesFolder::find(Some(named));

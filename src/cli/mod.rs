@@ -29,9 +29,10 @@ mod verify;
 
 use std::ffi::OsString;
 use std::io;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use args::{Args, Subcommand};
+use args::{Args, Task};
 pub use error::CliError;
 use output::{cancel_on_interrupt, print};
 
@@ -41,7 +42,7 @@ use snakes_lab::run::headless::{self, say};
 /// Runs the program with the given arguments, the program's name first.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = args::parse(arguments).and_then(|parsed| match parsed {
-        args::Parsed::Run(args) => dispatch(*args),
+        args::Parsed::Run(args, task) => dispatch(*args, &task),
         args::Parsed::Print(text) => print(&text),
     });
     match result {
@@ -56,56 +57,44 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 /// Does what the arguments ask for. If results turn out to be wrong, because a machine computed other bits after right
 /// ones, everything begins again without that machine.
-fn dispatch(mut args: Args) -> Result<(), CliError> {
+fn dispatch(mut args: Args, task: &Task) -> Result<(), CliError> {
     loop {
-        match perform(&args) {
+        match perform(&args, task) {
             Err(CliError::Tainted(reason)) => {
                 say(&format!(
                     "{reason}; everything begins again, since earlier results may be wrong"
                 ));
-                args.restart = true;
+                args.run.restart = true;
             }
             result => return result,
         }
     }
 }
 
-fn perform(args: &Args) -> Result<(), CliError> {
-    match &args.command {
-        Some(Subcommand::Completions { shell }) => print(&args::completions(*shell)),
-        Some(Subcommand::Man) => manual::manual(args),
-        Some(Subcommand::Presets) => lists::print_presets(args.json),
-        Some(Subcommand::Settings { markdown }) => lists::print_settings(args, *markdown),
-        Some(Subcommand::Body { file }) => body::body(file, args.json),
-        Some(Subcommand::Bench { file }) => bench::print_bench(args, file.as_deref()),
-        Some(Subcommand::Study(wanted)) => study::study(args, wanted),
-        Some(Subcommand::Verify) => verify::verify(args),
-        Some(Subcommand::Robust { file, trials, range }) => {
-            robust::robust(args, file, *trials, &range.into())
+fn perform(args: &Args, task: &Task) -> Result<(), CliError> {
+    match task {
+        Task::Window { files } => open_studio(args, files),
+        Task::Run => evolve(args),
+        Task::CheckReplay { files } => replay::replay(files, args.json),
+        Task::Exam { files, perturbed, .. } if perturbed.trials.is_some() => {
+            robust::robust(args, files, perturbed)
         }
-        Some(Subcommand::Exam { files, suite, write }) => exam::exam(args, files, suite, *write),
-        #[cfg(feature = "studio")]
-        Some(Subcommand::Figures { run }) => {
-            crate::studio::name_runtime_folder(|_| ());
-            figures::draw(args, run)
-        }
-        #[cfg(feature = "studio")]
-        Some(Subcommand::Render(wanted)) => {
-            crate::studio::name_runtime_folder(|_| ());
-            render::draw(args, wanted)
-        }
-        #[cfg(not(feature = "studio"))]
-        Some(Subcommand::Figures { .. } | Subcommand::Render(_)) => Err(CliError::NoStudio),
-        Some(Subcommand::Export(wanted)) => export::export(args, wanted),
+        Task::Exam { files, suites, writes, .. } => exam::exam(args, files, suites, *writes),
+        Task::Study(wanted) => study::study(args, wanted),
+        Task::Export(wanted) => export::export(args, wanted),
+        Task::Presets => lists::print_presets(args.json),
+        Task::Settings { as_markdown } => lists::print_settings(args, *as_markdown),
+        Task::Body { file } => body::body(file, args.json),
+        Task::Verify => verify::verify(args),
+        Task::Bench { file } => bench::print_bench(args, file.as_deref()),
         #[cfg(feature = "cluster")]
-        Some(Subcommand::Worker) => cluster::worker(args),
+        Task::Worker => cluster::worker(args),
         #[cfg(feature = "cluster")]
-        Some(Subcommand::Machines { purge }) => cluster::list(args, purge.as_deref()),
+        Task::Machines { purge } => cluster::list(args, purge.as_deref()),
         #[cfg(not(feature = "cluster"))]
-        Some(Subcommand::Worker | Subcommand::Machines { .. }) => Err(CliError::NoCluster),
-        Some(Subcommand::Replay { files }) if args.no_render => replay::replay(files, args.json),
-        None if args.no_render => evolve(args),
-        None | Some(Subcommand::Replay { .. }) => open_studio(args),
+        Task::Worker | Task::Machines { .. } => Err(CliError::NoCluster),
+        Task::Completions(shell) => print(&args::completions(*shell)),
+        Task::Manual { folder } => manual::manual(folder.as_deref()),
     }
 }
 
@@ -120,7 +109,7 @@ fn evolve(args: &Args) -> Result<(), CliError> {
 }
 
 #[cfg(feature = "studio")]
-fn open_studio(args: &Args) -> Result<(), CliError> {
+fn open_studio(args: &Args, files: &[PathBuf]) -> Result<(), CliError> {
     use crate::studio;
     // Without a display, the only line is the error that follows.
     let has_display = std::env::var_os("DISPLAY").is_some();
@@ -129,12 +118,9 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
             say(note)
         }
     });
-    let files = match &args.command {
-        Some(Subcommand::Replay { files }) => &files[..],
-        _ => &[],
-    };
-    let replay::Opened { champions, problems } = replay::opened(files, args.desktop)?;
-    let comparison = args.comparison.as_deref().map(snakes_core::save::load_study).transpose();
+    let replay::Opened { champions, problems } = replay::opened(files, args.window.desktop)?;
+    let comparison =
+        args.window.comparison.as_deref().map(snakes_core::save::load_study).transpose();
     let (run, saves) = (args.run_source()?, args.saves_folder());
     // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
     let names_run = args.names_run();
@@ -148,15 +134,15 @@ fn open_studio(args: &Args) -> Result<(), CliError> {
         comparison: comparison.map_err(headless::HeadlessError::from)?,
         window_size: args.window_size()?,
         theme: args.theme()?,
-        presents: args.present,
+        presents: args.window.present,
         preferences: args.preferences(),
-        places: args.places.clone(),
+        places: args.window.places.clone(),
         exit_after_frames: args.exit_after_frames()?,
     };
     Ok(studio::run(options)?)
 }
 
 #[cfg(not(feature = "studio"))]
-fn open_studio(_: &Args) -> Result<(), CliError> {
+fn open_studio(_: &Args, _: &[PathBuf]) -> Result<(), CliError> {
     Err(CliError::NoStudio)
 }

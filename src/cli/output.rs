@@ -7,7 +7,7 @@ use super::error::CliError;
 use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::HeadlessError;
 
-/// Writes to standard output. A reader that stops early (`snakes presets | head -1`) is no error.
+/// Writes to standard output. A reader that stops early (`snakes show presets | head -1`) is no error.
 pub fn print(text: &str) -> Result<(), CliError> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),

@@ -58,7 +58,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let [ron, csv] = ["ron", "csv"].map(|kind| folder.path().join(format!("poet.{kind}")));
     let fingerprint = settings_fingerprint(&plan);
     let mut study = PoetStudy::new(fingerprint, plan.seed);
-    if ron.exists() && !args.restart {
+    if ron.exists() && !args.run.restart {
         let earlier = load_poet_study(&ron)?;
         if (&earlier.plan, earlier.seed) != (&study.plan, study.seed) {
             let allowed = format!(
@@ -74,7 +74,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let control = cancel_on_interrupt();
     let evaluator = evaluator(args, "study poet", &ron)?;
     if study.rounds < rounds {
-        let earlier = if args.restart { ExistingRun::Discard } else { ExistingRun::Keep };
+        let earlier = if args.run.restart { ExistingRun::Discard } else { ExistingRun::Keep };
         let source = RunSource::in_saves(&folder, plan.clone(), earlier);
         let measured = measure_poet(source, study, rounds, &*evaluator, &control);
         study = trusted(&*evaluator, measured.map_err(|error| error.keeping(&ron)))?;

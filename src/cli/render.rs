@@ -1,8 +1,8 @@
-//! `snakes render`: a picture of one moment, without a window.
+//! `snakes export FILES -o PICTURE.png --at SECONDS`: a picture of one moment, without a window.
 
-use std::path::PathBuf;
+use std::path::Path;
 
-use super::args::{Args, RenderArgs, size};
+use super::args::{ExportArgs, size};
 use super::error::{CliError, of_flag};
 use super::output::print;
 use super::replay::{equals_record, named_champions};
@@ -12,11 +12,13 @@ use snakes_core::check::{Invalid, within};
 use snakes_core::save::{LoadedChampion, store_picture};
 use snakes_lab::plot;
 
+/// The size of a picture unless one is given.
+const SIZE: &str = "1920x1080";
 /// The largest picture that every common graphics driver can draw.
 const LARGEST_PIXELS: u32 = 8192;
 
 /// Draws the picture, and prints the path of its file.
-pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
+pub fn draw(wanted: &ExportArgs, at: &str, path: &Path) -> Result<(), CliError> {
     within("champions", wanted.files.len(), 1..=MAX_LANES)?;
     let champions = named_champions(&wanted.files)?;
     for (file, (_, loaded)) in wanted.files.iter().zip(&champions) {
@@ -30,13 +32,16 @@ pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
         f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)
     };
     let longest_s = champions.iter().map(|(_, loaded)| length_s(loaded)).fold(0.0, f64::max);
-    let at_s = wanted.at.as_deref().map(|text| moment(text, longest_s)).transpose()?;
+    // No moment stands for the last.
+    let at_s = if at == "end" { None } else { Some(moment(at, longest_s)?) };
+    let film = &wanted.film;
     let scene = RenderedScene {
         at_s,
-        size: size("--size", &wanted.size, (64, 64), LARGEST_PIXELS)?,
-        camera: CameraMode::named(&wanted.camera).map_err(of_flag("--camera"))?,
-        theme: args.theme()?.unwrap_or_default(),
-        overlays: wanted
+        size: size("--size", film.size.as_deref().unwrap_or(SIZE), (64, 64), LARGEST_PIXELS)?,
+        camera: CameraMode::named(film.camera.as_deref().unwrap_or("follow"))
+            .map_err(of_flag("--camera"))?,
+        theme: film.theme()?,
+        overlays: film
             .show
             .iter()
             .map(|name| Overlay::named(name))
@@ -44,24 +49,16 @@ pub fn draw(args: &Args, wanted: &RenderArgs) -> Result<(), CliError> {
             .map_err(of_flag("--show"))?,
         champions,
     };
-    let named_after_first = || PathBuf::from(format!("{}.png", scene.champions[0].0));
-    let path = wanted.output.clone().unwrap_or_else(named_after_first);
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        let allowed = "a name that ends in .png";
-        return Err(
-            Invalid::new("--output", format!("{:?}", path.display().to_string()), allowed).into()
-        );
-    }
     let (mut picture, tags) = render(&scene)?;
     let tags: Vec<(&str, (f32, f32))> =
         tags.iter().map(|tag| (tag.text.as_str(), tag.at)).collect();
     plot::tags(&mut picture, &tags)?;
-    store_picture(&path, &picture)?;
+    store_picture(path, &picture)?;
     print(&format!("saved to {}\n", path.display()))
 }
 
 fn moment(text: &str, longest_s: f64) -> Result<f64, Invalid> {
-    let wrong = |_| Invalid::new("--at", format!("{text:?}"), "a number");
+    let wrong = |_| Invalid::new("--at", format!("{text:?}"), "a number, or end");
     let at_s: f64 = text.parse().map_err(wrong)?;
     within("--at", at_s, 0.0..=longest_s)?;
     Ok(at_s)

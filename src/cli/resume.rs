@@ -31,7 +31,7 @@ fn line(run: &RunSummary, json: bool) -> String {
     let is_stopped = run.is_stopped();
     if json {
         let line = serde_json::json!({
-            "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
+            "type": "run", "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
         });
         return format!("{line}\n");
     }

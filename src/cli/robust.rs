@@ -1,10 +1,10 @@
-//! `snakes robust`: the share of perturbed trials in which a champion reaches each step.
+//! `snakes exam --trials`: the share of perturbed trials in which a champion reaches each step.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use indicatif::ProgressBar;
+use serde_json::json;
 
-use super::args::Args;
+use super::args::{Args, PerturbationArgs, number};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
@@ -14,47 +14,64 @@ use snakes_core::save::load_champion;
 use snakes_core::schema;
 use snakes_core::score::PerturbationRange;
 use snakes_lab::run::headless::HeadlessError;
-use snakes_lab::run::progress_bar::with_bar;
+use snakes_lab::run::progress_bar::{bar_of, with_bar};
 use snakes_lab::run::robust::{Robustness, robustness};
 use snakes_lab::statistics::Share;
 
-/// Runs a champion through perturbed trials and prints the shares.
-pub fn robust(
-    args: &Args,
-    file: &Path,
-    trials: u32,
-    range: &PerturbationRange,
-) -> Result<(), CliError> {
+/// Simulates champions in perturbed trials and prints the shares.
+pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Result<(), CliError> {
+    let number_of = |flag: &str, text: &Option<String>, default: u64| match text {
+        Some(text) => number(flag, text, "a whole number from 0 up"),
+        None => Ok(default),
+    };
+    let trials = number_of("--trials", &wanted.trials, 0)?;
     within("--trials", trials, 1..=1_000_000)?;
-    schema::check(range).map_err(of_its_flag)?;
-    let loaded = load_champion(file)?;
-    let matches = equals_record(file, &loaded)?;
-    let champion = loaded.champion;
-    let evaluator = evaluator(args, "robust", file)?;
-    let (control, seed) = (cancel_on_interrupt(), args.seed()?);
-    let bar = ProgressBar::new(trials.into());
-    let measure = || robustness(&champion, range, trials, seed, &*evaluator, &control);
-    let found = with_bar(&bar, &control, measure);
-    let found = found.map_err(|_| HeadlessError::Cancelled { kept: None });
-    let found = trusted(&*evaluator, found)?;
+    let (trials, seed) = (trials as u32, number_of("--seed", &wanted.seed, 1)?);
+    let range = PerturbationRange::from(wanted);
+    schema::check(&range).map_err(of_its_flag)?;
+    // The first file stands for all.
+    let first = files.first().map_or(Path::new(""), PathBuf::as_path);
+    let evaluator = evaluator(args, "exam", first)?;
+    let control = cancel_on_interrupt();
+    for file in files {
+        let loaded = load_champion(file)?;
+        let matches = equals_record(file, &loaded)?;
+        let bar = bar_of(trials.into(), "trials");
+        let measure = || robustness(&loaded.champion, &range, trials, seed, &*evaluator, &control);
+        let found = with_bar(&bar, &control, measure);
+        let found = found.map_err(|_| HeadlessError::Cancelled { kept: None });
+        let found = trusted(&*evaluator, found)?;
+        print_shares(args.json, file, &found, (&range, seed), matches)?;
+    }
     if args.json {
-        for (step, share) in shares(&found) {
-            let Share { seen, least, most } = share;
-            let line =
-                serde_json::json!({"step": step, "share": seen, "least": least, "most": most});
+        let line = json!({"type": "done", "files": files.len()});
+        return print(&format!("{line}\n"));
+    }
+    Ok(())
+}
+
+/// Prints the shares of a champion.
+fn print_shares(
+    as_json: bool,
+    file: &Path,
+    found: &Robustness,
+    (range, seed): (&PerturbationRange, u64),
+    matches: bool,
+) -> Result<(), CliError> {
+    let name = file.display().to_string();
+    if as_json {
+        for (step, Share { seen, least, most }) in shares(found) {
+            let line = json!({
+                "type": "step", "file": name, "step": step, "share": seen, "least": least, "most": most,
+                "trials": found.trials, "disqualified": found.disqualified, "matches": matches,
+            });
             print(&format!("{line}\n"))?;
         }
-        let line = serde_json::json!({
-            "done": true,
-            "trials": found.trials,
-            "disqualified": found.disqualified,
-            "matches": matches,
-        });
-        return print(&format!("{line}\n"));
+        return Ok(());
     }
     let PerturbationRange { friction, rise, density, start_m, turn_deg, .. } = range;
     let mut text = format!(
-        "{} trials from seed {seed}: friction ±{:.0} %, rise ±{:.0} %, density ±{:.0} %, start ±{start_m} m, \
+        "{name}: {} trials from seed {seed}: friction ±{:.0} %, rise ±{:.0} %, density ±{:.0} %, start ±{start_m} m, \
          turn ±{turn_deg}°\n{} disqualified\n\n{:>14}  {:>6}  95 % interval\n",
         found.trials,
         friction * 100.0,
@@ -64,11 +81,11 @@ pub fn robust(
         "at least",
         "share",
     );
-    for (step, Share { seen, least, most }) in shares(&found) {
-        let name = if step == 1 { "1 step".to_owned() } else { format!("{step} steps") };
+    for (step, Share { seen, least, most }) in shares(found) {
+        let steps = if step == 1 { "1 step".to_owned() } else { format!("{step} steps") };
         let percent = |share: f64| share * 100.0;
         text += &format!(
-            "{name:>14}  {:>4.0} %  {:.1} to {:.1} %\n",
+            "{steps:>14}  {:>4.0} %  {:.1} to {:.1} %\n",
             percent(seen),
             percent(least),
             percent(most)

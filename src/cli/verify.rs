@@ -33,6 +33,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
     if args.json {
         for (found, known) in rows() {
             let line = serde_json::json!({
+                "type": "trajectory",
                 "what": found.what,
                 "hash": found.hash,
                 "reference": known,
@@ -41,7 +42,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
             print(&format!("{line}\n"))?;
         }
         let line = serde_json::json!({
-            "done": true,
+            "type": "done",
             "engine": ENGINE_VERSION,
             "processors": Processors::THIS,
             "fingerprint": fingerprint,

@@ -65,9 +65,9 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
 #[test]
 fn figures_of_a_folder_without_a_run_are_refused() {
     let folder = folder();
-    let message = refusal(folder.path(), "figures nosuch", 1);
+    let message = refusal(folder.path(), "export nosuch --figures", 1);
     assert!(message.starts_with("error: nosuch: cannot be read: "), "{message}");
-    let message = refusal(folder.path(), "figures .", 1);
+    let message = refusal(folder.path(), "export . --figures", 1);
     assert!(message.contains("it contains no generation-1.ron or later"), "{message}");
 }
 
@@ -75,21 +75,21 @@ fn figures_of_a_folder_without_a_run_are_refused() {
 #[test]
 fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
     let folder = folder();
-    let climber = concat!("render ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+    let climber = concat!("export ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron -o a.png");
     for (arguments, message) in [
         ("--at 99", "--at is 99; allowed: 0 to 15"),
         ("--at -1", "--at is -1; allowed: 0 to 15"),
-        ("--at soon", "--at is \"soon\"; allowed: a number"),
-        ("--size 0x0", "--size width is 0; allowed: 64 to 8192"),
-        ("--size big", "--size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
-        ("--camera foo", "--camera is \"foo\"; allowed: follow, side or top"),
-        ("--show ghosts", "--show is \"ghosts\"; allowed: contacts, torques, trail or line"),
-        ("--theme dim", "--theme is \"dim\"; allowed: light or dark"),
+        ("--at soon", "--at is \"soon\"; allowed: a number, or end"),
+        ("--at 3 --size 0x0", "--size width is 0; allowed: 64 to 8192"),
+        ("--at 3 --size big", "--size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
+        ("--at 3 --camera foo", "--camera is \"foo\"; allowed: follow, side or top"),
+        ("--at 3 --show ghosts", "--show is \"ghosts\"; allowed: contacts, torques, trail or line"),
+        ("--at end --theme dim", "--theme is \"dim\"; allowed: light or dark"),
     ] {
         let said = refusal(folder.path(), &format!("{climber} {arguments}"), 2);
         assert_eq!(said, format!("error: {message}"));
     }
-    let said = refusal(folder.path(), "render missing.ron", 1);
+    let said = refusal(folder.path(), "export missing.ron -o a.png --at end", 1);
     assert!(said.contains("missing.ron"), "{said}");
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0, "nothing is drawn");
 }

@@ -9,9 +9,9 @@ use super::program::{folder, stdout_of};
 fn the_settings_page_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/settings.md");
     let page = fs::read_to_string(path).expect("docs/settings.md");
-    let written = stdout_of(folder().path(), "settings --markdown");
+    let written = stdout_of(folder().path(), "show settings --markdown");
     let differs = written.lines().zip(page.lines()).find(|(written, page)| written != page);
-    let regenerate = "run `snakes settings --markdown > docs/settings.md`";
+    let regenerate = "run `snakes show settings --markdown > docs/settings.md`";
     assert_eq!(differs, None, "{regenerate}");
     assert_eq!(written.len(), page.len(), "{regenerate}");
 }
@@ -25,6 +25,14 @@ fn the_citation_names_the_version_of_the_program() {
     let citation = fs::read_to_string(root().join("CITATION.cff")).expect("CITATION.cff");
     let version = format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"));
     assert!(citation.contains(&version), "CITATION.cff does not have the line {version:?}");
+}
+
+#[test]
+fn the_page_of_studies_lists_every_value() {
+    let page = fs::read_to_string(root().join("docs/studies.md")).expect("a page");
+    let (_, listed) = page.split_once("## Values\n\n").expect("a section");
+    let regenerate = "the section Values is what `snakes study --markdown` prints";
+    assert_eq!(listed, snakes_lab::study::values_as_markdown(), "{regenerate}");
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn json_lines_have_the_documented_fields() {
                 "disqualified",
                 "elapsed_s",
                 "evaluations",
-                "first_on_landing",
+                "first_landing",
                 "generation",
                 "hash",
                 "mean",
@@ -54,7 +54,7 @@ fn json_lines_have_the_documented_fields() {
         assert_eq!(line["evaluations"], json!(8));
     }
     let last = &lines[3];
-    assert_eq!(last["done"], json!(true));
+    assert_eq!(last["type"], json!("done"));
     assert_eq!(last["run_hash"].as_str().map(str::len), Some(16));
     let best = lines[..3].iter().map(|line| line["best"].as_f64().expect("a number"));
     assert_eq!(last["best"].as_f64(), best.reduce(f64::max));
@@ -143,7 +143,7 @@ fn a_run_from_a_champion_works_with_every_strategy() {
         let arguments =
             format!("--no-render --json --from {CLIMBER} --set strategy={strategy} {small}");
         let lines = json_lines(folder.path(), &arguments);
-        assert_eq!(lines[2]["done"], json!(true), "{strategy}");
+        assert_eq!(lines[2]["type"], json!("done"), "{strategy}");
     }
 }
 
@@ -200,7 +200,7 @@ fn the_users_own_preset_file_is_used() {
 #[test]
 fn every_preset_runs() {
     let folder = folder();
-    for preset in json_lines(folder.path(), "presets --json") {
+    for preset in json_lines(folder.path(), "show presets --json") {
         let name = preset["name"].as_str().expect("a name");
         let size = "--population 20 --generations 1 --duration 1";
         let strategy = load_preset(name).expect("shipped").settings.evolution.strategy;
@@ -214,7 +214,7 @@ fn every_preset_runs() {
         // POET begins with a quarter of the evaluations, at random.
         let first = if strategy == StrategyKind::Poet { 5 } else { 20 };
         assert_eq!(lines[0]["evaluations"], json!(first), "{name}");
-        assert_eq!(lines[1]["done"], json!(true), "{name}");
+        assert_eq!(lines[1]["type"], json!("done"), "{name}");
     }
 }
 
@@ -222,11 +222,11 @@ fn every_preset_runs() {
 fn a_single_setting_and_the_fitness_can_be_set_by_flag() {
     let folder = folder();
     let arguments =
-        "settings --json --set surface.friction=0.8 --set gravity_m_s2=1.62 --fitness head";
+        "show settings --json --set surface.friction=0.8 --set gravity_m_s2=1.62 --fitness head";
     let settings = &json_lines(folder.path(), arguments)[0]["settings"];
     assert_eq!(settings["trial"]["surface"]["friction"], json!(0.8), "the fewest digits");
     assert_eq!(settings["trial"]["fitness"], json!("head"));
-    let list = stdout_of(folder.path(), "settings --preset ice");
+    let list = stdout_of(folder.path(), "show settings --preset ice");
     let line = list.lines().find(|line| line.starts_with("trial.surface.friction"));
     assert!(line.is_some_and(|line| line.ends_with("= 0.03")), "{list}");
 }
@@ -256,15 +256,18 @@ fn table_1_is_printed_and_written_as_csv_and_png() {
 fn robustness_prints_a_share_with_its_interval_for_each_step() {
     let folder = folder();
     let save = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
-    let text = stdout_of(folder.path(), &format!("robust {save} --trials 20"));
-    assert!(text.starts_with("20 trials from seed 1: friction ±20 %, rise ±10 %"), "{text}");
+    let text = stdout_of(folder.path(), &format!("exam {save} --trials 20"));
+    assert!(
+        text.contains("first-climber.ron: 20 trials from seed 1: friction ±20 %, rise ±10 %"),
+        "{text}"
+    );
     assert_eq!(text.lines().filter(|line| line.contains(" to ")).count(), 10, "{text}");
     let still = "--off-friction 0 --off-rise 0 --off-start 0 --off-turn 0";
-    let lines = json_lines(folder.path(), &format!("robust {save} --trials 3 {still} --json"));
+    let lines = json_lines(folder.path(), &format!("exam {save} --trials 3 {still} --json"));
     assert_eq!(lines[0]["share"], json!(1.0));
-    assert_eq!(lines[10]["disqualified"], json!(0));
-    assert_eq!(lines[10]["matches"], json!(true), "the record is as it was written");
-    let output = run(folder.path(), &format!("robust {save} --off-rise 2"));
+    assert_eq!(lines[9]["disqualified"], json!(0));
+    assert_eq!(lines[9]["matches"], json!(true), "the record is as it was written");
+    let output = run(folder.path(), &format!("exam {save} --trials 3 --off-rise 2"));
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(message.trim_end(), "error: --off-rise is 2; allowed: 0 to 0.9");
@@ -277,7 +280,7 @@ fn robustness_says_that_a_champion_does_not_replay_to_its_record() {
     let fitness = save.find("fitness: ").expect("a record") + "fitness: ".len();
     let edited = format!("{}9{}", &save[..fitness], &save[fitness..]);
     std::fs::write(folder.path().join("edited.ron"), edited).expect("written");
-    let output = run(folder.path(), "robust edited.ron --trials 1 --json");
+    let output = run(folder.path(), "exam edited.ron --trials 1 --json");
     assert_eq!(output.status.code(), Some(0), "its genes can still be measured");
     let said = String::from_utf8_lossy(&output.stderr);
     let start = "warning: edited.ron: does not replay to its record: fitness ";

@@ -100,7 +100,7 @@ fn figures_are_drawn_without_a_display() {
     let small = "--no-render --json --population 6 --generations 2 --duration 1 --out run";
     let champion = json_lines(folder.path(), small)[2]["champion"].clone();
     let run = champion.as_str().and_then(|path| path.rsplit_once('/')).expect("a path").0;
-    stdout_of(folder.path(), &format!("figures {run} --out figures"));
+    stdout_of(folder.path(), &format!("export {run} --figures -o figures"));
     for name in ["signal.png", "generation-1.png", "generation-2.png"] {
         let bytes = std::fs::read(folder.path().join("figures").join(name)).expect(name);
         assert!(bytes.starts_with(b"\x89PNG"), "{name}");

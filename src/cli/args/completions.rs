@@ -4,8 +4,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 
-use super::applicability;
-use super::flags::Args;
+use super::flags::CommandLine;
 use snakes_core::save::{THEMES, built_in_stairs_names, shipped_preset_names};
 use snakes_core::schema::Choices;
 use snakes_core::score::{ExamSuite, Fitness};
@@ -14,7 +13,7 @@ use snakes_lab::run::mujoco::MUJOCO;
 /// The completions of the program for a shell: its subcommands, the flags that have an effect in each, and the names that they
 /// take. The path of an own preset is not completed by all shells, because `--preset` offers names.
 pub fn completions(shell: Shell) -> String {
-    let mut command = applicability::with_own_flags(Args::command());
+    let mut command = CommandLine::command();
     for (flag, names) in [
         ("preset", shipped_preset_names()),
         ("stairs", built_in_stairs_names()),

@@ -11,8 +11,12 @@ pub struct ExportArgs {
     /// Saved champions, or the folder of one run, whose champions of all generations are meant
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
-    #[arg(short, long, value_name = "FILE", help = output_help())]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "FILE", help = output_help(), required_unless_present = "figures")]
+    pub output: Option<PathBuf>,
+    /// Draw the champion of each generation of a run, and one torque signal, as .png files into the folder --output [default: the
+    /// folder figures in the run's]
+    #[arg(long, conflicts_with = "until_input_ends")]
+    pub figures: bool,
     /// The flags of films.
     #[command(flatten)]
     pub film: FilmArgs,

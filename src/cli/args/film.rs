@@ -1,18 +1,23 @@
-//! The flags of `snakes export` that only films have.
+//! The flags of `snakes export` that only pictures and films have.
 
-/// The flags of films.
-#[derive(Debug, clap::Args)]
+#[cfg(feature = "studio")]
+use crate::cli::error::{CliError, of_flag};
+#[cfg(feature = "studio")]
+use crate::studio::Theme;
+
+/// The flags of pictures and films.
+#[derive(Debug, Default, clap::Args)]
 pub struct FilmArgs {
-    /// Size of a film, in pixels [default: 1280x720; for .gif 640x360]
+    /// Size, in pixels [default: 1280x720; for .gif 640x360; with --at 1920x1080]
     #[arg(long, value_name = "WIDTHxHEIGHT", help_heading = FILMS)]
     pub size: Option<String>,
     /// Frames per second of a film [default: 30; for .gif 25]
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = FILMS)]
     pub fps: Option<String>,
-    /// Camera of a film: follow, side or top [default: follow]
+    /// Camera: follow, side or top [default: follow]
     #[arg(long, value_name = "NAME", help_heading = FILMS)]
     pub camera: Option<String>,
-    /// Overlays of a film, separated by commas: contacts, torques, trail, line
+    /// Overlays, separated by commas: contacts, torques, trail, line
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = FILMS)]
     pub show: Vec<String>,
     /// Leave out names, results and the time
@@ -27,15 +32,28 @@ pub struct FilmArgs {
     /// Last moment of a film, in simulated seconds [default: the end]
     #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS)]
     pub end: Option<String>,
+    /// Colour theme: light or dark [default: light]
+    #[arg(long, value_name = "NAME", help_heading = FILMS)]
+    pub theme: Option<String>,
+    /// Draw this one moment as a .png file, all champions side by side, in simulated seconds; "end" is the last
+    #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS, conflicts_with_all = ["fps", "no_captions", "speed", "start", "end", "story"])]
+    pub at: Option<String>,
     /// Film the champions of a run's first, middle and last generation in turn; FILES is the run's folder
     #[arg(long, help_heading = FILMS)]
     pub story: bool,
 }
 
 /// Heading of these flags in the help.
-const FILMS: &str = "Films";
+const FILMS: &str = "Pictures and films";
 
 impl FilmArgs {
+    /// The colour theme.
+    #[cfg(feature = "studio")]
+    pub fn theme(&self) -> Result<Theme, CliError> {
+        let named = self.theme.as_deref().map(str::parse).transpose();
+        Ok(named.map_err(of_flag("--theme"))?.unwrap_or_default())
+    }
+
     /// The first of these flags that is given.
     pub fn given(&self) -> Option<&'static str> {
         let flags = [
@@ -47,6 +65,8 @@ impl FilmArgs {
             ("--speed", self.speed.is_some()),
             ("--start", self.start.is_some()),
             ("--end", self.end.is_some()),
+            ("--theme", self.theme.is_some()),
+            ("--at", self.at.is_some()),
             ("--story", self.story),
         ];
         flags.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)

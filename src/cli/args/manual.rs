@@ -4,8 +4,7 @@ use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
 
-use super::applicability;
-use super::flags::Args;
+use super::flags::CommandLine;
 
 /// The end of every page.
 const EXIT_STATUS: &str = "0: done. 1: failed. 2: used wrongly; the message names the flag, its value and the allowed range.";
@@ -20,7 +19,7 @@ pub struct ManualPage {
 
 /// The pages of the program and of all subcommands, the program's first.
 pub fn manual() -> Vec<ManualPage> {
-    let mut command = applicability::with_own_flags(Args::command())
+    let mut command = CommandLine::command()
         .disable_help_subcommand(true)
         .override_usage("snakes [OPTIONS] [COMMAND]")
         .subcommand_help_heading("COMMANDS");
@@ -53,7 +52,7 @@ mod tests {
             &pages.iter().find(|page| page.file == file).expect("there is such a page").text
         };
         assert_eq!(pages[0].file, "snakes.1");
-        let commands = Args::command().get_subcommands().count();
+        let commands = CommandLine::command().get_subcommands().count();
         assert_eq!(pages.len(), 1 + commands);
         assert!(text_of("snakes-exam.1").contains("\\-\\-suite"));
         assert!(text_of("snakes-bench.1").contains("\\-\\-preset"));

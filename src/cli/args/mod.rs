@@ -1,28 +1,26 @@
-//! The flags and subcommands, and how they override a preset.
+//! The flags and commands, and how they override a preset.
 
-mod applicability;
 mod completions;
 mod export;
 mod film;
 mod flags;
 mod manual;
 mod parse;
-mod render;
 mod robust;
 mod run;
 mod study;
+mod task;
 mod values;
 
 pub use completions::completions;
 pub use export::ExportArgs;
 #[cfg(feature = "studio")]
 pub use film::FilmArgs;
-pub use flags::{Args, Subcommand};
 pub use manual::manual;
 pub use parse::{Parsed, parse};
-#[cfg(feature = "studio")]
-pub use render::RenderArgs;
+pub use robust::PerturbationArgs;
 pub use study::StudyArgs;
+pub use task::{Args, Task};
 pub use values::number;
 #[cfg(feature = "studio")]
 pub use values::size;

@@ -5,26 +5,32 @@ use std::ffi::OsString;
 use clap::error::{ContextKind, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
 
-use super::applicability;
-use super::flags::Args;
+use super::flags::CommandLine;
+use super::task::{Args, Task};
 use crate::cli::error::CliError;
 use snakes_core::evolve::{Settings, fields};
 
 /// The result of parsing.
 pub enum Parsed {
-    /// Flags and perhaps a subcommand.
-    Run(Box<Args>),
+    /// A task, and the flags for it.
+    Run(Box<Args>, Box<Task>),
     /// A text to print: help or version.
     Print(String),
 }
 
 /// Earlier names of commands, with those that took their place.
-const EARLIER_NAMES: [(&str, &str); 7] = [
+const EARLIER_NAMES: [(&str, &str); 13] = [
+    ("body", "show body"),
     ("body-study", "study bodies"),
     ("compare", "study methods"),
     ("engine-study", "study engines"),
     ("families", "study families"),
+    ("figures", "export RUN --figures"),
     ("poet-study", "study poet"),
+    ("presets", "show presets"),
+    ("render", "export FILES -o PICTURE.png --at SECONDS"),
+    ("robust", "exam FILES --trials 100"),
+    ("settings", "show settings"),
     ("stairs-study", "study stairs"),
     ("table1", "study table1"),
 ];
@@ -39,13 +45,14 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
     if let Some((earlier, now)) = named {
         return Err(CliError::Usage(format!("snakes {earlier} is now: snakes {now}")));
     }
-    let command = applicability::with_own_help(Args::command());
-    let matches = command.try_get_matches_from(arguments);
-    let parsed = matches.and_then(|matches| Ok((Args::from_arg_matches(&matches)?, matches)));
+    let parsed = CommandLine::command().try_get_matches_from(arguments).and_then(|matches| {
+        let line = CommandLine::from_arg_matches(&matches)?;
+        Ok((line, matches))
+    });
     match parsed {
-        Ok((args, matches)) => {
-            applicability::check(&matches, &args)?;
-            Ok(Parsed::Run(Box::new(args)))
+        Ok((line, matches)) => {
+            let (args, task) = line.task(&matches)?;
+            Ok(Parsed::Run(Box::new(args), Box::new(task)))
         }
         Err(error) => match error.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {

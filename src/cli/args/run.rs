@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use super::flags::{Args, Subcommand};
+use super::task::Args;
 use super::values::number;
 use crate::cli::error::{CliError, of_flag};
 use crate::cli::resume::run_in;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
 use snakes_core::save::{
-    DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs,
-    shipped_presets,
+    ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs, shipped_presets,
 };
 use snakes_core::schema::Choices;
 use snakes_core::score::Fitness;
@@ -19,55 +18,48 @@ use snakes_lab::run::RunSource;
 const WHOLE: &str = "a whole number from 0 up";
 
 impl Args {
-    /// The preset that is named, or the subcommand's default, as it stands in its file.
+    /// The preset that is named, or the command's default, as it stands in its file.
     pub fn preset(&self) -> Result<Preset, CliError> {
-        let default = match self.command {
-            // It is about the report's run.
-            Some(Subcommand::Bench { .. }) => "report",
-            _ => DEFAULT_PRESET,
-        };
-        Ok(load_preset(self.preset.as_deref().unwrap_or(default))?)
+        Ok(load_preset(self.run.settings.preset.as_deref().unwrap_or(self.default_preset))?)
     }
 
     /// The folder for this run's champions.
     pub fn saves_folder(&self) -> SavesFolder {
-        SavesFolder::find(self.out.as_deref().or(self.saves.as_deref()))
-    }
-
-    /// The folder that is named for results.
-    pub fn out_folder(&self) -> Option<&Path> {
-        self.out.as_deref()
+        SavesFolder::find(self.run.out.out.as_deref().or(self.run.saves.as_deref()))
     }
 
     /// The folder for tables: the working directory, unless another is named.
     pub fn results_folder(&self) -> SavesFolder {
-        SavesFolder::find(Some(self.out.as_deref().unwrap_or(Path::new("."))))
+        SavesFolder::find(Some(self.run.out.out.as_deref().unwrap_or(Path::new("."))))
     }
 
     /// The run in the folder to resume, or the run that the flags describe.
     pub fn run_source(&self) -> Result<RunSource, CliError> {
-        if let Some(folder) = &self.resume {
+        if let Some(folder) = &self.run.resume {
             let mut run = run_in(folder, self.json)?;
-            if self.restart {
+            if self.run.restart {
                 run.earlier = ExistingRun::Discard;
             }
             return Ok(run);
         }
-        let plan = match &self.from {
+        let plan = match &self.run.from {
             Some(file) => self.plan_from(file)?,
             None => {
                 let (preset, settings) = self.settings_of_run()?;
                 RunPlan::new(&preset, self.seed()?, settings)
             }
         };
-        let earlier = if self.restart { ExistingRun::Discard } else { ExistingRun::Keep };
+        let earlier = if self.run.restart { ExistingRun::Discard } else { ExistingRun::Keep };
         Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 
     /// Whether the flags name a run that may exist: by its folder, seed or founder, or to begin it again.
     #[cfg(feature = "studio")]
     pub fn names_run(&self) -> bool {
-        self.resume.is_some() || self.seed.is_some() || self.from.is_some() || self.restart
+        self.run.resume.is_some()
+            || self.run.seed.seed.is_some()
+            || self.run.from.is_some()
+            || self.run.restart
     }
 
     /// The run that begins from a saved champion. Its search is that of the named preset, else of the preset that the
@@ -75,7 +67,7 @@ impl Args {
     /// widened to include the champion. The flags' values are put in last.
     fn plan_from(&self, file: &Path) -> Result<RunPlan, CliError> {
         let Champion { genome, trial, origin, .. } = load_champion(file)?.champion;
-        let mut preset = match &self.preset {
+        let mut preset = match &self.run.settings.preset {
             Some(named) => load_preset(named)?,
             None => {
                 let shipped = shipped_presets()?;
@@ -83,7 +75,7 @@ impl Args {
                 its_own.map_or_else(|| self.preset(), Ok)?
             }
         };
-        if self.preset.is_none() {
+        if self.run.settings.preset.is_none() {
             preset.settings.trial = trial;
         }
         preset.settings.genome = preset.settings.genome.widened_for(&genome);
@@ -108,35 +100,36 @@ impl Args {
 
     /// Refuses `--set` of a field that nothing in a run with these settings uses.
     fn check_effects(&self, settings: &Settings) -> Result<(), Invalid> {
-        let paths = self.set.iter().filter_map(|text| Some(text.split_once('=')?.0.trim()));
+        let paths =
+            self.run.settings.set.iter().filter_map(|text| Some(text.split_once('=')?.0.trim()));
         check_effects(settings, paths)
     }
 
     /// The preset that is named.
     pub fn named_preset(&self) -> Option<&str> {
-        self.preset.as_deref()
+        self.run.settings.preset.as_deref()
     }
 
     /// The stairs that are named.
     pub fn named_stairs(&self) -> Option<&str> {
-        self.stairs.as_deref()
+        self.run.settings.stairs.as_deref()
     }
 
     /// The settings that `--population`, `--generations`, `--fitness` and `--set` change, by their names.
     pub fn changes(&self) -> Result<Vec<(&str, String)>, CliError> {
         let mut changes = Vec::new();
         for (flag, name, text) in [
-            ("--population", "evolution.population", &self.population),
-            ("--generations", "evolution.generations", &self.generations),
+            ("--population", "evolution.population", &self.run.settings.population),
+            ("--generations", "evolution.generations", &self.run.settings.generations),
         ] {
             if let Some(text) = text {
                 changes.push((name, number::<u32>(flag, text, WHOLE)?.to_string()));
             }
         }
-        if let Some(text) = &self.fitness {
+        if let Some(text) = &self.run.settings.fitness {
             changes.push(("trial.fitness", Fitness::named("--fitness", text)?.to_string()));
         }
-        for text in &self.set {
+        for text in &self.run.settings.set {
             let (name, value) = named_value(text)?;
             changes.push((name, value.to_owned()));
         }
@@ -145,23 +138,23 @@ impl Args {
 
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
-        if let Some(text) = &self.population {
+        if let Some(text) = &self.run.settings.population {
             settings.evolution.population = number("--population", text, WHOLE)?;
         }
-        if let Some(text) = &self.generations {
+        if let Some(text) = &self.run.settings.generations {
             settings.evolution.generations = number("--generations", text, WHOLE)?;
         }
         if let Some(duration_s) = self.duration_s()? {
             settings.trial.duration_s = duration_s;
         }
-        if let Some(text) = &self.fitness {
+        if let Some(text) = &self.run.settings.fitness {
             settings.trial.fitness = Fitness::named("--fitness", text)?;
         }
-        if let Some(named) = &self.stairs {
+        if let Some(named) = &self.run.settings.stairs {
             settings.trial.stairs = load_stairs(named)?.stairs;
         }
         let mut changes = Vec::new();
-        for text in &self.set {
+        for text in &self.run.settings.set {
             changes.push(named_value(text)?);
         }
         let changed = with_fields(&settings, changes).map_err(|invalid| {
@@ -179,10 +172,10 @@ impl Args {
     /// An error about a setting, with the name of the flag if one was given for it.
     pub fn of_its_flag(&self, invalid: Invalid) -> Invalid {
         let flags = [
-            ("evolution.population", "--population", &self.population),
-            ("evolution.generations", "--generations", &self.generations),
-            ("trial.duration_s", "--duration", &self.duration),
-            ("trial.fitness", "--fitness", &self.fitness),
+            ("evolution.population", "--population", &self.run.settings.population),
+            ("evolution.generations", "--generations", &self.run.settings.generations),
+            ("trial.duration_s", "--duration", &self.run.settings.duration),
+            ("trial.fitness", "--fitness", &self.run.settings.fitness),
         ];
         let is_it = |(field, _, given): &&(&str, &str, &Option<String>)| {
             *field == invalid.field && given.is_some()
@@ -206,6 +199,7 @@ fn named_value(text: &str) -> Result<(&str, &str), Invalid> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args::flags::CommandLine;
     use crate::cli::args::{Parsed, parse};
     use clap::CommandFactory;
     use std::ffi::OsString;
@@ -213,7 +207,7 @@ mod tests {
     fn args(words: &str) -> Result<Args, CliError> {
         let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
         match parse(arguments.map(OsString::from))? {
-            Parsed::Run(args) => Ok(*args),
+            Parsed::Run(args, _) => Ok(*args),
             Parsed::Print(_) => unreachable!("no help was asked for"),
         }
     }
@@ -233,7 +227,7 @@ mod tests {
 
     #[test]
     fn the_flags_are_consistent() {
-        Args::command().debug_assert();
+        CommandLine::command().debug_assert();
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 use std::sync::Arc;
 
-use super::flags::Args;
+use super::task::Args;
 use crate::cli::error::CliError;
 #[cfg(feature = "studio")]
 use crate::cli::error::of_flag;
@@ -42,13 +42,13 @@ impl Args {
     /// The seed that is given, else this one.
     pub fn seed_or(&self, default: u64) -> Result<u64, CliError> {
         let allowed = "a whole number from 0 to 18446744073709551615";
-        let given = self.seed.as_deref();
+        let given = self.run.seed.seed.as_deref();
         Ok(given.map_or(Ok(default), |text| number("--seed", text, allowed))?)
     }
 
     /// The duration of trials in s, if it is given.
     pub fn duration_s(&self) -> Result<Option<f32>, CliError> {
-        let given = self.duration.as_deref();
+        let given = self.run.settings.duration.as_deref();
         Ok(given.map(|text| number("--duration", text, "a number")).transpose()?)
     }
 
@@ -61,7 +61,7 @@ impl Args {
     #[cfg(feature = "cluster")]
     pub fn expect_workers(&self) -> Result<usize, CliError> {
         let default = usize::from(self.local_threads()? == 0);
-        let Some(text) = &self.expect_workers else { return Ok(default) };
+        let Some(text) = &self.workers.expect_workers else { return Ok(default) };
         let workers = number("--expect-workers", text, "a whole number from 1 to 10000")?;
         Ok(within("--expect-workers", workers, 1..=10_000).map(|()| workers)?)
     }
@@ -69,7 +69,7 @@ impl Args {
     /// Number of threads of this computer that compute beside the workers on other machines.
     #[cfg(feature = "cluster")]
     pub fn local_threads(&self) -> Result<usize, CliError> {
-        let Some(text) = &self.local_threads else { return Ok(0) };
+        let Some(text) = &self.workers.local_threads else { return Ok(0) };
         let threads = number("--local-threads", text, "a whole number from 1 to 1024")?;
         Ok(within("--local-threads", threads, THREADS_RANGE).map(|()| threads)?)
     }
@@ -87,7 +87,7 @@ impl Args {
 
     /// The evaluator that is named, else the default.
     fn evaluator_of(&self, workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
-        let name = self.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
+        let name = self.workers.threads.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
         let row = EVALUATORS.iter().find(|row| row.name == name).ok_or_else(|| {
             let names: Vec<&str> = EVALUATORS.iter().map(|row| row.name).collect();
             Invalid::new("--evaluator", format!("{name:?}"), names.join(", "))
@@ -96,7 +96,7 @@ impl Args {
     }
 
     fn threads_or(&self, default: usize) -> Result<usize, CliError> {
-        let Some(text) = &self.threads else { return Ok(default) };
+        let Some(text) = &self.workers.threads.threads else { return Ok(default) };
         let threads = number("--threads", text, "a whole number from 1 to 1024")?;
         within("--threads", threads, THREADS_RANGE)?;
         Ok(threads)
@@ -105,26 +105,21 @@ impl Args {
     /// The window's size in physical pixels, if it is given.
     #[cfg(feature = "studio")]
     pub fn window_size(&self) -> Result<Option<(u32, u32)>, CliError> {
-        let given = self.window_size.as_deref();
+        let given = self.window.window_size.as_deref();
         Ok(given.map(|text| size("--window-size", text, (320, 240), 16_384)).transpose()?)
     }
 
     /// The colour theme of the window and of pictures, if it is given.
     #[cfg(feature = "studio")]
     pub fn theme(&self) -> Result<Option<Theme>, CliError> {
-        let named = self.theme.as_deref().map(str::parse).transpose();
+        let named = self.window.theme.as_deref().map(str::parse).transpose();
         Ok(named.map_err(of_flag("--theme"))?)
-    }
-
-    /// Whether a colour theme is given.
-    pub fn has_theme(&self) -> bool {
-        self.theme.is_some()
     }
 
     /// The file for window preferences.
     #[cfg(feature = "studio")]
     pub fn preferences(&self) -> PreferencesFile {
-        match self.preferences.as_deref() {
+        match self.window.preferences.as_deref() {
             None => PreferencesFile::find(),
             Some(path) if path.as_os_str() == "none" => PreferencesFile::nowhere(),
             Some(path) => PreferencesFile::at(path),
@@ -134,7 +129,7 @@ impl Args {
     /// The number of frames after which the window closes by itself.
     #[cfg(feature = "studio")]
     pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
-        let Some(text) = &self.exit_after_frames else { return Ok(None) };
+        let Some(text) = &self.window.exit_after_frames else { return Ok(None) };
         let frames = number("--exit-after-frames", text, "a whole number from 1 up")?;
         within("--exit-after-frames", frames, 1..=u32::MAX)?;
         Ok(Some(frames))

@@ -55,7 +55,7 @@ fn comparisons_tables_and_exams_have_the_results_of_one_machine() {
     for arguments in [
         "study table1 --seeds 2 --population 20 --generations 2 --duration 2".to_owned(),
         format!("exam {champion} --suite step-rate"),
-        format!("robust {champion} --trials 8"),
+        format!("exam {champion} --trials 8"),
     ] {
         let (local, distributed) = both(&server, &arguments);
         // The last line names files, whose folders differ.

@@ -101,7 +101,7 @@ fn frames_show_the_moment_that_a_single_picture_of_it_shows() {
         format!("export {CLIMBER} -o a.png {size} --start 6 --end 6.01 --fps 10 --no-captions");
     assert_eq!(stdout_of(folder.path(), &order), "saved to a-frames\n");
     assert_eq!(names_in(&folder.path().join("a-frames")), ["a-0001.png"]);
-    stdout_of(folder.path(), &format!("render {CLIMBER} -o single.png {size} --at 6"));
+    stdout_of(folder.path(), &format!("export {CLIMBER} -o single.png {size} --at 6"));
     let single = pixels(&folder.path().join("single.png"));
     assert_eq!(pixels(&folder.path().join("a-frames/a-0001.png")), single);
     // A folder with files is never replaced.

@@ -209,7 +209,7 @@ fn a_page_draws_the_snake_that_the_studio_draws() {
         let [ours, theirs] = ["page.png", "studio.png"].map(|name| folder.path().join(name));
         let climber = saved("climber.ron");
         let order = format!(
-            "render {} --at {moment} --camera side --size 960x540 -o {}",
+            "export {} --at {moment} --camera side --size 960x540 -o {}",
             climber.display(),
             theirs.display()
         );

@@ -220,19 +220,21 @@ fn the_theme_applies_to_panels_and_scene_and_pictures_are_saved() {
 /// Not a window test, but it needs the same driver: a moment without a display.
 #[test]
 fn a_moment_is_drawn_without_a_display() {
-    if super::display::lacks_a_driver("render") {
+    if super::display::lacks_a_driver("export") {
         return;
     }
     let folder = super::folder();
     let saves = concat!(env!("CARGO_MANIFEST_DIR"), "/saves");
     for (arguments, name) in [
         (
-            format!("render {saves}/climber.ron --at 3.5 --size 640x360 --camera side -o a.png"),
+            format!("export {saves}/climber.ron --at 3.5 --size 640x360 --camera side -o a.png"),
             "a.png",
         ),
         (
-            format!("render {saves}/fast.ron {saves}/thrifty.ron --size 640x360 --show trail"),
-            "fast.png",
+            format!(
+                "export {saves}/fast.ron {saves}/thrifty.ron --size 640x360 --show trail --at end -o b.png"
+            ),
+            "b.png",
         ),
     ] {
         super::stdout_of(folder.path(), &arguments);

@@ -140,9 +140,12 @@ pub fn evolve(
     }
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
+        let first = report.first_on_landing.map(|index| landing.spent + u64::from(index) + 1);
         landing.add(report);
-        let line =
-            if json { report_json(report, bodies_vary).to_string() } else { table_row(report) };
+        let line = match json {
+            true => report_json(report, first, bodies_vary).to_string(),
+            false => table_row(report),
+        };
         writeln!(out, "{line}")?;
         out.flush()
     };
@@ -175,9 +178,9 @@ pub fn evolve(
     let best = experiment.best();
     if json {
         let last = json!({
-            "done": true,
+            "type": "done",
             "run_hash": run_hash,
-            "first_on_landing": landing.first,
+            "first_landing": landing.first,
             "best": best.map(|best| short(best.evaluation.fitness)),
             "champion": recorder.best(),
         });
@@ -245,9 +248,12 @@ fn table_row(report: &GenerationReport) -> String {
     format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
 }
 
-fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
+/// A generation as a line of JSON. `first_landing` is the number of its first evaluation that ended on the landing, counted from the
+/// first of the run.
+fn report_json(report: &GenerationReport, first_landing: Option<u64>, bodies_vary: bool) -> Value {
     let statistics = report.statistics;
     let mut line = json!({
+        "type": "generation",
         "generation": report.generation,
         "mean": statistics.map(|s| s.mean),
         "best": statistics.map(|s| with_short_numbers(&s.best.into())),
@@ -257,7 +263,7 @@ fn report_json(report: &GenerationReport, bodies_vary: bool) -> Value {
         "disqualified": report.disqualified,
         "crashed": report.crashed,
         "on_landing": report.on_landing,
-        "first_on_landing": report.first_on_landing,
+        "first_landing": first_landing,
         "evaluations": report.evaluations,
         "elapsed_s": report.elapsed_s,
         "meaning": report.meaning,

@@ -27,6 +27,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let meaning = trial.result_in_words(&loaded.champion.genome, &found);
     if json {
         let line = json!({
+            "type": "replay",
             "fitness": short(found.fitness),
             "trace_hash": format!("{:016x}", found.trace_hash),
             "recorded_fitness": short(recorded.fitness),

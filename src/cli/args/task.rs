@@ -1,0 +1,333 @@
+//! What the program is to do, and the flags for it.
+
+use std::path::PathBuf;
+
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use clap_complete::Shell;
+
+use super::export::ExportArgs;
+use super::flags::{
+    Command, CommandLine, OutputFlags, RunFlags, Shown, ThreadFlags, WindowFlags, WorkerFlags,
+};
+use super::robust::PerturbationArgs;
+use super::study::StudyArgs;
+use crate::cli::error::CliError;
+use snakes_core::save::DEFAULT_PRESET;
+
+/// The flags that several commands have; empty where a command has none.
+#[derive(Debug)]
+pub struct Args {
+    /// Whether JSON is printed.
+    pub json: bool,
+    /// What is run.
+    pub run: RunFlags,
+    /// Where it is evaluated.
+    pub workers: WorkerFlags,
+    /// The window.
+    pub window: WindowFlags,
+    /// The preset unless one is named.
+    pub(super) default_preset: &'static str,
+}
+
+impl Default for Args {
+    fn default() -> Self {
+        let (run, workers, window) =
+            (RunFlags::default(), WorkerFlags::default(), WindowFlags::default());
+        Self { json: false, run, workers, window, default_preset: DEFAULT_PRESET }
+    }
+}
+
+/// A task of the program.
+#[derive(Debug)]
+pub enum Task {
+    /// Open the window, with champions that are replayed.
+    Window {
+        /// Their files.
+        files: Vec<PathBuf>,
+    },
+    /// Evolve in the terminal.
+    Run,
+    /// Check champions against their records.
+    CheckReplay {
+        /// Their files.
+        files: Vec<PathBuf>,
+    },
+    /// Examine champions.
+    Exam {
+        /// Their files.
+        files: Vec<PathBuf>,
+        /// Names of suites.
+        suites: Vec<String>,
+        /// Whether the results are written into the files.
+        writes: bool,
+        /// Trials that vary as the user says.
+        perturbed: PerturbationArgs,
+    },
+    /// Perform a study.
+    Study(StudyArgs),
+    /// Write champions in other formats.
+    Export(ExportArgs),
+    /// List the presets.
+    Presets,
+    /// List the settings.
+    Settings {
+        /// Whether as Markdown.
+        as_markdown: bool,
+    },
+    /// Print a champion's body.
+    Body {
+        /// The champion's file.
+        file: PathBuf,
+    },
+    /// Compare the bits of this machine with the reference.
+    Verify,
+    /// Measure the speed of the simulation.
+    Bench {
+        /// A champion's file.
+        file: Option<PathBuf>,
+    },
+    /// Compute for runs on other computers.
+    Worker,
+    /// List the machines on a server.
+    Machines {
+        /// The run whose queue is removed.
+        purge: Option<String>,
+    },
+    /// Print completions.
+    Completions(Shell),
+    /// Print manual pages.
+    Manual {
+        /// The folder of the pages.
+        folder: Option<PathBuf>,
+    },
+}
+
+/// The preset of the bench, which is about the report's run.
+const BENCH_PRESET: &str = "report";
+
+impl CommandLine {
+    /// The task, and the flags for it. `matches` tell which flags are given.
+    ///
+    /// # Errors
+    /// A flag that only the window has is given without one, or the other way round.
+    pub(super) fn task(self, matches: &ArgMatches) -> Result<(Args, Task), CliError> {
+        let Self { no_render, run, workers, output, window, command } = self;
+        let Some(command) = command else {
+            let json = output.json;
+            let args = Args { json, run, workers, window, ..Args::default() };
+            if no_render {
+                refuse::<WindowFlags>(matches, "snakes --no-render; leave out --no-render")?;
+                return Ok((args, Task::Run));
+            }
+            refuse::<OutputFlags>(matches, "the studio; add --no-render")?;
+            refuse_server(matches, "the studio; add --no-render")?;
+            return Ok((args, Task::Window { files: Vec::new() }));
+        };
+        let matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
+        let mut args = Args::default();
+        let task = match command {
+            Command::Run { run, workers, output } => {
+                args = Args { json: output.json, run, workers, ..args };
+                Task::Run
+            }
+            Command::Replay { files, no_render, run, workers, output, window } => {
+                if no_render {
+                    let words = "snakes replay --no-render; leave out --no-render";
+                    refuse::<RunFlags>(matches, words)?;
+                    refuse::<WorkerFlags>(matches, words)?;
+                    refuse::<WindowFlags>(matches, words)?;
+                } else {
+                    refuse::<OutputFlags>(matches, "snakes replay; add --no-render")?;
+                    refuse_server(matches, "snakes replay")?;
+                    refuse_ids(matches, &["from"], "snakes replay")?;
+                }
+                args = Args { json: output.json, run, workers, window, ..args };
+                if no_render { Task::CheckReplay { files } } else { Task::Window { files } }
+            }
+            Command::Exam { files, suite, write, perturbed, workers, output } => {
+                args = Args { json: output.json, workers, ..args };
+                Task::Exam { files, suites: suite, writes: write, perturbed }
+            }
+            Command::Study { study, settings, seed, restart, workers, out, output } => {
+                let run = RunFlags { settings, seed, restart, out, ..RunFlags::default() };
+                args = Args { json: output.json, run, workers, ..args };
+                Task::Study(study)
+            }
+            Command::Export { export, output } => {
+                args.json = output.json;
+                Task::Export(export)
+            }
+            Command::Show { what: Shown::Presets { output } } => {
+                args.json = output.json;
+                Task::Presets
+            }
+            Command::Show { what: Shown::Settings { markdown, settings, output } } => {
+                (args.json, args.run.settings) = (output.json, settings);
+                Task::Settings { as_markdown: markdown }
+            }
+            Command::Show { what: Shown::Body { file, output } } => {
+                args.json = output.json;
+                Task::Body { file }
+            }
+            Command::Verify { threads, output } => {
+                (args.json, args.workers.threads) = (output.json, threads);
+                Task::Verify
+            }
+            Command::Bench { file, settings, threads, output } => {
+                (args.json, args.run.settings) = (output.json, settings);
+                args.workers.threads = threads;
+                args.default_preset = BENCH_PRESET;
+                Task::Bench { file }
+            }
+            Command::Worker { threads, server } => {
+                let threads = ThreadFlags { threads, ..ThreadFlags::default() };
+                (args.workers.threads, args.workers.nats) = (threads, server.nats);
+                args.workers.credentials = server.credentials;
+                Task::Worker
+            }
+            Command::Machines { purge, server, output } => {
+                (args.json, args.workers.nats) = (output.json, server.nats);
+                args.workers.credentials = server.credentials;
+                Task::Machines { purge }
+            }
+            Command::Completions { shell } => Task::Completions(shell),
+            Command::Man { out } => Task::Manual { folder: out },
+        };
+        Ok((args, task))
+    }
+}
+
+/// Refuses the first given flag of a group.
+fn refuse<G: clap::Args>(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
+    let group = G::augment_args(clap::Command::new(""));
+    let ids: Vec<&str> = group.get_arguments().map(|flag| flag.get_id().as_str()).collect();
+    refuse_ids(matches, &ids, words)
+}
+
+/// Refuses flags of a server; threads have an effect.
+fn refuse_server(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
+    refuse_ids(matches, &["nats", "creds", "tls_ca", "expect_workers", "local_threads"], words)
+}
+
+/// `words` name the command, and after a semicolon what would help.
+fn refuse_ids(matches: &ArgMatches, ids: &[&str], words: &str) -> Result<(), CliError> {
+    let is_given = |id: &&&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+    ids.iter().find(is_given).map_or(Ok(()), |id| {
+        let flag = id.replace('_', "-");
+        Err(CliError::Usage(format!("--{flag} has no effect with {words} (see snakes --help)")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cli::args::{Args, Parsed, Task, parse};
+    use std::ffi::OsString;
+
+    fn parsed(words: &str) -> Result<(Args, Task), String> {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
+        match parse(arguments.map(OsString::from)) {
+            Ok(Parsed::Run(args, task)) => Ok((*args, *task)),
+            Ok(Parsed::Print(_)) => unreachable!("no help was asked for"),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn help(words: &str) -> String {
+        let arguments = ["snakes"].into_iter().chain(words.split_whitespace()).chain(["--help"]);
+        match parse(arguments.map(OsString::from)) {
+            Ok(Parsed::Print(help)) => help.split_whitespace().collect::<Vec<_>>().join(" "),
+            _ => unreachable!("{words} has help"),
+        }
+    }
+
+    #[test]
+    fn a_flag_without_effect_is_refused_by_its_name() {
+        for (words, problem) in [
+            (
+                "--no-render --theme dark",
+                "--theme has no effect with snakes --no-render; leave out",
+            ),
+            ("--json", "--json has no effect with the studio; add --no-render"),
+            ("--nats nats://a", "--nats has no effect with the studio; add --no-render"),
+            ("replay a.ron --json", "--json has no effect with snakes replay; add --no-render"),
+            ("replay a.ron --from b.ron", "--from has no effect with snakes replay"),
+            (
+                "replay a.ron --no-render --set physics.steps_per_s=240",
+                "--set has no effect with snakes replay --no-render; leave out --no-render",
+            ),
+            ("run --theme dark", "unexpected argument '--theme' found"),
+            ("bench --seed 3", "unexpected argument '--seed' found"),
+            ("bench a.ron --preset ice", "the argument '--preset <NAME>' cannot be used with"),
+            ("verify --no-render", "unexpected argument '--no-render' found"),
+            (
+                "study --expect-workers 2",
+                "the following required arguments were not provided: --nats",
+            ),
+            ("worker", "the following required arguments were not provided: --nats"),
+            (
+                "exam a.ron --nats nats://a --threads 2",
+                "the argument '--nats <URL>' cannot be used with '--threads",
+            ),
+            (
+                "exam a.ron --trials 3 --suite shove",
+                "the argument '--trials <N>' cannot be used with",
+            ),
+            (
+                "exam a.ron --off-rise 0.2",
+                "the following required arguments were not provided: --trials",
+            ),
+            ("--json study", "the subcommand 'study' cannot be used with '--json'"),
+            ("--resume a --seed 2", "the argument '--resume <DIR>' cannot be used with"),
+        ] {
+            let message = parsed(words).expect_err(words);
+            assert!(message.starts_with(problem) && !message.contains('\n'), "{words}: {message}");
+        }
+    }
+
+    #[test]
+    fn each_command_is_a_task_with_its_flags() {
+        let task = |words: &str| parsed(words).expect(words);
+        assert!(matches!(task("").1, Task::Window { files } if files.is_empty()));
+        for words in ["--no-render --seed 7 --nats nats://a", "run --seed 7 --nats nats://a"] {
+            let (args, task) = task(words);
+            assert!(matches!(task, Task::Run) && args.workers.nats.is_some());
+            assert_eq!(args.seed().expect("a number"), 7);
+        }
+        assert!(matches!(task("replay a.ron b.ron").1, Task::Window { files } if files.len() == 2));
+        assert!(matches!(task("replay a.ron --no-render --json").1, Task::CheckReplay { .. }));
+        assert!(matches!(task("show settings --markdown").1, Task::Settings { as_markdown: true }));
+        assert!(matches!(task("worker --nats nats://a --threads 2").1, Task::Worker));
+        assert!(matches!(task("bench a.ron --threads 2").1, Task::Bench { file: Some(_) }));
+    }
+
+    #[test]
+    fn the_help_of_a_command_shows_its_own_flags_only() {
+        for (command, own, others) in [
+            (
+                "bench",
+                &["--preset", "--threads", "--json"][..],
+                &["--seed", "--nats", "--theme", "--out"][..],
+            ),
+            ("verify", &["--threads"], &["--preset", "--nats", "--seed"]),
+            ("exam", &["--suite", "--nats", "--off-rise"], &["--preset", "--out", "--theme"]),
+            (
+                "study",
+                &["--arms", "--seed", "--nats", "--out"],
+                &["--theme", "--resume", "--saves"],
+            ),
+            ("export", &["--fps", "--theme", "--figures"], &["--preset", "--nats", "--seed"]),
+            ("worker", &["--nats", "--creds"], &["--expect-workers", "--json", "--seed"]),
+            ("show presets", &["--json"], &["--preset", "--seed"]),
+            ("run", &["--seed", "--resume", "--nats"], &["--theme", "--places", "--no-render"]),
+        ] {
+            let help = help(command);
+            let has = |flag: &&&str| help.split(' ').any(|word| word == **flag);
+            assert!(own.iter().all(|flag| has(&flag)), "{command}: {help}");
+            assert_eq!(others.iter().find(has), None, "{command}: {help}");
+        }
+        assert!(
+            !help("study").contains("with a window") || !help("worker").contains("with a window")
+        );
+    }
+}
