@@ -35,6 +35,39 @@ fn the_page_of_studies_lists_every_value() {
     assert_eq!(listed, snakes_lab::study::values_as_markdown(), "{regenerate}");
 }
 
+/// The names of functions in the walks of the architecture, such as `set_field`.
+fn functions_named(page: &str) -> Vec<&str> {
+    let walks = page.split("\n## From ").skip(1);
+    let sections = walks.map(|walk| walk.split("\n## ").next().unwrap_or_default());
+    let quoted = sections.flat_map(|section| section.split('`').skip(1).step_by(2));
+    let is_function = |name: &&str| name.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+    quoted.filter(is_function).collect()
+}
+
+#[test]
+fn the_walks_through_the_architecture_name_functions_that_exist() {
+    fn texts(folder: &Path, all: &mut String) {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            match path.is_dir() {
+                true => texts(&path, all),
+                false => *all += &fs::read_to_string(&path).unwrap_or_default(),
+            }
+        }
+    }
+    let page = fs::read_to_string(root().join("docs/architecture.md")).expect("a page");
+    let mut source = String::new();
+    ["crates", "src"].iter().for_each(|folder| texts(&root().join(folder), &mut source));
+    let named = functions_named(&page);
+    assert!(named.len() > 10, "{named:?}");
+    for name in named {
+        assert!(
+            source.contains(&format!("fn {name}(")) || source.contains(&format!("fn {name}<")),
+            "{name}"
+        );
+    }
+}
+
 #[test]
 fn every_link_between_documents_leads_to_a_file() {
     let docs =

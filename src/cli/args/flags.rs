@@ -40,12 +40,12 @@ pub struct CommandLine {
     pub window: WindowFlags,
     /// The command; without one, a run evolves.
     #[command(subcommand)]
-    pub command: Option<Command>,
+    pub command: Option<CliCommand>,
 }
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum CliCommand {
     /// Evolve in the terminal: a line for each generation, and the champion as a file
     Run {
         /// What is run.
@@ -136,7 +136,7 @@ pub enum Command {
     Show {
         /// What is shown.
         #[command(subcommand)]
-        what: Shown,
+        what: ShownList,
     },
     /// Check that this machine computes the same bits as the reference machine
     Verify {
@@ -198,7 +198,7 @@ pub enum Command {
 
 /// What `snakes show` shows.
 #[derive(Debug, Subcommand)]
-pub enum Shown {
+pub enum ShownList {
     /// The built-in presets
     Presets {
         /// The output.

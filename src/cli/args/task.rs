@@ -8,7 +8,8 @@ use clap_complete::Shell;
 
 use super::export::ExportArgs;
 use super::flags::{
-    Command, CommandLine, OutputFlags, RunFlags, Shown, ThreadFlags, WindowFlags, WorkerFlags,
+    CliCommand, CommandLine, OutputFlags, RunFlags, ShownList, ThreadFlags, WindowFlags,
+    WorkerFlags,
 };
 use super::robust::PerturbationArgs;
 use super::study::StudyArgs;
@@ -25,6 +26,7 @@ pub struct Args {
     /// Where it is evaluated.
     pub workers: WorkerFlags,
     /// The window.
+    #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "this build has no window"))]
     pub window: WindowFlags,
     /// The preset unless one is named.
     pub(super) default_preset: &'static str,
@@ -92,6 +94,7 @@ pub enum Task {
     /// List the machines on a server.
     Machines {
         /// The run whose queue is removed.
+        #[cfg_attr(not(feature = "cluster"), expect(dead_code, reason = "it needs a server"))]
         purge: Option<String>,
     },
     /// Print completions.
@@ -127,11 +130,11 @@ impl CommandLine {
         let matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
         let mut args = Args::default();
         let task = match command {
-            Command::Run { run, workers, output } => {
+            CliCommand::Run { run, workers, output } => {
                 args = Args { json: output.json, run, workers, ..args };
                 Task::Run
             }
-            Command::Replay { files, no_render, run, workers, output, window } => {
+            CliCommand::Replay { files, no_render, run, workers, output, window } => {
                 if no_render {
                     let words = "snakes replay --no-render; leave out --no-render";
                     refuse::<RunFlags>(matches, words)?;
@@ -145,54 +148,54 @@ impl CommandLine {
                 args = Args { json: output.json, run, workers, window, ..args };
                 if no_render { Task::CheckReplay { files } } else { Task::Window { files } }
             }
-            Command::Exam { files, suite, write, perturbed, workers, output } => {
+            CliCommand::Exam { files, suite, write, perturbed, workers, output } => {
                 args = Args { json: output.json, workers, ..args };
                 Task::Exam { files, suites: suite, writes: write, perturbed }
             }
-            Command::Study { study, settings, seed, restart, workers, out, output } => {
+            CliCommand::Study { study, settings, seed, restart, workers, out, output } => {
                 let run = RunFlags { settings, seed, restart, out, ..RunFlags::default() };
                 args = Args { json: output.json, run, workers, ..args };
                 Task::Study(study)
             }
-            Command::Export { export, output } => {
+            CliCommand::Export { export, output } => {
                 args.json = output.json;
                 Task::Export(export)
             }
-            Command::Show { what: Shown::Presets { output } } => {
+            CliCommand::Show { what: ShownList::Presets { output } } => {
                 args.json = output.json;
                 Task::Presets
             }
-            Command::Show { what: Shown::Settings { markdown, settings, output } } => {
+            CliCommand::Show { what: ShownList::Settings { markdown, settings, output } } => {
                 (args.json, args.run.settings) = (output.json, settings);
                 Task::Settings { as_markdown: markdown }
             }
-            Command::Show { what: Shown::Body { file, output } } => {
+            CliCommand::Show { what: ShownList::Body { file, output } } => {
                 args.json = output.json;
                 Task::Body { file }
             }
-            Command::Verify { threads, output } => {
+            CliCommand::Verify { threads, output } => {
                 (args.json, args.workers.threads) = (output.json, threads);
                 Task::Verify
             }
-            Command::Bench { file, settings, threads, output } => {
+            CliCommand::Bench { file, settings, threads, output } => {
                 (args.json, args.run.settings) = (output.json, settings);
                 args.workers.threads = threads;
                 args.default_preset = BENCH_PRESET;
                 Task::Bench { file }
             }
-            Command::Worker { threads, server } => {
+            CliCommand::Worker { threads, server } => {
                 let threads = ThreadFlags { threads, ..ThreadFlags::default() };
                 (args.workers.threads, args.workers.nats) = (threads, server.nats);
                 args.workers.credentials = server.credentials;
                 Task::Worker
             }
-            Command::Machines { purge, server, output } => {
+            CliCommand::Machines { purge, server, output } => {
                 (args.json, args.workers.nats) = (output.json, server.nats);
                 args.workers.credentials = server.credentials;
                 Task::Machines { purge }
             }
-            Command::Completions { shell } => Task::Completions(shell),
-            Command::Man { out } => Task::Manual { folder: out },
+            CliCommand::Completions { shell } => Task::Completions(shell),
+            CliCommand::Man { out } => Task::Manual { folder: out },
         };
         Ok((args, task))
     }

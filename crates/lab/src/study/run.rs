@@ -107,7 +107,7 @@ impl<'a> PlannedRun<'a> {
     ) -> Result<FinishedRun<'a>, Cancelled> {
         let plan = &self.plan;
         let mut experiment = Experiment::new(plan.clone());
-        let mut progress = Progress::default();
+        let mut progress = RunProgress::default();
         let mut bodies = self.measures_bodies.then(|| BodyMeasures::new(&plan.settings));
         while !experiment.is_over() {
             let before = experiment.evaluated();
@@ -151,7 +151,7 @@ fn best_of<'e>(experiment: &'e Experiment, plan: &RunPlan) -> Option<&'e Champio
 
 /// What is noted after each generation.
 #[derive(Debug)]
-struct Progress {
+struct RunProgress {
     first_landing: Option<u64>,
     goal_evaluations: Option<u64>,
     means: Vec<Option<f64>>,
@@ -159,7 +159,7 @@ struct Progress {
     curve: Vec<Option<f32>>,
 }
 
-impl Default for Progress {
+impl Default for RunProgress {
     fn default() -> Self {
         Self {
             first_landing: None,
@@ -171,7 +171,7 @@ impl Default for Progress {
     }
 }
 
-impl Progress {
+impl RunProgress {
     fn add(
         &mut self,
         run: &PlannedRun<'_>,

@@ -43,9 +43,9 @@ pub struct ValueInfo {
 use Form::{Flag, List, Number, Text, Until};
 
 /// Name, title, unit, digits, form, sentence.
-type Row = (&'static str, &'static str, &'static str, usize, Form, &'static str);
+type ValueRow = (&'static str, &'static str, &'static str, usize, Form, &'static str);
 
-const ROWS: [Row; 26] = [
+const ROWS: [ValueRow; 26] = [
     (
         "evaluations",
         "evaluations",
@@ -216,7 +216,7 @@ const OF_SUITE: [(&str, &str, usize, &str); 5] = [
 
 /// All values, in the order of tables and files.
 pub fn values() -> Vec<ValueInfo> {
-    let row = |(name, title, unit, digits, form, about): Row| ValueInfo {
+    let row = |(name, title, unit, digits, form, about): ValueRow| ValueInfo {
         name: name.to_owned(),
         title: title.to_owned(),
         unit,
