@@ -1,7 +1,7 @@
 //! The results of a study as a figure: learning curves, means by generation, and the values of all runs.
 
-use super::definition::Arm;
-use super::measure::Results;
+use super::definition::{Arm, Demand};
+use super::measure::{Measure, Results};
 use super::values::{Form, ValueInfo, values};
 use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 use crate::statistics::Quartiles;
@@ -24,7 +24,7 @@ pub(super) fn study_figure(results: &Results<'_>) -> Figure {
     } else if !generations.is_empty() {
         ("Thin lines: each seed. Thick line: their mean.", generations)
     } else {
-        ("Points: runs. Boxes: their middle half. Lines: their median.", value_charts(results))
+        ("Each point is a run.", value_charts(results))
     };
     Figure { note: note.to_owned(), ..Figure::of_several(&study.title, charts) }
 }
@@ -166,39 +166,39 @@ fn value_charts(results: &Results<'_>) -> Vec<Chart> {
 }
 
 fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart {
-    let (mut points, mut boxes, mut medians) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, arm) in arms.iter().enumerate() {
-        let place = place as f64;
+    let (mut points, mut bands, mut medians) = (Vec::new(), Vec::new(), Vec::new());
+    for (place, arm) in (0..).map(f64::from).zip(arms) {
         let numbers: Vec<f64> =
             results.numbers(arm, info).into_iter().map(|(_, number)| number).collect();
         // Equal values lie beside each other.
         for (index, number) in numbers.iter().enumerate().filter(|(_, number)| number.is_finite()) {
-            let equal =
-                numbers[..index].iter().filter(|other| (*other - number).abs() < 1e-9).count();
-            let shift = if equal % 2 == 0 { -0.5 } else { 0.5 } * (equal as f64).min(8.0) * 0.05;
-            points.push([place + shift, *number]);
+            let is_equal = |other: &&f64| (*other - number).abs() < 1e-9;
+            let equal = numbers[..index].iter().filter(is_equal).count();
+            let side = if equal % 2 == 0 { -1.0 } else { 1.0 };
+            points.push([place + side * 0.04 * equal.div_ceil(2) as f64, *number]);
         }
         if let Some(Quartiles { low, median, high }) = Quartiles::of(numbers)
             && median.is_finite()
         {
             let top = if high.is_finite() { high } else { median };
-            boxes.push([place - 0.3, place + 0.3, low, top]);
-            medians.push([[place - 0.3, median], [place + 0.3, median]]);
+            bands.push([place - 0.3, place + 0.3].map(|x| [x, low, top]));
+            medians.push((place, median));
         }
     }
     let y = range(points.iter().map(|[_, y]| *y));
-    let mut series = vec![
-        Series::new("middle half of the runs", Role::Share(0.15), Shape::Boxes(boxes)),
-        Series::new("runs", Role::First, Shape::Points(points)),
-    ];
-    let lines = medians
-        .into_iter()
-        .map(|ends| Series::new("median", Role::Second, Shape::Line(ends.to_vec())));
-    series.extend(lines);
+    let thickness = (y.end() - y.start()) / 300.0;
+    let median = |(place, y): (f64, f64)| [place - 0.3, place + 0.3, y - thickness, y + thickness];
+    let band = |ends: [[f64; 3]; 2]| {
+        Series::new("middle half of the runs", Role::First, Shape::Band(ends.to_vec()))
+    };
+    let mut series: Vec<Series> = bands.into_iter().map(band).collect();
+    let medians = Shape::Boxes(medians.into_iter().map(median).collect());
+    series.push(Series::new("runs", Role::First, Shape::Points(points)));
+    series.push(Series::new("median", Role::Second, medians));
     let mut x = Axis::new("Arm", "", -0.6..=arms.len().max(1) as f64 - 0.4);
-    x.names = (0..).map(f64::from).zip(arms.iter().map(|arm| arm.title().to_owned())).collect();
+    x.names = (0..).map(f64::from).zip(arms.iter().map(|arm| arm.name.clone())).collect();
     let demands = results.study.demands_by_arm();
-    let is_about = |demand: &super::definition::Demand| matches!(&demand.measure, super::measure::Measure::Median { of, less: None } if *of == info.name);
+    let is_about = |demand: &Demand| matches!(&demand.measure, Measure::Median { of, less: None } if *of == info.name);
     let mut marks: Vec<Mark> = Vec::new();
     for y in
         demands.iter().filter(|(_, demand)| is_about(demand)).filter_map(|(_, demand)| demand.must)

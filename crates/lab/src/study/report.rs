@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::compare::{ArmComparison, comparisons};
-use super::definition::Arm;
+use super::definition::{Arm, Demand};
 use super::driver::StudyFiles;
 use super::measure::{Results, quartiles_text};
 use super::values::{Form, ValueInfo, number, values};
@@ -400,7 +400,7 @@ fn comparison_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
 }
 
 fn demand_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
-    let one = |(arm, demand): (&Arm, &super::definition::Demand)| {
+    let one = |(arm, demand): (&Arm, &Demand)| {
         let verdict = results.verdict(arm, demand);
         fields(json!({
             "arm": arm.name,
