@@ -261,7 +261,7 @@ mod tests {
             ),
             ("run --theme dark", "unexpected argument '--theme' found"),
             ("bench --seed 3", "unexpected argument '--seed' found"),
-            ("bench a.ron --preset ice", "the argument '--preset <NAME>' cannot be used with"),
+            ("bench a.ron --preset ice", "the argument '[FILE]' cannot be used with '--preset"),
             ("verify --no-render", "unexpected argument '--no-render' found"),
             (
                 "study --expect-workers 2",

@@ -60,6 +60,9 @@ mod tests {
     fn a_panic_becomes_its_message_and_place() {
         assert_eq!(caught(|| 2 + 2), Ok(4));
         let message = caught(|| panic!("limb {}\nis gone", 3)).expect_err("it panicked");
-        assert!(message.starts_with("limb 3 is gone at src/run/panics.rs:"), "{message}");
+        assert!(
+            message.starts_with("limb 3 is gone at crates/lab/src/run/panics.rs:"),
+            "{message}"
+        );
     }
 }

@@ -473,7 +473,12 @@ impl Study {
         if let Some((strategy, controller)) = arm.method {
             (settings.evolution.strategy, settings.genome.controller) = (strategy, controller);
         }
-        settings.genome.bodies.vary = settings.evolution.strategy.info().varies_bodies;
+        let info = settings.evolution.strategy.info();
+        if info.evolves_stairs {
+            let allowed = "strategies whose snakes all learn on the stairs of the preset";
+            return Err(Invalid::new("strategy", settings.evolution.strategy, allowed));
+        }
+        settings.genome.bodies.vary = info.varies_bodies;
         if settings.genome.has_creatures() {
             // The preset's engine may simulate nothing but limbs in a row.
             settings.trial.physics.engine = PhysicsEngine::Rapier;
@@ -486,11 +491,6 @@ impl Study {
                 .then_some(settings.trial.duration_s);
             settings.trial = ExamSuite::Stairs.undisturbed(&settings.trial).trial;
             settings.trial.duration_s = duration_s.unwrap_or(settings.trial.duration_s);
-        }
-        let info = settings.evolution.strategy.info();
-        if info.evolves_stairs {
-            let allowed = "strategies whose snakes all learn on the stairs of the preset";
-            return Err(Invalid::new("strategy", settings.evolution.strategy, allowed));
         }
         let own = arm.evaluations.or(self.evaluations);
         let times = arm.evaluations_times.unwrap_or(1);

