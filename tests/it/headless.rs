@@ -48,6 +48,7 @@ fn json_lines_have_the_documented_fields() {
                 "median",
                 "on_landing",
                 "std",
+                "type",
                 "worst"
             ]
         );
@@ -178,7 +179,7 @@ fn a_file_that_a_run_cannot_begin_from_is_refused_with_the_reason() {
 #[test]
 fn presets_are_listed_with_their_descriptions() {
     let folder = folder();
-    let list = stdout_of(folder.path(), "presets");
+    let list = stdout_of(folder.path(), "show presets");
     assert!(list.lines().any(|line| line.starts_with("report") && line.len() > 80), "{list}");
     assert!(list.lines().any(|line| line.starts_with("quick")), "{list}");
 }
@@ -238,7 +239,7 @@ fn table_1_is_printed_and_written_as_csv_and_png() {
         "study table1 --seeds 2 --population 6 --generations 2 --duration 0.5 --out out";
     let text = stdout_of(folder.path(), arguments);
     assert!(text.contains("| published |"), "{text}");
-    assert!(text.contains("-5.94 | slightly forward"), "{text}");
+    assert!(text.contains("-5.94 |  slightly forward"), "{text}");
     assert!(text.contains("| runs: mean rises"), "{text}");
     let written = |name: &str| std::fs::read(folder.path().join("out").join(name)).expect(name);
     let csv = String::from_utf8(written("table1-runs.csv")).expect("text");

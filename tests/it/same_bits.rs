@@ -1,6 +1,6 @@
 //! The same bits with other compiler settings, on other processors, and under a memory checker.
 //!
-//! `.ci/run` runs the case without optimisation. The others run in emulation, which takes about a quarter of an hour on two cores:
+//! Building and emulation take about half an hour on two cores:
 //!
 //!     cargo test --release --test it same_bits -- --ignored --nocapture
 //!
