@@ -72,7 +72,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
         study = earlier;
     }
     let control = cancel_on_interrupt();
-    let evaluator = evaluator(args, "study poet", &ron)?;
+    let evaluator = evaluator(args, "study-poet", &ron)?;
     if study.rounds < rounds {
         let earlier = if args.run.restart { ExistingRun::Discard } else { ExistingRun::Keep };
         let source = RunSource::in_saves(&folder, plan.clone(), earlier);

@@ -32,7 +32,7 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let folder = args.results_folder();
     folder.prepare()?;
     let files = StudyFiles::within(folder.path(), &study);
-    let evaluator = evaluator(args, &format!("study {}", study.name), &files.ron)?;
+    let evaluator = evaluator(args, &format!("study-{}", study.name), &files.ron)?;
     let control = cancel_on_interrupt();
     let performed = perform(&study, &files, args.run.restart, &*evaluator, &control);
     let performed = performed.map_err(|error| match error {

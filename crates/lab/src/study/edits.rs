@@ -10,6 +10,9 @@ const CHANGED: usize = 20;
 /// Attempts to change a body within its limits.
 const ATTEMPTS: usize = 20;
 
+/// The name of a value, and its numbers.
+pub(super) type EditChanges = (&'static str, Vec<Option<f64>>);
+
 /// The values of both changes at a random place, a number for each of the best snakes of a generation whose body allows the
 /// change. A snake that is disqualified then has lost its whole fitness.
 ///
@@ -20,7 +23,7 @@ pub(super) fn edit_changes(
     last: &Generation,
     evaluator: &dyn Evaluator,
     control: &RunControl,
-) -> Result<Vec<(&'static str, Vec<Option<f64>>)>, Cancelled> {
+) -> Result<Vec<EditChanges>, Cancelled> {
     let space = &plan.settings.genome;
     let mut values = Vec::new();
     for (name, change) in

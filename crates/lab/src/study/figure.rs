@@ -9,7 +9,7 @@ use snakes_core::genome::ControllerKind;
 use snakes_core::save::{CURVE_POINTS, Protocol, StudiedArm, StudiedRun};
 
 /// Maximum number of charts with the values of runs.
-const MOST_CHARTS: usize = 6;
+const MOST_CHARTS: usize = 9;
 
 /// The figure of a study: of methods their learning curves, a chart for each controller; of other studies the means of generations
 /// that are shown, or the values of all runs.
@@ -154,15 +154,18 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
 /// For each shown number, the values of all runs, arm by arm.
 fn value_charts(results: &Results<'_>) -> Vec<Chart> {
     let study = results.study;
-    let shown = study.shown();
-    let is_shown = |info: &ValueInfo| {
-        shown.contains(&info.name)
-            && matches!(info.form, Form::Number | Form::Until)
+    // Those that the study names come first, in its order.
+    let mut shown = study.show.clone();
+    shown.extend(study.shown().into_iter().filter(|name| !study.show.contains(name)));
+    let all = values();
+    let infos = shown.iter().filter_map(|name| all.iter().find(|info| info.name == *name));
+    let infos = infos.filter(|info| {
+        matches!(info.form, Form::Number | Form::Until)
             && !["evaluations", "simulations"].contains(&info.name.as_str())
-    };
-    let infos = values().into_iter().filter(is_shown).take(MOST_CHARTS);
+    });
+    let infos = infos.take(MOST_CHARTS);
     let arms: Vec<&Arm> = study.selected_arms().collect();
-    infos.map(|info| value_chart(results, &arms, &info)).collect()
+    infos.map(|info| value_chart(results, &arms, info)).collect()
 }
 
 fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart {
@@ -186,7 +189,7 @@ fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart 
         }
     }
     let y = range(points.iter().map(|[_, y]| *y));
-    let thickness = (y.end() - y.start()) / 300.0;
+    let thickness = (y.end() - y.start()) / 100.0;
     let median = |(place, y): (f64, f64)| [place - 0.3, place + 0.3, y - thickness, y + thickness];
     let band = |ends: [[f64; 3]; 2]| {
         Series::new("middle half of the runs", Role::First, Shape::Band(ends.to_vec()))

@@ -170,8 +170,11 @@ fn methods_are_crossed_in_the_order_in_which_they_are_named() {
     );
 }
 
+/// Values by their names, each with a number for each run; an infinite one stands for none.
+type Values<'a> = &'a [(&'a str, &'a [f64])];
+
 /// Runs with these values, one for each seed from 1 on.
-fn runs(arms: &[(&str, &[(&str, &[f64])])]) -> StudyRuns {
+fn runs(arms: &[(&str, Values<'_>)]) -> StudyRuns {
     let protocol = Protocol {
         preset: "climb".to_owned(),
         settings: String::new(),
@@ -281,7 +284,7 @@ fn shares_of_trials_are_apart_only_if_their_intervals_are() {
     let of = |a: &[f64], b: &[f64]| {
         let values = |landed: &[f64]| landed.iter().map(|of| of / 0.6).collect::<Vec<_>>();
         let (a, b) = (values(a), values(b));
-        let arms: [(&str, &[(&str, &[f64])]); 2] = [
+        let arms: [(&str, Values<'_>); 2] = [
             ("a", &[("exam_held_out", &a), ("exam_held_out_trials", trials)]),
             ("b", &[("exam_held_out", &b), ("exam_held_out_trials", trials)]),
         ];
