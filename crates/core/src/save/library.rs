@@ -36,8 +36,8 @@ mod fixtures {
     use super::{LibraryEntry, SavePlace};
     use crate::evolve::{Champion, Origin, RunPlan, Settings, begin};
     use crate::save::{
-        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, shipped_champion,
-        store_champion,
+        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, StatisticsRecord,
+        generations_hash, shipped_champion, store_champion,
     };
     use crate::score::{Recording, evaluate};
 
@@ -66,7 +66,7 @@ mod fixtures {
         let path = saves.of_run(&plan);
         let opened = RunFolder::open(&path, &plan, ExistingRun::Keep, "a test");
         let (mut folder, _) = opened.expect("opened");
-        let mut search = begin(&plan);
+        let (mut search, mut records) = (begin(&plan), Vec::new());
         for generation in 1..=2 {
             let genomes = search.ask();
             let evaluations: Vec<_> =
@@ -80,10 +80,28 @@ mod fixtures {
                 origin: Origin { preset: "test".to_owned(), seed, generation, individual: 0 },
             };
             let recording = Recording::of(&champion.genome, &champion.trial);
-            let record = GenerationRecord::of_test(generation, genomes.len() as u32);
+            let fitness = f64::from(champion.evaluation.fitness);
+            let statistics = StatisticsRecord {
+                mean: fitness,
+                best: fitness,
+                median: fitness,
+                std: 0.0,
+                worst: fitness,
+                mean_centre_y_m: champion.evaluation.centre_y_m.into(),
+                lower_quartile: None,
+                upper_quartile: None,
+            };
+            let of_test = GenerationRecord::of_test(generation, genomes.len() as u32);
+            records.push(GenerationRecord { statistics: Some(statistics), ..of_test });
+            let hash = generations_hash(&records);
             let state = SearchState { strategy: search.state(), front: Default::default() };
             folder
-                .finish_generation(&record, Some((&champion, &recording)), &state, 1)
+                .finish_generation(
+                    &records[records.len() - 1],
+                    Some((&champion, &recording)),
+                    &state,
+                    hash,
+                )
                 .expect("kept");
         }
         SavePlace::Run(path)
