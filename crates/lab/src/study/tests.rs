@@ -81,7 +81,7 @@ fn a_study_has_the_same_results_for_any_number_of_threads_and_continues_with_wha
         run.number("fitness").map(|of| of as f32)
     );
     for part in
-        ["| search", "| At random", "generation", "| fitness, more than random |", "A: chance"]
+        ["| search", "| At random", "generation", "best fitness, more than random", "A: chance"]
     {
         assert!(text.contains(part), "{part} in {text}");
     }
