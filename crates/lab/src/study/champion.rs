@@ -31,7 +31,7 @@ pub(super) fn champion_values(champion: Option<&Champion>) -> BTreeMap<String, S
     add("steps_climbed", StudyValue::Number(behaviour.steps_climbed.into()));
     add("landed", flag(evaluation.is_on_landing(&trial.stairs)));
     add("way_m", short(champion.way_m()));
-    add("blocks", StudyValue::Number(genome.body.block_count() as f64));
+    add("blocks", StudyValue::Number(champion.body().limbs() as f64));
     let energy = Descriptor::EnergyPerMetre.value(evaluation, trial.middle_start_y_m(genome));
     energy
         .filter(|energy| energy.is_finite())

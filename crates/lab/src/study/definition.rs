@@ -8,7 +8,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 use super::measure::Measure;
-use super::values::value;
+use super::values::{Form, of_suite, value};
 use snakes_core::check::{Invalid, name, quoted, within};
 use snakes_core::evolve::{RunPlan, Settings, StrategyKind, check_effects, with_fields};
 use snakes_core::genome::ControllerKind;
@@ -353,6 +353,9 @@ impl Study {
                     "false for an arm without a goal",
                 ));
             }
+            if let Some(Goal::Way(way_m)) = arm.goal {
+                within("arms.goal.Way", way_m, 0.0..=1.0e4)?;
+            }
             if arm.evaluations.is_some() && arm.evaluations_times.is_some() {
                 let allowed = "none for an arm with evaluations of its own";
                 return Err(Invalid::new("arms.evaluations_times", "given", allowed));
@@ -360,8 +363,13 @@ impl Study {
             arm.baseline.iter().try_for_each(|name| self.named("arms.baseline", name).map(drop))?;
         }
         self.baseline.iter().try_for_each(|name| self.named("baseline", name).map(drop))?;
-        self.show.iter().try_for_each(|name| value("show", name).map(drop))?;
-        self.compare.iter().try_for_each(|name| value("compare", name).map(drop))?;
+        self.show.iter().try_for_each(|name| self.check_measured("show", name))?;
+        for name in &self.compare {
+            if matches!(value("compare", name)?.form, Form::List | Form::Text) {
+                return Err(Invalid::new("compare", quoted(name), "a value that is a number"));
+            }
+            self.check_measured("compare", name)?;
+        }
         self.references.keys().try_for_each(|name| value("references", name).map(drop))?;
         self.newborns.map_or(Ok(()), |count| within("newborns", count, 1..=1_000_000))?;
         for demand in &self.demands {
@@ -370,6 +378,23 @@ impl Study {
             demand.measure.check(self)?;
         }
         Ok(())
+    }
+
+    /// Refuses a value that does not exist, or that only a suite measures which the study does not have.
+    fn check_measured(&self, field: &str, name: &str) -> Result<(), Invalid> {
+        value(field, name)?;
+        let is_of = |suite: &&ExamSuite| {
+            let start = of_suite(**suite, "");
+            name.strip_prefix(start.as_str())
+                .is_some_and(|end| end.is_empty() || end.starts_with('_'))
+        };
+        match ExamSuite::OPTIONS.iter().find(is_of).filter(|suite| !self.suites.contains(suite)) {
+            Some(suite) => {
+                let allowed = format!("other values, or suites with {:?}", suite.choice().name);
+                Err(Invalid::new(field, quoted(name), allowed))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The arm of a name.
@@ -436,15 +461,20 @@ impl Study {
     /// # Errors
     /// The arm's preset cannot be read.
     pub fn plan(&self, arm: &Arm, seed: u64) -> Result<RunPlan, SaveError> {
-        let mut preset = load_preset(arm.preset.as_ref().unwrap_or(&self.preset))?;
+        let preset = load_preset(arm.preset.as_ref().unwrap_or(&self.preset));
+        let mut preset = preset.map_err(|error| match error {
+            SaveError::UnknownPreset(invalid) => {
+                SaveError::Study(Invalid { field: format!("preset of {}", arm.name), ..invalid })
+            }
+            other => other,
+        })?;
         if let Some(named) = &self.stairs {
             preset.settings.trial.stairs = load_stairs(named)?.stairs;
         }
         let settings = self.settings_of(arm, &preset.settings).map_err(|invalid| {
-            SaveError::Study(Invalid {
-                field: format!("{} of {}", invalid.field, arm.name),
-                ..invalid
-            })
+            // The flag --set gives this name to a setting that does not exist.
+            let field = if invalid.field == "set" { "settings" } else { &invalid.field };
+            SaveError::Study(Invalid { field: format!("{field} of {}", arm.name), ..invalid })
         })?;
         Ok(RunPlan::new(&preset.name, seed, settings))
     }

@@ -8,8 +8,10 @@ use crate::statistics::Quartiles;
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::{CURVE_POINTS, Protocol, StudiedArm, StudiedRun};
 
-/// Maximum number of charts with the values of runs.
-const MOST_CHARTS: usize = 9;
+/// Maximum number of charts with the values of runs, and of arms whose names leave room for so many.
+const MOST_CHARTS: (usize, usize) = (6, 8);
+/// Maximum number of charts of more arms.
+const FEWER_CHARTS: usize = 4;
 
 /// The figure of a study: of methods their learning curves, a chart for each controller; of other studies the means of generations
 /// that are shown, or the values of all runs.
@@ -163,8 +165,9 @@ fn value_charts(results: &Results<'_>) -> Vec<Chart> {
         matches!(info.form, Form::Number | Form::Until)
             && !["evaluations", "simulations"].contains(&info.name.as_str())
     });
-    let infos = infos.take(MOST_CHARTS);
     let arms: Vec<&Arm> = study.selected_arms().collect();
+    let (most, arms_of_most) = MOST_CHARTS;
+    let infos = infos.take(if arms.len() > arms_of_most { FEWER_CHARTS } else { most });
     infos.map(|info| value_chart(results, &arms, info)).collect()
 }
 
@@ -189,15 +192,16 @@ fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart 
         }
     }
     let y = range(points.iter().map(|[_, y]| *y));
-    let thickness = (y.end() - y.start()) / 100.0;
-    let median = |(place, y): (f64, f64)| [place - 0.3, place + 0.3, y - thickness, y + thickness];
+    let median = |(place, y): (f64, f64)| {
+        let ends = [place - 0.3, place + 0.3].map(|x| [x, y]);
+        Series::new("median", Role::Second, Shape::Dashed(ends.to_vec()))
+    };
     let band = |ends: [[f64; 3]; 2]| {
         Series::new("middle half of the runs", Role::First, Shape::Band(ends.to_vec()))
     };
     let mut series: Vec<Series> = bands.into_iter().map(band).collect();
-    let medians = Shape::Boxes(medians.into_iter().map(median).collect());
     series.push(Series::new("runs", Role::First, Shape::Points(points)));
-    series.push(Series::new("median", Role::Second, medians));
+    series.extend(medians.into_iter().map(median));
     let mut x = Axis::new("Arm", "", -0.6..=arms.len().max(1) as f64 - 0.4);
     x.names = (0..).map(f64::from).zip(arms.iter().map(|arm| arm.name.clone())).collect();
     let demands = results.study.demands_by_arm();

@@ -120,6 +120,16 @@ fn what_a_definition_must_not_say_is_refused_with_the_allowed_values() {
             "arms.name is \"search\"; allowed: a name that no other arm has",
         ),
         ("seeds: 2", "seeds: 0", "seeds is 0; allowed: 1 to 10000"),
+        (
+            "\"generation_means\"]",
+            "\"exam_shove\"]",
+            "show is \"exam_shove\"; allowed: other values, or suites with \"shove\"",
+        ),
+        (
+            "compare: [\"fitness\"]",
+            "compare: [\"tree\"]",
+            "compare is \"tree\"; allowed: a value that is a number",
+        ),
     ] {
         assert!(TINY.contains(from), "{from}");
         let study: Study =
