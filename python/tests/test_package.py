@@ -17,24 +17,6 @@ def test_the_stub_agrees_with_the_compiled_module(tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-#: Crates whose version may change bits.
-CORE = (
-    "rapier3d parry3d nalgebra simba glam glamx libm indexmap rand rand_chacha rayon ron serde_json xxhash-rust"
-)
-
-
-def test_the_core_is_built_from_the_crates_that_the_program_is_built_from():
-    def versions(lock):
-        packages = re.findall(r'name = "(.*?)"\nversion = "(.*?)"', lock.read_text())
-        return {name: {of for known, of in packages if known == name} for name in CORE.split()}
-
-    program, package = versions(PYTHON.parent / "Cargo.lock"), versions(PYTHON / "Cargo.lock")
-    for name in CORE.split():
-        assert package[name] and package[name] <= program[name], (
-            f"{name}: run `cargo update -p {name} --precise VERSION` in python/ with the root's version"
-        )
-
-
 def test_everything_public_has_a_docstring():
     missing = []
     for name in sns.__all__:
