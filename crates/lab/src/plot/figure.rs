@@ -7,6 +7,9 @@ use snakes_core::evolve::StrategyKind;
 /// Maximum number of shades that a legend lists; of more it lists none, because their order explains them.
 const MAX_SHADES_LISTED: usize = 8;
 
+/// Maximum number of bands that a legend lists beside the lines in their colours.
+const MAX_BANDS_LISTED: usize = 2;
+
 /// One chart, or several that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -242,10 +245,16 @@ impl Figure {
         let is_shade = |series: &Series| matches!(series.role, Role::Share(_));
         let all = || self.charts.iter().flat_map(|chart| &chart.series);
         let are_many = all().filter(|series| is_shade(series)).count() > MAX_SHADES_LISTED;
+        let is_band = |series: &Series| matches!(series.shape, Shape::Band(_));
+        let is_of_line = |band: &Series| {
+            let is_line = |of: &Series| matches!(of.shape, Shape::Line(_)) && !of.name.is_empty();
+            is_band(band) && all().any(|other| other.role == band.role && is_line(other))
+        };
+        let bands_are_many = all().filter(|series| is_band(series)).count() > MAX_BANDS_LISTED;
         let mut listed: Vec<&Series> = Vec::new();
         for series in all().filter(|series| !series.name.is_empty()) {
             let is_known = listed.iter().any(|known| known.name == series.name);
-            let is_too_much = are_many && is_shade(series);
+            let is_too_much = are_many && is_shade(series) || bands_are_many && is_of_line(series);
             if !is_known && !is_too_much {
                 listed.push(series);
             }

@@ -380,6 +380,15 @@ impl Study {
         Ok(())
     }
 
+    /// Takes other suites, without the shown and compared values of those that it had.
+    pub fn set_suites(&mut self, suites: Vec<ExamSuite>) {
+        self.suites = suites;
+        let (mut show, mut compare) = (self.show.clone(), self.compare.clone());
+        show.retain(|name| self.check_measured("show", name).is_ok());
+        compare.retain(|name| self.check_measured("compare", name).is_ok());
+        (self.show, self.compare) = (show, compare);
+    }
+
     /// Refuses a value that does not exist, or that only a suite measures which the study does not have.
     fn check_measured(&self, field: &str, name: &str) -> Result<(), Invalid> {
         value(field, name)?;
