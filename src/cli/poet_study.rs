@@ -37,8 +37,8 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
         ("--seeds", wanted.seeds.is_some()),
         ("--evaluations", wanted.evaluations.is_some()),
         ("--suite", !wanted.suite.is_empty()),
-        ("--preset", args.named_preset().is_some()),
-        ("--stairs", args.named_stairs().is_some()),
+        ("--preset", args.run.settings.preset.is_some()),
+        ("--stairs", args.run.settings.stairs.is_some()),
         ("--duration", args.duration_s()?.is_some()),
         ("--set, --population, --generations or --fitness", !args.changes()?.is_empty()),
     ];

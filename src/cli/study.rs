@@ -5,7 +5,8 @@ use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print};
 use super::poet_study;
-use snakes_core::check::{Invalid, within};
+use snakes_core::check::Invalid;
+use snakes_core::save::SaveError;
 use snakes_core::schema::Choices;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::study::{
@@ -36,6 +37,7 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let control = cancel_on_interrupt();
     let performed = perform(&study, &files, args.run.restart, &*evaluator, &control);
     let performed = performed.map_err(|error| match error {
+        HeadlessError::Save(SaveError::Study(invalid)) => of_its_flag(args, wanted, invalid).into(),
         HeadlessError::Save(error) => CliError::from(error),
         other => other.into(),
     });
@@ -47,6 +49,16 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     }
     let saved = files.all().map(|file| format!("saved to  {}\n", file.display())).concat();
     print(&format!("{}\n{saved}", tables(&results)))
+}
+
+/// An error about a setting of an arm, with the name of the flag if one was given for it.
+fn of_its_flag(args: &Args, wanted: &StudyArgs, invalid: Invalid) -> Invalid {
+    let field = invalid.field.split(" of ").next().unwrap_or_default().to_owned();
+    if field == "evaluations" && wanted.evaluations.is_some() {
+        return of_flag("--evaluations")(invalid);
+    }
+    let of_setting = args.of_its_flag(Invalid { field, ..invalid.clone() });
+    if of_setting.field.starts_with("--") { of_setting } else { invalid }
 }
 
 /// Lists the built-in studies.
@@ -64,26 +76,24 @@ fn list(args: &Args) -> Result<(), CliError> {
 
 /// The study with what the flags change.
 fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, CliError> {
-    if let Some(preset) = args.named_preset() {
+    if let Some(preset) = &args.run.settings.preset {
         if study.methods.is_none() && study.arms.iter().all(|arm| arm.preset.is_some()) {
             let problem =
                 "--preset has no effect with this study, whose arms have presets of their own";
             return Err(CliError::Usage(problem.to_owned()));
         }
-        study.preset = preset.to_owned();
+        study.preset.clone_from(preset);
     }
     study.first_seed = args.seed_or(study.first_seed)?;
     if let Some(text) = &wanted.seeds {
         study.seeds = number("--seeds", text, WHOLE)?;
-        within("--seeds", study.seeds, 1..=10_000)?;
     }
     if let Some(text) = &wanted.evaluations {
         study.evaluations = Some(number("--evaluations", text, WHOLE)?);
     }
-    study.stairs = args.named_stairs().map(str::to_owned).or(study.stairs);
+    study.stairs = args.run.settings.stairs.clone().or(study.stairs);
     let mut changes = args.changes()?;
     if let Some(duration_s) = args.duration_s()? {
-        within("--duration", duration_s, 0.1..=600.0)?;
         changes.push((DURATION, duration_s.to_string()));
     }
     if study.evaluations.is_some() && changes.iter().any(|(name, _)| name.ends_with("generations"))
@@ -123,6 +133,7 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
     study.check().map_err(|invalid| match invalid.field.as_str() {
         "baseline" => of_flag("--baseline")(invalid),
         "first_seed" => of_flag("--seed")(invalid),
+        "seeds" if wanted.seeds.is_some() => of_flag("--seeds")(invalid),
         _ => invalid,
     })?;
     Ok(study)

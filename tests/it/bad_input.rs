@@ -55,10 +55,7 @@ fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let message = refusal(folder.path(), "study table1 --seeds 0", 2);
     assert_eq!(message, "error: --seeds is 0; allowed: 1 to 10000");
     let message = refusal(folder.path(), "study table1 --fitness height", 2);
-    assert_eq!(
-        message,
-        "error: trial.fitness of report is height; allowed: centre, as of the published means"
-    );
+    assert_eq!(message, "error: --fitness is height; allowed: centre, as of the published means");
 }
 
 #[cfg(feature = "studio")]

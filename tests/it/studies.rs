@@ -100,7 +100,7 @@ fn what_a_study_cannot_do_is_refused_by_the_name_of_its_flag() {
     for (flags, refusal) in [
         ("walkers", "error: study is \"walkers\"; allowed: table1, methods"),
         ("families --arms walker", "error: --arms is \"walker\"; allowed: gait, reflex"),
-        ("families --arms zcs --evaluations 3", "error: evaluations of zcs is 3; allowed: "),
+        ("families --arms zcs --evaluations 3", "error: --evaluations is 3; allowed: "),
         ("families --seeds 0", "error: --seeds is 0; allowed: 1 to 10000"),
         ("families --duration -1", "error: --duration is -1; allowed: 0.1 to 600"),
         ("families --suite stars", "error: --suite is \"stars\"; allowed: trials, step-rate"),

@@ -105,16 +105,6 @@ impl Args {
         check_effects(settings, paths)
     }
 
-    /// The preset that is named.
-    pub fn named_preset(&self) -> Option<&str> {
-        self.run.settings.preset.as_deref()
-    }
-
-    /// The stairs that are named.
-    pub fn named_stairs(&self) -> Option<&str> {
-        self.run.settings.stairs.as_deref()
-    }
-
     /// The settings that `--population`, `--generations`, `--fitness` and `--set` change, by their names.
     pub fn changes(&self) -> Result<Vec<(&str, String)>, CliError> {
         let mut changes = Vec::new();

@@ -136,6 +136,11 @@ impl Trial {
         steps_in(self.duration_s, &self.physics)
     }
 
+    /// Number of simulations that an evaluation in it takes.
+    pub fn simulations(&self) -> u64 {
+        self.repeats.trials.max(1).into()
+    }
+
     /// The trial on whose fitness a run chooses its champions: this one and a fixed list of variations. `None` if it
     /// chooses by the fitness in this trial alone.
     pub fn that_chooses_champions(&self) -> Option<Self> {

@@ -16,7 +16,7 @@ use super::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
 use super::lineage::{Ancestor, Ancestry, Generation, Lineage};
 use super::report::{EvaluatedGeneration, GenerationReport};
 use super::run_control::{Cancelled, RunControl};
-use choice::{CANDIDATES, choose_champion};
+use choice::choose_champion;
 use ladder::Ladder;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{
@@ -286,13 +286,8 @@ impl Experiment {
                 ranks[b].partial_cmp(&ranks[a]).unwrap_or(std::cmp::Ordering::Equal)
             });
         }
-        let mut champion =
+        let (mut champion, of_choice) =
             choose_champion(&evaluated, &ranking, evaluator, control, |of| self.rank(of))?;
-        let repeats = |trial: &Trial| u64::from(trial.repeats.trials.max(1));
-        let of_choice = ranking.iter().take(CANDIDATES);
-        let of_choice = of_choice.filter_map(|&index| trials.of(index).that_chooses_champions());
-        let simulated = (0..genomes.len()).map(|index| repeats(trials.of(index))).sum::<u64>()
-            + of_choice.map(|trial| repeats(&trial)).sum::<u64>();
         if trials.are_own() {
             // There are thousands of generations. Those that are better than all before are enough.
             champion = champion.filter(|champion| self.is_better(champion));
@@ -331,7 +326,8 @@ impl Experiment {
             }
         }
         self.evaluated += evaluations.len() as u64;
-        self.simulations += simulated;
+        let of_generation = (0..evaluations.len()).map(|index| trials.of(index).simulations());
+        self.simulations += of_generation.sum::<u64>() + of_choice;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());

@@ -140,8 +140,7 @@ pub fn evolve(
     }
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
-        let first = report.first_on_landing.map(|index| landing.spent + u64::from(index) + 1);
-        landing.add(report);
+        let first = landing.add(report);
         let line = match json {
             true => report_json(report, first, bodies_vary).to_string(),
             false => table_row(report),
@@ -222,10 +221,12 @@ struct Landing {
 }
 
 impl Landing {
-    fn add(&mut self, report: &GenerationReport) {
+    /// Adds a generation, and returns the number of its first individual on the landing.
+    fn add(&mut self, report: &GenerationReport) -> Option<u64> {
         let number = report.first_on_landing.map(|index| self.spent + u64::from(index) + 1);
         self.first = self.first.or(number);
         self.spent += u64::from(report.evaluations);
+        number
     }
 }
 

@@ -85,14 +85,9 @@ impl<'a> PlannedRun<'a> {
         arm.runs.iter().find(|run| run.seed == self.plan.seed)
     }
 
-    /// Simulated trials of an evaluation.
-    fn trials(&self) -> u64 {
-        self.plan.settings.trial.repeats.trials.max(1).into()
-    }
-
     /// Number of simulated trials that its generations may spend.
     pub fn simulations(&self) -> u64 {
-        self.trials() * self.plan.budget()
+        self.plan.settings.trial.simulations() * self.plan.budget()
     }
 
     /// Makes the run. Calls `spent` with numbers of simulated trials, in total those of [`Self::simulations`].
@@ -106,13 +101,14 @@ impl<'a> PlannedRun<'a> {
         spent: &(dyn Fn(u64) + Sync),
     ) -> Result<FinishedRun<'a>, Cancelled> {
         let plan = &self.plan;
+        let each = plan.settings.trial.simulations();
         let mut experiment = Experiment::new(plan.clone());
         let mut progress = RunProgress::default();
         let mut bodies = self.measures_bodies.then(|| BodyMeasures::new(&plan.settings));
         while !experiment.is_over() {
             let before = experiment.evaluated();
             let report = experiment.run_generation(evaluator, control)?;
-            spent(self.trials() * u64::from(report.evaluations));
+            spent(each * u64::from(report.evaluations));
             if let Some((bodies, generation)) = bodies.as_mut().zip(experiment.generation()) {
                 bodies.add(generation);
             }
@@ -121,7 +117,7 @@ impl<'a> PlannedRun<'a> {
                 break;
             }
         }
-        spent(self.trials() * plan.budget().saturating_sub(experiment.evaluated()));
+        spent(each * plan.budget().saturating_sub(experiment.evaluated()));
         let champion = best_of(&experiment, plan).cloned();
         let mut values = champion_values(champion.as_ref());
         let number = |number: u64| StudyValue::Number(number as f64);

@@ -7,11 +7,11 @@ use snakes_core::evolve::Champion;
 use snakes_core::score::Trial;
 
 /// Number of candidates in each generation: the best ones in their own trial.
-pub const CANDIDATES: usize = 2;
+const CANDIDATES: usize = 2;
 
 /// The champion of a generation, given the indices of its healthy individuals, the best first: the first of them, or,
 /// if the settings say so, the candidate with the greatest fitness on a fixed list of varied trials. `None` if all
-/// were disqualified.
+/// were disqualified. The second result is the number of trials that this has simulated.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was.
@@ -21,11 +21,11 @@ pub(super) fn choose_champion(
     evaluator: &dyn Evaluator,
     control: &RunControl,
     rank: impl Fn(&Champion) -> [f32; 2],
-) -> Result<Option<Champion>, Cancelled> {
+) -> Result<(Option<Champion>, u64), Cancelled> {
     let candidates = &ranking[..ranking.len().min(CANDIDATES)];
     let of = |&index: &usize| evaluated.trials.of(index).that_chooses_champions();
     let Some(trials) = candidates.iter().map(of).collect::<Option<Vec<Trial>>>() else {
-        return Ok(ranking.first().map(|&index| evaluated.individual(index)));
+        return Ok((ranking.first().map(|&index| evaluated.individual(index)), 0));
     };
     let genomes: Vec<_> = candidates.iter().map(|&index| &evaluated.genomes[index]).collect();
     let jobs: Vec<Job<'_>> =
@@ -41,5 +41,5 @@ pub(super) fn choose_champion(
             best = Some(candidate);
         }
     }
-    Ok(best)
+    Ok((best, trials.iter().map(Trial::simulations).sum()))
 }
