@@ -101,8 +101,11 @@ fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
         invalid.allowed += &format!(", {MUJOCO}");
         invalid
     };
-    let chosen =
-        if own.is_empty() { default.to_vec() } else { suites_named(&own).map_err(with_mujoco)? };
+    let chosen = if own.is_empty() {
+        default.to_vec()
+    } else {
+        suites_named("--suite", &own).map_err(with_mujoco)?
+    };
     Ok((chosen, own.len() < names.len()))
 }
 
@@ -346,9 +349,13 @@ mod tests {
 
     #[test]
     fn an_unknown_suite_is_refused_with_the_known_ones() {
-        let error = suites_named(&["stars".to_owned()]).expect_err("unknown").to_string();
+        let error =
+            suites_named("--suite", &["stars".to_owned()]).expect_err("unknown").to_string();
         assert!(error.contains("\"stars\"") && error.contains("step-rate, stairs"), "{error}");
         let twice = ["shove", "trials", "shove"].map(str::to_owned);
-        assert_eq!(suites_named(&twice).expect("known"), [ExamSuite::Trials, ExamSuite::Shove]);
+        assert_eq!(
+            suites_named("--suite", &twice).expect("known"),
+            [ExamSuite::Trials, ExamSuite::Shove]
+        );
     }
 }

@@ -128,7 +128,7 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
     }
     study.selected.clone_from(&wanted.arms);
     if !wanted.suite.is_empty() {
-        study.set_suites(suites_named(&wanted.suite)?);
+        study.set_suites(suites_named("--suite", &wanted.suite)?);
     }
     study.check().map_err(|invalid| match invalid.field.as_str() {
         "baseline" => of_flag("--baseline")(invalid),

@@ -59,9 +59,7 @@ impl<'a> Scoring<'a> {
         let evaluation = run.rollout.evaluation();
         if run.number == 0 {
             self.nominal = Some(Scored { evaluation, episode: run.rollout.finish() });
-            let has_others = evaluation.disqualified.is_none();
-            let trials = if has_others { self.trial.repeats.trials.max(1) } else { 1 };
-            self.fitnesses = vec![None; trials as usize];
+            self.fitnesses = vec![None; self.trial.simulations_of(&evaluation) as usize];
         }
         // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
         let fitness = if run.number > 0 && evaluation.disqualified.is_some() {

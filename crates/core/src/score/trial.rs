@@ -136,9 +136,14 @@ impl Trial {
         steps_in(self.duration_s, &self.physics)
     }
 
-    /// Number of simulations that an evaluation in it takes.
-    pub fn simulations(&self) -> u64 {
-        self.repeats.trials.max(1).into()
+    /// Maximum number of simulations that an evaluation takes.
+    pub fn most_simulations(&self) -> u32 {
+        self.repeats.trials.max(1)
+    }
+
+    /// Number of simulations that an evaluation took: a snake that is disqualified in the nominal trial is tried in no other.
+    pub fn simulations_of(&self, evaluation: &Evaluation) -> u32 {
+        if evaluation.disqualified.is_none() { self.most_simulations() } else { 1 }
     }
 
     /// The trial on whose fitness a run chooses its champions: this one and a fixed list of variations. `None` if it
@@ -274,10 +279,22 @@ pub(super) fn steps_in(duration_s: f32, physics: &PhysicsSettings) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::evolve::{Settings, with_fields};
     use crate::genome::{GenomeShape, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::evaluate;
+    use crate::world::Disqualification;
+
+    #[test]
+    fn a_disqualified_snake_is_simulated_in_its_nominal_trial_alone() {
+        let mut trial = Trial::default();
+        trial.repeats.trials = 4;
+        let healthy = Evaluation::of_fitness(1.0);
+        let disqualified = Some(Disqualification::TooFast);
+        assert_eq!(trial.simulations_of(&healthy), 4);
+        assert_eq!(trial.simulations_of(&Evaluation { disqualified, ..healthy }), 1);
+    }
 
     /// A world in which every parameter has an effect.
     fn lively() -> Settings {

@@ -326,8 +326,11 @@ impl Experiment {
             }
         }
         self.evaluated += evaluations.len() as u64;
-        let of_generation = (0..evaluations.len()).map(|index| trials.of(index).simulations());
-        self.simulations += of_generation.sum::<u64>() + of_choice;
+        let simulations = evaluations
+            .iter()
+            .enumerate()
+            .map(|(index, evaluation)| u64::from(trials.of(index).simulations_of(evaluation)));
+        self.simulations += simulations.sum::<u64>() + of_choice;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         self.keep_if_better(report.champion.as_ref());

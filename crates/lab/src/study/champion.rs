@@ -28,7 +28,7 @@ pub(super) fn champion_values(champion: Option<&Champion>) -> BTreeMap<String, S
     let Champion { genome, trial, evaluation, .. } = champion;
     let behaviour = evaluation.behaviour.unwrap_or_default();
     add("fitness", short(evaluation.fitness));
-    add("steps_climbed", StudyValue::Number(behaviour.steps_climbed.into()));
+    add("steps_climbed", StudyValue::Number(champion.steps_climbed().into()));
     add("landed", flag(evaluation.is_on_landing(&trial.stairs)));
     add("way_m", short(champion.way_m()));
     add("blocks", StudyValue::Number(champion.body().limbs() as f64));

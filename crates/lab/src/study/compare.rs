@@ -13,7 +13,7 @@ pub struct ArmComparison<'a> {
     /// The arm with which it is compared.
     pub baseline: &'a Arm,
     /// The value.
-    pub value: ValueInfo,
+    pub value: &'static ValueInfo,
     /// The differences of the runs with the same seeds.
     pub difference: PairedDifference,
     /// The probability of the sign test, corrected for the number of arms that are compared by this value (Holm).
@@ -31,18 +31,16 @@ pub fn comparisons<'a>(results: &Results<'a>) -> Vec<ArmComparison<'a>> {
         let against = |arm: &'a Arm| Some((arm, study.baseline_of(arm)?));
         let mut of_value: Vec<ArmComparison<'a>> = Vec::new();
         for (arm, baseline) in study.selected_arms().filter_map(against) {
-            let pairs = results.pairs(arm, baseline, &value);
+            let pairs = results.pairs(arm, baseline, value);
             // One pair shows no difference between arms, such as that of two best champions.
             if pairs.len() < 2 {
                 continue;
             }
-            let numbers = |arm: &Arm| -> Vec<f64> {
-                results.numbers(arm, &value).into_iter().map(|(_, number)| number).collect()
-            };
+            let numbers = |arm: &Arm| results.values(arm, value);
             of_value.push(ArmComparison {
                 arm,
                 baseline,
-                value: value.clone(),
+                value,
                 difference: PairedDifference::of(&pairs),
                 corrected_p: 1.0,
                 superiority: Superiority::of(&numbers(arm), &numbers(baseline)),

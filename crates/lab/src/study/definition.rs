@@ -172,6 +172,9 @@ pub struct Demand {
     /// The arm with which it is compared, where that is not the baseline.
     #[serde(default)]
     pub against: Option<String>,
+    /// Whether less is better where more usually is.
+    #[serde(default)]
+    pub at_most: bool,
     /// What the measure must be.
     #[serde(default)]
     pub must: Option<f64>,
@@ -210,8 +213,19 @@ impl Display for Plain {
 
 fn suites_by_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ExamSuite>, D::Error> {
     let names = Vec::<String>::deserialize(deserializer)?;
-    let named = names.iter().map(|name| ExamSuite::named("suites", name).map_err(D::Error::custom));
-    named.collect()
+    suites_named("suites", &names).map_err(D::Error::custom)
+}
+
+/// The suites of a list of names, each once, in the order of the list of suites.
+///
+/// # Errors
+/// An unknown name.
+pub fn suites_named(field: &str, names: &[String]) -> Result<Vec<ExamSuite>, Invalid> {
+    let named = names.iter().map(|name| ExamSuite::named(field, name));
+    let mut suites = named.collect::<Result<Vec<_>, _>>()?;
+    suites.sort_unstable();
+    suites.dedup();
+    Ok(suites)
 }
 
 fn default_preset() -> String {

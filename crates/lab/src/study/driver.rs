@@ -20,7 +20,6 @@ use snakes_core::save::{
     MAX_STUDY_RUNS, Picture, Protocol, SaveError, SavesFolder, StudiedRun, StudyRuns, StudyValue,
     load_champion, load_study, store_champion, store_csv, store_exam, store_picture, store_study,
 };
-use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
 
 /// The files of a study.
@@ -253,16 +252,4 @@ fn in_one_line(arm: &Arm, run: &StudiedRun) -> String {
         number("first_landing", 0).map_or(String::new(), |of| format!(", first landing {of}"));
     let evaluations = number("evaluations", 0).unwrap_or_default();
     format!("{}  seed {}  {evaluations} evaluations: {result}{first}", arm.name, run.seed)
-}
-
-/// The suites of a list of names, in the order of the list of suites.
-///
-/// # Errors
-/// An unknown name.
-pub fn suites_named(names: &[String]) -> Result<Vec<ExamSuite>, Invalid> {
-    let named = names.iter().map(|name| ExamSuite::named("--suite", name));
-    let mut suites = named.collect::<Result<Vec<_>, _>>()?;
-    suites.sort_unstable();
-    suites.dedup();
-    Ok(suites)
 }

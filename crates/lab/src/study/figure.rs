@@ -2,14 +2,16 @@
 
 use super::definition::{Arm, Demand};
 use super::measure::{Measure, Results};
-use super::values::{Form, ValueInfo, values};
+use super::values::{Form, ValueInfo, value, values};
 use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
 use crate::statistics::Quartiles;
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::{CURVE_POINTS, Protocol, StudiedArm, StudiedRun};
 
-/// Maximum number of charts with the values of runs, and of arms whose names leave room for so many.
-const MOST_CHARTS: (usize, usize) = (6, 8);
+/// Maximum number of charts with the values of runs.
+const MOST_CHARTS: usize = 6;
+/// Maximum number of arms whose names leave room for so many charts.
+const MOST_ARMS: usize = 8;
 /// Maximum number of charts of more arms.
 const FEWER_CHARTS: usize = 4;
 
@@ -108,8 +110,8 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
     let study = results.study;
     let shown = study.shown();
     let is_shown =
-        |info: &ValueInfo| info.name.starts_with("generation_means") && shown.contains(&info.name);
-    let chart = |info: ValueInfo| {
+        |info: &&ValueInfo| info.name.starts_with("generation_means") && shown.contains(&info.name);
+    let chart = |info: &ValueInfo| {
         let mut series = Vec::new();
         for arm in study.selected_arms() {
             let runs = results.of(arm);
@@ -150,7 +152,7 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
             marks: Vec::new(),
         }
     };
-    values().into_iter().filter(is_shown).map(chart).collect()
+    values().iter().filter(is_shown).map(chart).collect()
 }
 
 /// For each shown number, the values of all runs, arm by arm.
@@ -159,23 +161,20 @@ fn value_charts(results: &Results<'_>) -> Vec<Chart> {
     // Those that the study names come first, in its order.
     let mut shown = study.show.clone();
     shown.extend(study.shown().into_iter().filter(|name| !study.show.contains(name)));
-    let all = values();
-    let infos = shown.iter().filter_map(|name| all.iter().find(|info| info.name == *name));
+    let infos = shown.iter().filter_map(|name| value("show", name).ok());
     let infos = infos.filter(|info| {
         matches!(info.form, Form::Number | Form::Until)
             && !["evaluations", "simulations"].contains(&info.name.as_str())
     });
     let arms: Vec<&Arm> = study.selected_arms().collect();
-    let (most, arms_of_most) = MOST_CHARTS;
-    let infos = infos.take(if arms.len() > arms_of_most { FEWER_CHARTS } else { most });
+    let infos = infos.take(if arms.len() > MOST_ARMS { FEWER_CHARTS } else { MOST_CHARTS });
     infos.map(|info| value_chart(results, &arms, info)).collect()
 }
 
 fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart {
     let (mut points, mut bands, mut medians) = (Vec::new(), Vec::new(), Vec::new());
     for (place, arm) in (0..).map(f64::from).zip(arms) {
-        let numbers: Vec<f64> =
-            results.numbers(arm, info).into_iter().map(|(_, number)| number).collect();
+        let numbers = results.values(arm, info);
         // Equal values lie beside each other.
         for (index, number) in numbers.iter().enumerate().filter(|(_, number)| number.is_finite()) {
             let is_equal = |other: &&f64| (*other - number).abs() < 1e-9;

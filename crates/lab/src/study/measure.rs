@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::definition::{Arm, Demand, Examined, Study};
 use super::findings::Findings;
-use super::values::{Form, ValueInfo, number, value};
+use super::values::{Form, ValueInfo, number, signed, value};
 use crate::statistics::{PairedDifference, Quartiles, Share, median_difference, sign_test};
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::{StudiedRun, StudyRuns, StudyValue};
@@ -113,9 +113,9 @@ pub struct Results<'a> {
     pub findings: &'a Findings,
 }
 
-impl Results<'_> {
+impl<'a> Results<'a> {
     /// The runs of an arm with one of the study's seeds.
-    pub fn of(&self, arm: &Arm) -> Vec<&StudiedRun> {
+    pub fn of(&self, arm: &Arm) -> Vec<&'a StudiedRun> {
         let seeds = self.study.seeds();
         self.runs.of_arm(&arm.name).iter().filter(|run| seeds.contains(&run.seed)).collect()
     }
@@ -124,6 +124,16 @@ impl Results<'_> {
     pub fn numbers(&self, arm: &Arm, info: &ValueInfo) -> Vec<(u64, f64)> {
         let of_run = |run: &&StudiedRun| Some((run.seed, number_of(info, run)?));
         self.of(arm).iter().filter_map(of_run).collect()
+    }
+
+    /// The numbers of a value alone.
+    pub fn values(&self, arm: &Arm, info: &ValueInfo) -> Vec<f64> {
+        self.of(arm).iter().filter_map(|run| number_of(info, run)).collect()
+    }
+
+    /// The different texts of a value.
+    pub fn texts(&self, arm: &Arm, name: &str) -> BTreeSet<&'a str> {
+        self.of(arm).into_iter().filter_map(|run| text_of(run, name)).collect()
     }
 
     /// The values of an arm and of the one with which it is compared, for each seed that both have. A run without a healthy snake
@@ -173,26 +183,30 @@ impl Demand {
 
     /// Whether less is better.
     pub fn is_at_most(&self) -> bool {
-        match &self.measure {
-            Measure::SignTest { .. } | Measure::MedianSize { .. } | Measure::Newborns => true,
-            Measure::Median { of, .. } => of == "rules" || info_of(of).form == Form::Until,
-            _ => false,
-        }
+        self.at_most
+            || match &self.measure {
+                Measure::SignTest { .. } | Measure::MedianSize { .. } | Measure::Newborns => true,
+                Measure::Median { of, .. } => {
+                    info_of(of).is_some_and(|info| info.form == Form::Until)
+                }
+                _ => false,
+            }
     }
 
     /// What is measured of an arm.
     pub fn words(&self, study: &Study, arm: &Arm) -> String {
         let against = self.against(study, arm).map_or("", |arm| arm.name.as_str());
-        let title = |name: &str| info_of(name).title;
+        let title = |name: &str| info_of(name).map_or(name.to_owned(), |info| info.title.clone());
         match &self.measure {
             Measure::Median { of, less: None } => title(of),
             Measure::Median { of, less: Some(less) } => {
                 format!("{} less {}", title(of), title(less))
             }
             Measure::Share { of } => {
-                let one = |(name, least): (&String, &f64)| match info_of(name).form {
-                    Form::Flag => title(name),
-                    Form::Until => {
+                let one = |(name, least): (&String, &f64)| match info_of(name).map(|info| info.form)
+                {
+                    Some(Form::Flag) => title(name),
+                    Some(Form::Until) => {
                         format!("reach {}", title(name).trim_start_matches("evaluations to "))
                     }
                     _ => format!("{} ≥ {least}", title(name)),
@@ -230,24 +244,18 @@ impl Demand {
             Measure::Difference { .. } => format!("≥ {bound:+}"),
             Measure::Ratio { .. } | Measure::TotalRatio { .. } => format!("≥ {bound} times"),
             Measure::Apart { .. } | Measure::Overlap { .. } => "yes".to_owned(),
-            Measure::Median { of, .. } if !info_of(of).unit.is_empty() => {
-                format!("{sign} {bound} {}", info_of(of).unit)
+            Measure::Median { of, .. } => {
+                let unit = info_of(of).map_or("", |info| info.unit);
+                format!("{sign} {bound} {unit}").trim_end().to_owned()
             }
             _ => format!("{sign} {bound}"),
         }
     }
 }
 
-/// A value of a study that was checked.
-fn info_of(name: &str) -> ValueInfo {
-    value("of", name).unwrap_or_else(|_| ValueInfo {
-        name: name.to_owned(),
-        title: name.to_owned(),
-        unit: "",
-        digits: 3,
-        form: Form::Number,
-        about: String::new(),
-    })
+/// The value of a name; none for an unknown one, which the check of the study refuses.
+fn info_of(name: &str) -> Option<&'static ValueInfo> {
+    value("of", name).ok()
 }
 
 impl Measure {
@@ -310,19 +318,14 @@ impl Measure {
     fn of(&self, arm: &Arm, against: Option<&Arm>, results: &Results<'_>) -> Option<Measured> {
         match self {
             Self::Median { of, less } => {
-                let info = info_of(of);
-                let values = match less {
-                    None => results.numbers(arm, &info),
-                    Some(less) => {
-                        let others = results.numbers(arm, &info_of(less));
-                        let less = |(seed, value): (u64, f64)| {
-                            let (_, other) = others.iter().find(|(of, _)| *of == seed)?;
-                            Some((seed, value - other))
-                        };
-                        results.numbers(arm, &info).into_iter().filter_map(less).collect()
-                    }
+                let info = info_of(of)?;
+                let Some(less) = less else { return median(results.values(arm, info), info) };
+                let others = results.numbers(arm, info_of(less)?);
+                let difference = |(seed, value): (u64, f64)| {
+                    let (_, other) = others.iter().find(|(of, _)| *of == seed)?;
+                    Some(value - other)
                 };
-                median(values.into_iter().map(|(_, value)| value), &info)
+                median(results.numbers(arm, info).into_iter().filter_map(difference), info)
             }
             Self::Share { of } => {
                 let runs = results.of(arm);
@@ -337,23 +340,21 @@ impl Measure {
                 share(runs.iter().filter(is_met).count(), runs.iter().filter(known).count())
             }
             Self::MedianSize { of } => {
-                let info = info_of(of);
+                let info = info_of(of)?;
                 let runs = results.of(arm);
                 let numbers = runs.iter().flat_map(|run| run.numbers(of)).flatten();
-                median(numbers.map(|number| number.abs()), &info)
+                median(numbers.map(|number| number.abs()), info)
             }
             Self::Distinct { of } => {
-                let runs = results.of(arm);
-                let texts: BTreeSet<&str> =
-                    runs.iter().filter_map(|run| text_of(run, of)).collect();
-                (!runs.is_empty()).then(|| Measured {
-                    value: texts.len() as f64,
-                    text: format!("{} in {} runs", texts.len(), runs.len()),
+                let (runs, texts) = (results.of(arm).len(), results.texts(arm, of).len());
+                (runs > 0).then(|| Measured {
+                    value: texts as f64,
+                    text: format!("{texts} in {runs} runs"),
                 })
             }
-            Self::Difference { of } => difference(arm, against?, &info_of(of), results),
+            Self::Difference { of } => difference(arm, against?, info_of(of)?, results),
             Self::SignTest { of } => {
-                let pairs = results.pairs(arm, against?, &info_of(of));
+                let pairs = results.pairs(arm, against?, info_of(of)?);
                 let PairedDifference { more, fewer, pairs, p, .. } = PairedDifference::of(&pairs);
                 let equal = pairs as u32 - more - fewer;
                 (pairs > 0).then(|| Measured {
@@ -362,7 +363,7 @@ impl Measure {
                 })
             }
             Self::Ratio { of } => {
-                let info = ValueInfo { digits: 2, unit: "", ..info_of(of) };
+                let info = ValueInfo { digits: 2, unit: "", ..info_of(of)?.clone() };
                 let pairs = results.pairs(arm, against?, &info).into_iter();
                 let ratio = |[a, b]: [Option<f64>; 2]| Some(a? / b?.max(f64::MIN_POSITIVE));
                 median(pairs.filter_map(ratio), &info)
@@ -396,7 +397,7 @@ impl Measure {
                 Some(yes_or_no(a.least > b.most, format!("{a_text} against {b_text}")))
             }
             Self::Overlap { of } => {
-                let info = info_of(of);
+                let info = info_of(of)?;
                 let interval = |arm: &Arm| {
                     // A run that never came so far has spent all its evaluations.
                     let of_run = |run: &&StudiedRun| match info.form {
@@ -505,10 +506,7 @@ fn difference(
     info: &ValueInfo,
     results: &Results<'_>,
 ) -> Option<Measured> {
-    let signed = |value: f64| {
-        let text = number(value, info.digits);
-        if value >= 0.0 && value.is_finite() { format!("+{text}") } else { text }
-    };
+    let signed = |value: f64| signed(value, info.digits);
     let (values, others) = (results.numbers(arm, info), results.numbers(against, info));
     let is_of_best = [arm, against].iter().any(|arm| arm.examined == Examined::Best);
     if let ([(_, value)], [(_, other)]) = (values.as_slice(), others.as_slice())

@@ -20,8 +20,9 @@ mod values;
 pub use compare::{ArmComparison, comparisons};
 pub use definition::{
     Arm, Changes, DURATION, Demand, Examined, Goal, Methods, Plain, Study, built_in_studies,
+    suites_named,
 };
-pub use driver::{StudyFiles, perform, picture, suites_named};
+pub use driver::{StudyFiles, perform, picture};
 pub use figure::{controllers, curve, curves, short_title};
 pub use findings::Findings;
 pub use measure::{Measure, Measured, Results, Verdict};

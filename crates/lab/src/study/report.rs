@@ -6,7 +6,7 @@ use super::compare::{ArmComparison, comparisons};
 use super::definition::{Arm, Demand};
 use super::driver::StudyFiles;
 use super::measure::{Results, quartiles_text};
-use super::values::{Form, ValueInfo, number, values};
+use super::values::{Form, ValueInfo, number, signed, values};
 use crate::run::markdown::markdown_table;
 use crate::statistics::Quartiles;
 use snakes_core::save::{StudiedRun, StudyValue};
@@ -47,36 +47,32 @@ pub fn tables(results: &Results<'_>) -> String {
 }
 
 /// The values that are shown, without lists.
-fn shown(results: &Results<'_>) -> Vec<ValueInfo> {
+fn shown(results: &Results<'_>) -> Vec<&'static ValueInfo> {
     let shown = results.study.shown();
-    values()
-        .into_iter()
-        .filter(|info| shown.contains(&info.name) && info.form != Form::List)
-        .collect()
+    let is_shown = |info: &&ValueInfo| shown.contains(&info.name) && info.form != Form::List;
+    values().iter().filter(is_shown).collect()
 }
 
 fn overview(results: &Results<'_>) -> Vec<Vec<String>> {
     let shown = shown(results);
     let head = ["arm".to_owned(), "runs".to_owned()];
-    let head = head.into_iter().chain(shown.iter().map(ValueInfo::label)).collect();
+    let head = head.into_iter().chain(shown.iter().map(|info| info.label())).collect();
     let row = |arm: &Arm| {
-        let runs = results.of(arm);
-        let cells = shown.iter().map(|info| cell(results, arm, &runs, info));
-        [arm.title().to_owned(), runs.len().to_string()].into_iter().chain(cells).collect()
+        let cells = shown.iter().map(|info| cell(results, arm, info));
+        let runs = results.of(arm).len().to_string();
+        [arm.title().to_owned(), runs].into_iter().chain(cells).collect()
     };
     [head].into_iter().chain(results.study.selected_arms().map(row)).collect()
 }
 
-fn cell(results: &Results<'_>, arm: &Arm, runs: &[&StudiedRun], info: &ValueInfo) -> String {
+fn cell(results: &Results<'_>, arm: &Arm, info: &ValueInfo) -> String {
     if info.form == Form::Text {
-        let mut texts: Vec<&StudyValue> =
-            runs.iter().filter_map(|run| run.values.get(&info.name)).collect();
-        texts.sort_by_key(|text| format!("{text:?}"));
-        texts.dedup();
-        return if texts.is_empty() { "–".to_owned() } else { texts.len().to_string() };
+        return match results.texts(arm, &info.name).len() {
+            0 => "–".to_owned(),
+            different => different.to_string(),
+        };
     }
-    let numbers: Vec<f64> =
-        results.numbers(arm, info).into_iter().map(|(_, number)| number).collect();
+    let numbers = results.values(arm, info);
     let (count, sum) = (numbers.len(), numbers.iter().sum::<f64>());
     let came = numbers.iter().filter(|number| number.is_finite()).count();
     match Quartiles::of(numbers) {
@@ -114,9 +110,12 @@ impl Spread {
 fn generations(results: &Results<'_>, arm: &Arm) -> Vec<Vec<String>> {
     let study = results.study;
     let shown = study.shown();
-    let of_generations = values()
-        .into_iter()
-        .filter(|info| info.name.starts_with(OF_GENERATIONS) && shown.contains(&info.name));
+    let is_shown =
+        |info: &&ValueInfo| info.name.starts_with(OF_GENERATIONS) && shown.contains(&info.name);
+    let of_generations: Vec<&ValueInfo> = values().iter().filter(is_shown).collect();
+    if of_generations.is_empty() {
+        return Vec::new();
+    }
     let runs = results.of(arm);
     let trial = study.plan(arm, study.first_seed).ok().map(|plan| plan.settings.trial);
     // The words of the report are about this fitness.
@@ -173,13 +172,7 @@ fn comparison_rows(compared: &[ArmComparison<'_>]) -> Vec<Vec<String>> {
     let head = ["arm", "baseline", "value", "higher", "p", "p (Holm)", "difference", "A"];
     let p = |p: f64| if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") };
     let row = |of: &ArmComparison<'_>| {
-        let signed = |value: f64| {
-            format!(
-                "{}{}",
-                if value >= 0.0 { "+" } else { "" },
-                number(value, of.value.digits.max(1))
-            )
-        };
+        let signed = |value: f64| signed(value, of.value.digits.max(1));
         let difference = match of.difference.median {
             None => "–".to_owned(),
             // Fewer than six seeds have no interval.
@@ -270,11 +263,11 @@ fn findings(results: &Results<'_>) -> String {
 }
 
 /// The values that any of the runs has, in their usual order.
-fn known_values(results: &Results<'_>) -> Vec<ValueInfo> {
+fn known_values(results: &Results<'_>) -> Vec<&'static ValueInfo> {
     let runs: Vec<&StudiedRun> =
         results.study.selected_arms().flat_map(|arm| results.of(arm)).collect();
-    let is_known = |info: &ValueInfo| runs.iter().any(|run| run.values.contains_key(&info.name));
-    values().into_iter().filter(is_known).collect()
+    let is_known = |info: &&ValueInfo| runs.iter().any(|run| run.values.contains_key(&info.name));
+    values().iter().filter(is_known).collect()
 }
 
 /// The records of the file of runs, the header first: one per run.
@@ -327,18 +320,26 @@ pub fn json_lines(results: &Results<'_>, files: &StudyFiles) -> Vec<Value> {
             lines.push(line);
         }
     }
-    let mut add = |kind: &str, records: Vec<Map<String, Value>>| {
-        for mut record in records {
-            record.insert("type".to_owned(), json!(kind));
-            record.insert("study".to_owned(), json!(study.name));
-            lines.push(Value::Object(record));
-        }
-    };
-    add("arm", arm_results(results));
-    add("comparison", comparison_results(results));
-    add("demand", demand_results(results));
+    lines.extend(typed_results(results).into_iter().map(Value::Object));
     lines.push(json!({"type": "done", "study": study.name, "runs": runs, "files": files.all()}));
     lines
+}
+
+/// The results of arms, comparisons and demands, each with its `type` and the study.
+fn typed_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
+    let kinds = [
+        ("arm", arm_results(results)),
+        ("comparison", comparison_results(results)),
+        ("demand", demand_results(results)),
+    ];
+    let typed = |(kind, records): (&'static str, Vec<Map<String, Value>>)| {
+        records.into_iter().map(move |mut record| {
+            record.insert("type".to_owned(), json!(kind));
+            record.insert("study".to_owned(), json!(results.study.name));
+            record
+        })
+    };
+    kinds.into_iter().flat_map(typed).collect()
 }
 
 /// The fields of an object.
@@ -359,8 +360,7 @@ fn arm_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
     let mut all = Vec::new();
     for arm in results.study.selected_arms() {
         for info in shown(results).into_iter().filter(|info| info.form != Form::Text) {
-            let numbers: Vec<f64> =
-                results.numbers(arm, &info).into_iter().map(|(_, number)| number).collect();
+            let numbers = results.values(arm, info);
             let count = numbers.len();
             let quartiles = Quartiles::of(numbers);
             all.push(fields(json!({
@@ -418,40 +418,31 @@ fn demand_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
 
 /// The records of the file of results, the header first: a line for each value of an arm, each comparison and each demand.
 pub(super) fn result_records(results: &Results<'_>) -> Vec<Vec<String>> {
-    let kinds = [
-        ("arm", arm_results(results)),
-        ("comparison", comparison_results(results)),
-        ("demand", demand_results(results)),
-    ];
-    let mut columns: Vec<String> = ["study", "type", "arm"].map(str::to_owned).to_vec();
-    for (_, records) in &kinds {
-        // All records of a kind have the same fields.
-        let names = records.first().into_iter().flat_map(Map::keys);
-        let new: Vec<String> = names.filter(|name| !columns.contains(name)).cloned().collect();
-        columns.extend(new);
+    let records = typed_results(results);
+    let mut columns: Vec<&str> = ["study", "type", "arm"].to_vec();
+    for name in records.iter().flat_map(Map::keys) {
+        if !columns.contains(&name.as_str()) {
+            columns.push(name);
+        }
     }
     let cell = |value: &Value| match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
         other => other.to_string(),
     };
-    let mut all = vec![columns.clone()];
-    for (kind, records) in kinds {
-        for mut record in records {
-            record.insert("study".to_owned(), json!(results.study.name));
-            record.insert("type".to_owned(), json!(kind));
-            all.push(
-                columns.iter().map(|name| record.get(name).map_or(String::new(), cell)).collect(),
-            );
-        }
-    }
-    all
+    let of_record = |record: &Map<String, Value>| {
+        columns.iter().map(|name| record.get(*name).map_or(String::new(), cell)).collect()
+    };
+    let head = columns.iter().map(|name| (*name).to_owned()).collect();
+    [head].into_iter().chain(records.iter().map(of_record)).collect()
 }
 
 /// A page with all values that a study may name: `docs/studies.md` has it as a table.
 pub fn values_as_markdown() -> String {
     let head = ["value", "unit", "meaning"].map(str::to_owned).to_vec();
-    let row = |info: ValueInfo| vec![format!("`{}`", info.name), info.unit.to_owned(), info.about];
-    let rows: Vec<Vec<String>> = [head].into_iter().chain(values().into_iter().map(row)).collect();
+    let row = |info: &ValueInfo| {
+        vec![format!("`{}`", info.name), info.unit.to_owned(), info.about.clone()]
+    };
+    let rows: Vec<Vec<String>> = [head].into_iter().chain(values().iter().map(row)).collect();
     markdown_table(&rows, 3)
 }

@@ -87,7 +87,7 @@ impl<'a> PlannedRun<'a> {
 
     /// Number of simulated trials that its generations may spend.
     pub fn simulations(&self) -> u64 {
-        self.plan.settings.trial.simulations() * self.plan.budget()
+        u64::from(self.plan.settings.trial.most_simulations()) * self.plan.budget()
     }
 
     /// Makes the run. Calls `spent` with numbers of simulated trials, in total those of [`Self::simulations`].
@@ -101,7 +101,7 @@ impl<'a> PlannedRun<'a> {
         spent: &(dyn Fn(u64) + Sync),
     ) -> Result<FinishedRun<'a>, Cancelled> {
         let plan = &self.plan;
-        let each = plan.settings.trial.simulations();
+        let each = u64::from(plan.settings.trial.most_simulations());
         let mut experiment = Experiment::new(plan.clone());
         let mut progress = RunProgress::default();
         let mut bodies = self.measures_bodies.then(|| BodyMeasures::new(&plan.settings));

@@ -1,6 +1,7 @@
 //! The values that a run is measured by: their names, titles, units and digits.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use snakes_core::check::Invalid;
 use snakes_core::genome::StairsClass;
@@ -215,7 +216,12 @@ const OF_SUITE: [(&str, &str, usize, &str); 5] = [
 ];
 
 /// All values, in the order of tables and files.
-pub fn values() -> Vec<ValueInfo> {
+pub fn values() -> &'static [ValueInfo] {
+    static VALUES: OnceLock<Vec<ValueInfo>> = OnceLock::new();
+    VALUES.get_or_init(listed)
+}
+
+fn listed() -> Vec<ValueInfo> {
     let row = |(name, title, unit, digits, form, about): ValueRow| ValueInfo {
         name: name.to_owned(),
         title: title.to_owned(),
@@ -255,10 +261,9 @@ pub fn values() -> Vec<ValueInfo> {
 ///
 /// # Errors
 /// There is none.
-pub fn value(field: &str, name: &str) -> Result<ValueInfo, Invalid> {
-    let all = values();
-    all.iter().find(|info| info.name == name).cloned().ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|info| info.name.as_str()).collect();
+pub fn value(field: &str, name: &str) -> Result<&'static ValueInfo, Invalid> {
+    values().iter().find(|info| info.name == name).ok_or_else(|| {
+        let names: Vec<&str> = values().iter().map(|info| info.name.as_str()).collect();
         Invalid::new(field, format!("{name:?}"), names.join(", "))
     })
 }
@@ -284,9 +289,15 @@ pub fn number(value: f64, digits: usize) -> String {
     (if text == "-0" { "0" } else { text }).to_owned()
 }
 
+/// The same with its sign.
+pub(super) fn signed(value: f64, digits: usize) -> String {
+    let sign = if value >= 0.0 && value.is_finite() { "+" } else { "" };
+    format!("{sign}{}", number(value, digits))
+}
+
 /// A 32-bit number with the fewest digits that give it back.
 pub(super) fn short(value: f32) -> StudyValue {
-    StudyValue::Number(value.to_string().parse().unwrap_or(0.0))
+    StudyValue::Number(crate::run::short(value).as_f64().unwrap_or(0.0))
 }
 
 /// The name of a suite's value, such as `exam_held_out_trials`.

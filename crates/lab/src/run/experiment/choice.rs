@@ -31,15 +31,16 @@ pub(super) fn choose_champion(
     let jobs: Vec<Job<'_>> =
         genomes.iter().enumerate().map(|(trial, genome)| Job { genome, trial }).collect();
     let results = evaluate_in_order(&trials, &jobs, evaluator, control)?;
-    let mut best: Option<Champion> = None;
-    for (&index, result) in candidates.iter().zip(results) {
+    let (mut best, mut simulations) = (None::<Champion>, 0);
+    for ((&index, result), trial) in candidates.iter().zip(results).zip(&trials) {
         // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
         let Ok(on_list) = result else { continue };
+        simulations += u64::from(trial.simulations_of(&on_list.evaluation));
         let chosen_by = Some(on_list.evaluation.fitness);
         let candidate = Champion { chosen_by, ..evaluated.individual(index) };
         if best.as_ref().is_none_or(|best| rank(&candidate) > rank(best)) {
             best = Some(candidate);
         }
     }
-    Ok((best, trials.iter().map(Trial::simulations).sum()))
+    Ok((best, simulations))
 }
