@@ -4,6 +4,7 @@ mod completions;
 mod export;
 mod film;
 mod flags;
+mod groups;
 mod manual;
 mod parse;
 mod robust;

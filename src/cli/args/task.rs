@@ -1,4 +1,4 @@
-//! What the program is to do, and the flags for it.
+//! Tasks of the program, and the flags for them.
 
 use std::path::PathBuf;
 
@@ -7,10 +7,8 @@ use clap::parser::ValueSource;
 use clap_complete::Shell;
 
 use super::export::ExportArgs;
-use super::flags::{
-    CliCommand, CommandLine, OutputFlags, RunFlags, ShownList, ThreadFlags, WindowFlags,
-    WorkerFlags,
-};
+use super::flags::{CliCommand, CommandLine, ShownList};
+use super::groups::{OutputFlags, RunFlags, ThreadFlags, WindowFlags, WorkerFlags};
 use super::robust::PerturbationArgs;
 use super::study::StudyArgs;
 use crate::cli::error::CliError;
@@ -21,9 +19,9 @@ use snakes_core::save::DEFAULT_PRESET;
 pub struct Args {
     /// Whether JSON is printed.
     pub json: bool,
-    /// What is run.
+    /// The run.
     pub run: RunFlags,
-    /// Where it is evaluated.
+    /// The workers that evaluate it.
     pub workers: WorkerFlags,
     /// The window.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "this build has no window"))]

@@ -52,13 +52,13 @@ pub struct StudyRuns {
 pub struct StudiedArm {
     /// Its name.
     pub name: String,
-    /// What all its runs have in common.
+    /// The settings and the budget of all its runs.
     pub protocol: Protocol,
     /// Its finished runs, in the order of their seeds.
     pub runs: Vec<StudiedRun>,
 }
 
-/// What decides the runs of an arm, apart from their seeds. An arm continues only under the same protocol.
+/// Settings, budget and stop rule of an arm: with a seed they decide a run. An arm continues only under the same protocol.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {

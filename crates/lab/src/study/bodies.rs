@@ -1,4 +1,4 @@
-//! What is measured of runs in which bodies evolve: an archive of all bodies, and changes of their structure.
+//! Measurements of runs in which bodies evolve: an archive of all bodies, and changes of their structure.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What a study is: arms, seeds, values and demands, as data that can be written as RON.
+//! A study as data that can be written as RON: arms, seeds, values and demands.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -8,17 +8,14 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 use super::measure::Measure;
-use super::values::{Form, of_suite, value};
-use snakes_core::check::{Invalid, name, quoted, within};
-use snakes_core::evolve::{RunPlan, Settings, StrategyKind, check_effects, with_fields};
+use snakes_core::check::{Invalid, quoted};
+use snakes_core::evolve::StrategyKind;
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::{
-    DEFAULT_PRESET, Protocol, SaveError, load_definition, load_preset, load_stairs,
-    parse_definition, settings_fingerprint,
+    DEFAULT_PRESET, SaveError, load_definition, load_preset, parse_definition,
 };
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
-use snakes_core::world::PhysicsEngine;
 
 /// A study: runs of several arms over several seeds, each of which is measured by the same values.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -99,7 +96,7 @@ pub struct Methods {
     pub controllers: Vec<ControllerKind>,
 }
 
-/// What some runs have in common.
+/// An arm: runs with one preset, one list of changed settings and one budget, over all seeds.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Arm {
@@ -151,23 +148,23 @@ pub enum Goal {
 /// Which champions take the exam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 pub enum Examined {
-    /// Those of all seeds.
+    /// The champions of all seeds.
     #[default]
     All,
-    /// The best of all seeds: one that landed, of several the one with the most steps, of equals the fittest.
+    /// The best champion of all seeds: one that landed, of several the one with the most steps, of equals the fittest.
     Best,
-    /// None.
+    /// No champion.
     Never,
 }
 
-/// What is demanded of arms.
+/// A demand on the results of arms.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Demand {
     /// The arms, each of which has to meet it.
     #[serde(default)]
     pub arms: Vec<String>,
-    /// What is measured.
+    /// The measure of an arm that the demand bounds.
     pub measure: Measure,
     /// The arm with which it is compared, where that is not the baseline.
     #[serde(default)]
@@ -175,10 +172,10 @@ pub struct Demand {
     /// Whether less is better where more usually is.
     #[serde(default)]
     pub at_most: bool,
-    /// What the measure must be.
+    /// The bound that the measure has to reach.
     #[serde(default)]
     pub must: Option<f64>,
-    /// What would be hard to reach, but realistic.
+    /// A bound that is hard to reach, but realistic.
     #[serde(default)]
     pub hard: Option<f64>,
 }
@@ -239,11 +236,6 @@ fn default_first_seed() -> u64 {
 fn default_seeds() -> u64 {
     10
 }
-
-/// Maximum number of seeds.
-const MAX_SEEDS: u64 = 10_000;
-/// Maximum number of evaluations of a run.
-const MAX_EVALUATIONS: u32 = 10_000_000;
 
 /// The built-in studies: name and definition.
 const BUILT_IN: [(&str, &str); 10] = [
@@ -331,95 +323,6 @@ impl Study {
         Ok(())
     }
 
-    /// Checks everything that can be checked without making a run.
-    ///
-    /// # Errors
-    /// The first field that is not allowed.
-    pub fn check(&self) -> Result<(), Invalid> {
-        name("name", &self.name)?;
-        let sets_method = |name: &&String| {
-            ["evolution.strategy", "genome.controller"]
-                .iter()
-                .any(|field| is_short_for(field, name))
-        };
-        if let Some(field) =
-            self.settings.keys().find(sets_method).filter(|_| self.methods.is_some())
-        {
-            let allowed = "no value; the study names strategies and controllers as methods";
-            return Err(Invalid::new(field, &self.settings[field], allowed));
-        }
-        within("seeds", self.seeds, 1..=MAX_SEEDS)?;
-        within("first_seed", self.first_seed, 0..=u64::MAX - self.seeds)?;
-        within("number of arms", self.arms.len(), 1..=1000)?;
-        for (index, arm) in self.arms.iter().enumerate() {
-            name("arms.name", &arm.name)?;
-            if self.arms[..index].iter().any(|other| other.name == arm.name) {
-                return Err(Invalid::new(
-                    "arms.name",
-                    quoted(&arm.name),
-                    "a name that no other arm has",
-                ));
-            }
-            if arm.stops_at_goal && arm.goal.is_none() {
-                return Err(Invalid::new(
-                    "arms.stops_at_goal",
-                    true,
-                    "false for an arm without a goal",
-                ));
-            }
-            if let Some(Goal::Way(way_m)) = arm.goal {
-                within("arms.goal.Way", way_m, 0.0..=1.0e4)?;
-            }
-            if arm.evaluations.is_some() && arm.evaluations_times.is_some() {
-                let allowed = "none for an arm with evaluations of its own";
-                return Err(Invalid::new("arms.evaluations_times", "given", allowed));
-            }
-            arm.baseline.iter().try_for_each(|name| self.named("arms.baseline", name).map(drop))?;
-        }
-        self.baseline.iter().try_for_each(|name| self.named("baseline", name).map(drop))?;
-        self.show.iter().try_for_each(|name| self.check_measured("show", name))?;
-        for name in &self.compare {
-            if matches!(value("compare", name)?.form, Form::List | Form::Text) {
-                return Err(Invalid::new("compare", quoted(name), "a value that is a number"));
-            }
-            self.check_measured("compare", name)?;
-        }
-        self.references.keys().try_for_each(|name| value("references", name).map(drop))?;
-        self.newborns.map_or(Ok(()), |count| within("newborns", count, 1..=1_000_000))?;
-        for demand in &self.demands {
-            demand.arms.iter().try_for_each(|name| self.named("demands.arms", name).map(drop))?;
-            demand.against.iter().try_for_each(|of| self.named("demands.against", of).map(drop))?;
-            demand.measure.check(self)?;
-        }
-        Ok(())
-    }
-
-    /// Takes other suites, without the shown and compared values of those that it had.
-    pub fn set_suites(&mut self, suites: Vec<ExamSuite>) {
-        self.suites = suites;
-        let (mut show, mut compare) = (self.show.clone(), self.compare.clone());
-        show.retain(|name| self.check_measured("show", name).is_ok());
-        compare.retain(|name| self.check_measured("compare", name).is_ok());
-        (self.show, self.compare) = (show, compare);
-    }
-
-    /// Refuses a value that does not exist, or that only a suite measures which the study does not have.
-    fn check_measured(&self, field: &str, name: &str) -> Result<(), Invalid> {
-        value(field, name)?;
-        let is_of = |suite: &&ExamSuite| {
-            let start = of_suite(**suite, "");
-            name.strip_prefix(start.as_str())
-                .is_some_and(|end| end.is_empty() || end.starts_with('_'))
-        };
-        match ExamSuite::OPTIONS.iter().find(is_of).filter(|suite| !self.suites.contains(suite)) {
-            Some(suite) => {
-                let allowed = format!("other values, or suites with {:?}", suite.choice().name);
-                Err(Invalid::new(field, quoted(name), allowed))
-            }
-            None => Ok(()),
-        }
-    }
-
     /// The arm of a name.
     ///
     /// # Errors
@@ -478,119 +381,11 @@ impl Study {
         }
         shown
     }
-
-    /// The plan of a run.
-    ///
-    /// # Errors
-    /// The arm's preset cannot be read.
-    pub fn plan(&self, arm: &Arm, seed: u64) -> Result<RunPlan, SaveError> {
-        let preset = load_preset(arm.preset.as_ref().unwrap_or(&self.preset));
-        let mut preset = preset.map_err(|error| match error {
-            SaveError::UnknownPreset(invalid) => {
-                SaveError::Study(Invalid { field: format!("preset of {}", arm.name), ..invalid })
-            }
-            other => other,
-        })?;
-        if let Some(named) = &self.stairs {
-            preset.settings.trial.stairs = load_stairs(named)?.stairs;
-        }
-        let settings = self.settings_of(arm, &preset.settings).map_err(|invalid| {
-            // The flag --set gives this name to a setting that does not exist.
-            let field = if invalid.field == "set" { "settings" } else { &invalid.field };
-            SaveError::Study(Invalid { field: format!("{field} of {}", arm.name), ..invalid })
-        })?;
-        Ok(RunPlan::new(&preset.name, seed, settings))
-    }
-
-    /// The settings of an arm, from those of its preset.
-    ///
-    /// # Errors
-    /// The budget is too small for one generation, the settings do not fit together, one of the arm's has no effect, or the stairs
-    /// evolve, so that results on different stairs would be compared.
-    fn settings_of(&self, arm: &Arm, preset: &Settings) -> Result<Settings, Invalid> {
-        let text = |(name, value): (&String, &Plain)| (name.clone(), value.to_string());
-        let changes: Vec<(String, String)> =
-            self.settings.iter().chain(&arm.settings).map(text).collect();
-        let mut settings = preset.clone();
-        let mut others = Vec::new();
-        // The method first, because it decides which bodies there are, and so what the other settings may be.
-        for (name, value) in &changes {
-            if is_short_for("evolution.strategy", name) {
-                settings.evolution.strategy = StrategyKind::named(name, value)?;
-            } else if is_short_for("genome.controller", name) {
-                settings.genome.controller = ControllerKind::named(name, value)?;
-            } else {
-                others.push((name.as_str(), value.as_str()));
-            }
-        }
-        if let Some((strategy, controller)) = arm.method {
-            (settings.evolution.strategy, settings.genome.controller) = (strategy, controller);
-        }
-        let info = settings.evolution.strategy.info();
-        if info.evolves_stairs {
-            let allowed = "strategies whose snakes all learn on the stairs of the preset";
-            return Err(Invalid::new("strategy", settings.evolution.strategy, allowed));
-        }
-        settings.genome.bodies.vary = info.varies_bodies;
-        if settings.genome.has_creatures() {
-            // The preset's engine may simulate nothing but limbs in a row.
-            settings.trial.physics.engine = PhysicsEngine::Rapier;
-        }
-        let mut settings = with_fields(&settings, others)?;
-        if self.exam_length {
-            let duration_s = changes
-                .iter()
-                .any(|(name, _)| is_short_for(DURATION, name))
-                .then_some(settings.trial.duration_s);
-            settings.trial = ExamSuite::Stairs.undisturbed(&settings.trial).trial;
-            settings.trial.duration_s = duration_s.unwrap_or(settings.trial.duration_s);
-        }
-        let own = arm.evaluations.or(self.evaluations);
-        let times = arm.evaluations_times.unwrap_or(1);
-        if let Some(evaluations) = own.map(|evaluations| evaluations.saturating_mul(times)) {
-            let evolution = &mut settings.evolution;
-            // The report's method gets the report's number of generations: its mutation range halves with each, so more would
-            // change nothing. The others keep the population of the settings.
-            let fixed_generations = info.compared_generations;
-            if let Some(generations) = fixed_generations {
-                evolution.generations = generations;
-                evolution.population = evaluations / generations;
-            } else {
-                evolution.generations = evaluations / evolution.population.max(1);
-            }
-            let min = evolution.population.max(fixed_generations.unwrap_or(1));
-            within("evaluations", evaluations, min..=MAX_EVALUATIONS)?;
-        }
-        settings.check()?;
-        check_effects(&settings, arm.settings.keys().map(String::as_str))?;
-        Ok(settings)
-    }
 }
-
-/// Whether a name is that of a setting, or its end.
-fn is_short_for(field: &str, name: &str) -> bool {
-    field.strip_suffix(name).is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))
-}
-
-/// The setting of the duration of trials.
-pub const DURATION: &str = "trial.duration_s";
 
 impl Arm {
     /// Its title, or its name if it has none.
     pub fn title(&self) -> &str {
         if self.title.is_empty() { &self.name } else { &self.title }
-    }
-
-    /// What decides its runs apart from their seeds, from the plan of one of them.
-    pub fn protocol(&self, plan: &RunPlan) -> Protocol {
-        Protocol {
-            preset: plan.preset.clone(),
-            settings: settings_fingerprint(plan),
-            strategy: plan.settings.evolution.strategy,
-            controller: plan.settings.genome.controller,
-            fitness: plan.settings.trial.fitness,
-            budget: plan.budget(),
-            stops_at_goal: self.stops_at_goal,
-        }
     }
 }

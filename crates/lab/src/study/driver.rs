@@ -1,4 +1,4 @@
-//! Making what a study does not have yet: runs, exams, and the files of the results.
+//! The driver of a study: it makes missing runs and exams, and writes the files of the results.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -7,7 +7,7 @@ use super::definition::{Arm, Examined, Study};
 use super::figure::study_figure;
 use super::findings::Findings;
 use super::measure::Results;
-use super::report::{result_records, run_records};
+use super::records::{result_records, run_records};
 use super::run::{FinishedRun, PlannedRun};
 use super::values::{add_exam, of_suite};
 use crate::plot;
@@ -37,7 +37,7 @@ pub struct StudyFiles {
 }
 
 impl StudyFiles {
-    /// Those in a folder.
+    /// The files of a study in a folder.
     pub fn within(folder: &Path, study: &Study) -> Self {
         let named = |ending: &str| folder.join(format!("{}{ending}", study.name));
         Self {

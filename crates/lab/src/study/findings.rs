@@ -1,4 +1,4 @@
-//! What a study measures beside its runs: motions of newborns, and built-in champions in the other engine.
+//! Measurements beside the runs of a study: motions of newborns, and built-in champions in the other engine.
 
 use super::definition::Study;
 use super::newborns::{NewbornStatistics, newborn_statistics};
@@ -9,7 +9,7 @@ use snakes_core::save::library::shipped_champions;
 use snakes_core::save::load_preset;
 use snakes_core::score::ExamSuite;
 
-/// What was measured beside the runs.
+/// Measurements beside the runs of a study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
     /// Motions of newborns.
@@ -28,7 +28,7 @@ impl Findings {
         differences?.into_iter().reduce(f64::max)
     }
 
-    /// Measures what a study asks for.
+    /// Makes the measurements that a study asks for.
     ///
     /// # Errors
     /// `control` was cancelled, or the study's preset cannot be read.

@@ -1,4 +1,4 @@
-//! What is measured of an arm's runs, as a number and in words.
+//! Measures of an arm's runs, each as a number and as a text.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::definition::{Arm, Demand, Examined, Study};
 use super::findings::Findings;
-use super::values::{Form, ValueInfo, number, signed, value};
+use super::values::{Form, ValueInfo, number, signed, value, values};
 use crate::statistics::{PairedDifference, Quartiles, Share, median_difference, sign_test};
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::{StudiedRun, StudyRuns, StudyValue};
@@ -82,7 +82,7 @@ pub enum Measure {
     },
 }
 
-/// What was measured.
+/// A measured number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// The number that is held against the demand.
@@ -94,7 +94,7 @@ pub struct Measured {
 /// Whether a demand is met.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// What was measured; none if there are no results for it yet.
+    /// The measured number; none if there are no results for it yet.
     pub measured: Option<Measured>,
     /// Whether it is what it must be; none without a result, or if nothing must be.
     pub meets_must: Option<bool>,
@@ -105,11 +105,11 @@ pub struct Verdict {
 /// The results of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Results<'a> {
-    /// What was studied.
+    /// The study.
     pub study: &'a Study,
     /// The runs.
     pub runs: &'a StudyRuns,
-    /// What was measured beside them.
+    /// The measurements beside the runs.
     pub findings: &'a Findings,
 }
 
@@ -134,6 +134,13 @@ impl<'a> Results<'a> {
     /// The different texts of a value.
     pub fn texts(&self, arm: &Arm, name: &str) -> BTreeSet<&'a str> {
         self.of(arm).into_iter().filter_map(|run| text_of(run, name)).collect()
+    }
+
+    /// The values that are shown, without lists.
+    pub fn shown(&self) -> Vec<&'static ValueInfo> {
+        let shown = self.study.shown();
+        let is_shown = |info: &&ValueInfo| shown.contains(&info.name) && info.form != Form::List;
+        values().iter().filter(is_shown).collect()
     }
 
     /// The values of an arm and of the one with which it is compared, for each seed that both have. A run without a healthy snake
@@ -174,7 +181,7 @@ pub(super) fn number_of(info: &ValueInfo, run: &StudiedRun) -> Option<f64> {
 
 impl Demand {
     /// The arm with which an arm is compared.
-    fn against<'a>(&self, study: &'a Study, arm: &Arm) -> Option<&'a Arm> {
+    pub(super) fn against<'a>(&self, study: &'a Study, arm: &Arm) -> Option<&'a Arm> {
         match &self.against {
             Some(name) => study.arms.iter().find(|arm| arm.name == *name),
             None => study.baseline_of(arm),
@@ -192,69 +199,10 @@ impl Demand {
                 _ => false,
             }
     }
-
-    /// What is measured of an arm.
-    pub fn words(&self, study: &Study, arm: &Arm) -> String {
-        let against = self.against(study, arm).map_or("", |arm| arm.name.as_str());
-        let title = |name: &str| info_of(name).map_or(name.to_owned(), |info| info.title.clone());
-        match &self.measure {
-            Measure::Median { of, less: None } => title(of),
-            Measure::Median { of, less: Some(less) } => {
-                format!("{} less {}", title(of), title(less))
-            }
-            Measure::Share { of } => {
-                let one = |(name, least): (&String, &f64)| match info_of(name).map(|info| info.form)
-                {
-                    Some(Form::Flag) => title(name),
-                    Some(Form::Until) => {
-                        format!("reach {}", title(name).trim_start_matches("evaluations to "))
-                    }
-                    _ => format!("{} ≥ {least}", title(name)),
-                };
-                format!("runs: {}", of.iter().map(one).collect::<Vec<_>>().join(" and "))
-            }
-            Measure::MedianSize { of } => format!("{}, median size", title(of)),
-            Measure::Distinct { of } => format!("different {}", title(of)),
-            Measure::Difference { of } => format!("{}, more than {against}", title(of)),
-            Measure::SignTest { of } => format!("{}, sign test against {against}", title(of)),
-            Measure::Ratio { of } => format!("{}, times that of {against}", title(of)),
-            Measure::TotalRatio { of, .. } => {
-                format!("{} in all, times those of {against}", title(of))
-            }
-            Measure::Apart { of, .. } => format!("{}, interval above that of {against}", title(of)),
-            Measure::Overlap { of } => {
-                format!("{}, interval overlaps that of {against}", title(of))
-            }
-            Measure::Newborns => "quartiles of newborns, difference between engines".to_owned(),
-            Measure::BuiltInChampions { keep } => {
-                format!("built-in champions that keep {:.0} % in the other engine", keep * 100.0)
-            }
-        }
-    }
-
-    /// A bound in words; a dash if there is none.
-    pub fn bound(&self, bound: Option<f64>) -> String {
-        let Some(bound) = bound else { return "–".to_owned() };
-        let sign = if self.is_at_most() { "≤" } else { "≥" };
-        match &self.measure {
-            Measure::SignTest { .. } => format!("p ≤ {bound}"),
-            Measure::Share { .. } | Measure::Newborns | Measure::BuiltInChampions { .. } => {
-                format!("{sign} {} %", number(bound * 100.0, 1))
-            }
-            Measure::Difference { .. } => format!("≥ {bound:+}"),
-            Measure::Ratio { .. } | Measure::TotalRatio { .. } => format!("≥ {bound} times"),
-            Measure::Apart { .. } | Measure::Overlap { .. } => "yes".to_owned(),
-            Measure::Median { of, .. } => {
-                let unit = info_of(of).map_or("", |info| info.unit);
-                format!("{sign} {bound} {unit}").trim_end().to_owned()
-            }
-            _ => format!("{sign} {bound}"),
-        }
-    }
 }
 
 /// The value of a name; none for an unknown one, which the check of the study refuses.
-fn info_of(name: &str) -> Option<&'static ValueInfo> {
+pub(super) fn info_of(name: &str) -> Option<&'static ValueInfo> {
     value("of", name).ok()
 }
 

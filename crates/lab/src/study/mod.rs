@@ -4,6 +4,7 @@
 
 mod bodies;
 mod champion;
+mod checks;
 mod compare;
 mod definition;
 mod driver;
@@ -12,22 +13,26 @@ mod figure;
 mod findings;
 mod measure;
 mod newborns;
+mod plans;
 pub mod poet;
+mod records;
 mod report;
 mod run;
 mod values;
+mod words;
 
 pub use compare::{ArmComparison, comparisons};
 pub use definition::{
-    Arm, Changes, DURATION, Demand, Examined, Goal, Methods, Plain, Study, built_in_studies,
-    suites_named,
+    Arm, Changes, Demand, Examined, Goal, Methods, Plain, Study, built_in_studies, suites_named,
 };
 pub use driver::{StudyFiles, perform, picture};
 pub use figure::{controllers, curve, curves, short_title};
 pub use findings::Findings;
 pub use measure::{Measure, Measured, Results, Verdict};
 pub use newborns::NewbornStatistics;
-pub use report::{json_lines, tables, values_as_markdown};
+pub use plans::DURATION;
+pub use records::json_lines;
+pub use report::{tables, values_as_markdown};
 pub use run::{FinishedRun, PlannedRun};
 pub use values::{Form, ValueInfo, value, values};
 

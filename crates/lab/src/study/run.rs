@@ -19,7 +19,7 @@ pub struct PlannedRun<'a> {
     pub arm: &'a Arm,
     /// Its plan.
     pub plan: RunPlan,
-    /// What it has in common with the other runs of its arm.
+    /// The protocol of its arm.
     pub protocol: Protocol,
     /// Whether bodies are measured.
     measures_bodies: bool,
@@ -30,7 +30,7 @@ pub struct PlannedRun<'a> {
 pub struct FinishedRun<'a> {
     /// Its arm.
     pub arm: &'a Arm,
-    /// What it has in common with the other runs of its arm.
+    /// The protocol of its arm.
     pub protocol: Protocol,
     /// Its values.
     pub run: StudiedRun,
@@ -145,7 +145,7 @@ fn best_of<'e>(experiment: &'e Experiment, plan: &RunPlan) -> Option<&'e Champio
     experiment.best().filter(|best| best.trial.stairs == *goal)
 }
 
-/// What is noted after each generation.
+/// Numbers that are noted after each generation.
 #[derive(Debug)]
 struct RunProgress {
     first_landing: Option<u64>,

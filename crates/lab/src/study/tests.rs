@@ -343,7 +343,8 @@ fn every_line_of_json_has_a_type_and_every_record_as_many_fields() {
     let compared = lines.iter().find(|line| line["type"] == "comparison").expect("one");
     assert_eq!((&compared["arm"], &compared["baseline"]), (&"search".into(), &"random".into()));
     assert_eq!(compared["superiority"], 0.5);
-    for records in [super::report::run_records(&results), super::report::result_records(&results)] {
+    for records in [super::records::run_records(&results), super::records::result_records(&results)]
+    {
         assert!(records.len() > 3 && records.iter().all(|record| record.len() == records[0].len()));
     }
     assert!(picture(&results).expect("drawn").width > 0);
