@@ -84,3 +84,12 @@ fn the_window_adds_no_feature_that_could_change_bits() {
          feature has no part in a computation, add it to HARMLESS.\n"
     );
 }
+
+#[test]
+fn the_stage_holds_worlds_of_the_very_engine_that_computes_them() {
+    let lock = include_str!("../../Cargo.lock");
+    for package in ["rapier3d", "parry3d"] {
+        let versions = lock.matches(&format!("name = \"{package}\"\n")).count();
+        assert_eq!(versions, 1, "bevy_rapier3d and the core use one version of {package}");
+    }
+}

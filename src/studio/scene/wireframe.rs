@@ -1,19 +1,20 @@
-//! The physics engine's debug drawing of every lane: shapes, joints, contacts.
+//! The physics engine's debug drawing of every lane, by bevy_rapier3d: shapes, joints, contacts.
 
 use bevy::prelude::*;
-use rapier3d::pipeline::{
-    DebugRenderBackend, DebugRenderMode, DebugRenderObject, DebugRenderPipeline, DebugRenderStyle,
+use bevy_rapier3d::prelude::{
+    DebugRenderContext, DebugRenderMode, DebugRenderStyle, RapierDebugRenderPlugin,
 };
-use rapier3d::prelude::Vector;
 
 use super::overlays::Overlays;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use snakes_core::world::SeenPoint;
+use crate::studio::stage::staged_world::StagedWorld;
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(Update, draw.in_set(FrameSet::Draw));
+    let mode = DebugRenderMode::default() | DebugRenderMode::CONTACTS;
+    app.add_plugins(RapierDebugRenderPlugin { mode, ..default() }.disabled())
+        .add_systems(Update, hold_worlds.in_set(FrameSet::Draw));
 }
 
 /// Colour of the collision shapes of the snake's blocks.
@@ -30,48 +31,32 @@ fn of_engine([hue, saturation, lightness, alpha]: [f32; 4]) -> Color {
     Color::hsla(hue, saturation, lightness, alpha)
 }
 
-/// Draws lines with a lane's offset.
-struct CollisionLines<'a, 'w, 's> {
-    gizmos: &'a mut Gizmos<'w, 's>,
-    offset: Vec3,
-}
-
-impl DebugRenderBackend for CollisionLines<'_, '_, '_> {
-    fn draw_line(&mut self, _: DebugRenderObject, from: Vector, to: Vector, hsla: [f32; 4]) {
-        self.gizmos.line(from + self.offset, to + self.offset, of_engine(hsla));
-    }
-}
-
-/// Draws contacts that rapier does not know, as it draws its own: the gap or the overlap of each point, and its normal.
-fn draw_contacts(contacts: &[SeenPoint], lines: &mut CollisionLines<'_, '_, '_>) {
-    let style = DebugRenderStyle::default();
-    for contact in contacts {
-        let [from, to] = contact.on_m;
-        let along = from + contact.normal * style.contact_normal_length;
-        for (to, color) in [(to, style.contact_depth_color), (along, style.contact_normal_color)] {
-            lines.gizmos.line(from + lines.offset, to + lines.offset, of_engine(color));
-        }
-    }
-}
-
-fn draw(overlays: Res<Overlays>, lanes: Query<&Lane>, mut gizmos: Gizmos) {
-    if !overlays.shows(Overlay::Wireframe) {
+/// Shows the worlds of all lanes to the plugin, which draws them later in the frame.
+fn hold_worlds(
+    overlays: Res<Overlays>,
+    mut lines: ResMut<DebugRenderContext>,
+    mut worlds: Query<StagedWorld>,
+    mut gizmos: Gizmos,
+) {
+    lines.enabled = overlays.shows(Overlay::Wireframe);
+    if !lines.enabled {
         return;
     }
-    let mode = DebugRenderMode::default() | DebugRenderMode::CONTACTS;
-    let mut pipeline = DebugRenderPipeline::new(DebugRenderStyle::default(), mode);
-    for lane in &lanes {
-        let Some(simulation) = lane.simulation() else { continue };
-        let physics = simulation.physics();
-        let mut lines = CollisionLines { gizmos: &mut gizmos, offset: lane.offset() };
-        draw_contacts(&simulation.contacts_in_lanes(), &mut lines);
-        pipeline.render(
-            &mut lines,
-            &physics.bodies,
-            &simulation.colliders(),
-            &physics.impulse_joints,
-            &physics.multibody_joints,
-            &physics.narrow_phase,
-        );
+    for mut world in &mut worlds {
+        world.hold_last_step();
+        draw_contacts(world.lane, &mut gizmos);
+    }
+}
+
+/// Draws the contacts of the engine *lanes* as the plugin draws those of rapier: the gap or the overlap of each point, and
+/// its normal.
+fn draw_contacts(lane: &Lane, gizmos: &mut Gizmos) {
+    let style = DebugRenderStyle::default();
+    let contacts = lane.simulation().map(|simulation| simulation.contacts_in_lanes());
+    for contact in contacts.unwrap_or_default() {
+        let [from, to] = contact.on_m.map(|at| at + lane.offset());
+        let along = from + contact.normal * style.contact_normal_length;
+        gizmos.line(from, to, of_engine(style.contact_depth_color));
+        gizmos.line(from, along, of_engine(style.contact_normal_color));
     }
 }

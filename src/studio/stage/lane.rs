@@ -9,6 +9,7 @@ mod renewed;
 use std::sync::Arc;
 
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::RapierContextSimulation;
 
 use super::readings::Readings;
 use super::replay::Replay;
@@ -19,6 +20,7 @@ use snakes_lab::run::{Lookahead, caught};
 
 /// A lane, with the rollout that is scored.
 #[derive(Component)]
+#[require(RapierContextSimulation)]
 pub(crate) struct Lane {
     staged: StagedChampion,
     body: BodyPlan,

@@ -9,6 +9,7 @@ pub mod readings;
 pub mod replay;
 pub mod selection;
 pub mod staged_champion;
+pub mod staged_world;
 
 use bevy::prelude::*;
 

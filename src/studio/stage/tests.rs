@@ -1,5 +1,6 @@
 //! The stage without a window, frame by frame.
 
+mod staged_world;
 mod what_if;
 
 use std::time::Duration;
@@ -187,17 +188,6 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     let shown = lane(&mut app);
     assert_eq!(shown.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
     assert!(shown.staged().could_be_as_found());
-}
-
-#[test]
-fn the_world_for_debug_lines_is_the_one_that_is_scored() {
-    let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.1], |lane| lane.replay().step() > 20);
-    let lane = lane(&mut app);
-    let simulation = lane.simulation().expect("simulated");
-    let bodies = simulation.physics().bodies.iter();
-    let poses: Vec<Pose> = bodies.map(|(_, limb)| *limb.position()).collect();
-    assert_eq!(poses, lane.last_poses());
 }
 
 #[test]

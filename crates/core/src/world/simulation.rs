@@ -229,6 +229,11 @@ impl Simulation {
         &self.physics
     }
 
+    /// The engine's bodies of the parts, in the order of the plan. The ground can be a body, too.
+    pub fn parts(&self) -> &[RigidBodyHandle] {
+        &self.parts
+    }
+
     /// The engine's state, for the bench, which steps rapier alone. The energy balance says nothing from then on.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
         self.balance.has_unknown_work = true;

@@ -1,13 +1,11 @@
 //! The mouse on the snake: click a limb to see its numbers, drag it to pull it by a spring, double click to look at it.
 //!
-//! A ray through the pointer is cast at the drawn boxes of the limbs, the steps and the ground, so that it hits
-//! the visible surface in simulations and recordings alike.
+//! A ray through the pointer is cast at the worlds of the lanes as they are drawn, so that it hits the visible surface in
+//! simulations and recordings alike.
 
 use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
-use rapier3d::parry::query::{Ray, RayCast};
-use rapier3d::parry::shape::{Cuboid, HalfSpace};
 
 use super::StageCamera;
 use super::rig::CameraRig;
@@ -16,9 +14,10 @@ use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::{HeldLimb, Selection};
+use crate::studio::stage::staged_world::{RayHit, StagedWorld};
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::viewport::StageArea;
-use snakes_core::world::{Pose, Pull, StairSolid, Vector};
+use snakes_core::world::{Pull, Vector};
 
 /// Presses of the mouse button that later presses and releases are compared with.
 #[derive(Resource, Debug, Default)]
@@ -27,16 +26,6 @@ struct MousePresses {
     beside: Option<Vec2>,
     /// When and where the button went down last, in seconds and pixels.
     last: Option<(f32, Vec2)>,
-}
-
-/// The first surface that a ray hits.
-struct RayHit {
-    entity: Entity,
-    lane: usize,
-    /// The part of the snake; none for the stairs and the ground.
-    part: Option<usize>,
-    /// Along the ray, in metres.
-    distance_m: f32,
 }
 
 /// A pointer that moves less than this has clicked, in pixels.
@@ -56,30 +45,6 @@ fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<
     camera.viewport_to_world(place, cursor).ok()
 }
 
-/// The first surface of any lane that a ray hits.
-fn first_hit(ray: Ray3d, lanes: &Query<(Entity, &Lane)>) -> Option<RayHit> {
-    let mut first: Option<RayHit> = None;
-    for (entity, lane) in lanes {
-        let ray = Ray::new(ray.origin - lane.offset(), *ray.direction);
-        let nearest_m =
-            |first: &Option<RayHit>| first.as_ref().map_or(f32::MAX, |hit| hit.distance_m);
-        let mut hit = |part: Option<usize>, shape: &dyn RayCast, pose: &Pose| {
-            if let Some(distance_m) = shape.cast_ray(pose, &ray, nearest_m(&first), true) {
-                first = Some(RayHit { entity, lane: lane.number(), part, distance_m });
-            }
-        };
-        for (part, (pose, plan)) in lane.drawn_poses().zip(&lane.body().parts).enumerate() {
-            let size = Vector::from(plan.size_m());
-            hit(Some(part), &Cuboid::new(size / 2.0), &pose);
-        }
-        for StairSolid { pose, half_m, .. } in lane.trial().stairs.solids() {
-            hit(None, &Cuboid::new(half_m), &pose);
-        }
-        hit(None, &HalfSpace::new(Vector::Z), &Pose::IDENTITY);
-    }
-    first
-}
-
 /// A press on a limb selects and holds it; a double click turns the camera to the surface under the pointer.
 fn press(
     mut selection: ResMut<Selection>,
@@ -89,7 +54,7 @@ fn press(
     window: Single<&Window, With<PrimaryWindow>>,
     camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
     area: Res<StageArea>,
-    lanes: Query<(Entity, &Lane)>,
+    mut worlds: Query<StagedWorld>,
     time: Res<Time<Real>>,
 ) {
     let is_press =
@@ -103,7 +68,9 @@ fn press(
         return;
     };
     let Some(ray) = ray_at(cursor, *camera) else { return };
-    let hit = first_hit(ray, &lanes);
+    let hits = worlds.iter_mut().filter_map(|mut world| world.cast_ray(ray));
+    // Of ghosts that are still in one place, the last.
+    let hit = hits.max_by(|a, b| b.distance_m.total_cmp(&a.distance_m));
     let now_s = time.elapsed_secs();
     // Slow frames can deliver a press late, or two at once.
     let follows_another = earlier.last.is_some_and(|(then_s, at)| {
@@ -112,20 +79,19 @@ fn press(
     let is_double = presses > 1 || follows_another;
     earlier.last = (!is_double).then_some((now_s, cursor));
     if is_double && let Some(hit) = &hit {
-        let lane = hit.part.map(|_| hit.lane);
+        let lane = hit.part.map(|_| hit.lane.number());
         rig.focus_on(lane, ray.get_point(hit.distance_m));
     }
     let Some(RayHit { entity, lane, part: Some(part), distance_m }) = hit else {
         earlier.beside = Some(cursor);
         return;
     };
-    let Ok((_, hit_lane)) = lanes.get(entity) else { return };
-    let Some(pose) = hit_lane.drawn_poses().nth(part) else { return };
-    let point = ray.get_point(distance_m) - hit_lane.offset();
+    let Some(pose) = lane.drawn_poses().nth(part) else { return };
+    let point = ray.get_point(distance_m) - lane.offset();
     let pull = Pull { part, held_at_m: pose.inverse() * point, to_m: point };
     let held = HeldLimb { lane: entity, pull, pressed_at: cursor, is_pulling: false };
-    let limb = hit_lane.body().parts.get(part).map_or(0, |part| part.limb);
-    selection.grab(lane, limb, held);
+    let limb = lane.body().parts.get(part).map_or(0, |part| part.limb);
+    selection.grab(lane.number(), limb, held);
 }
 
 /// The pointer moves the held limb in the plane that faces the camera.

@@ -1,7 +1,5 @@
 //! Worlds whose motion the engine *lanes* computes, alone or several side by side.
 
-use std::borrow::Cow;
-
 use rapier3d::prelude::*;
 
 use super::Simulation;
@@ -134,23 +132,6 @@ impl Simulation {
         let kinetic_j = (mass_kg * velocity.dot(velocity) + (inertia * rate).dot(rate)) / 2.0;
         let at = body.translation() - velocity * (substep_s / 2.0);
         f64::from(kinetic_j) + f64::from(-mass_kg * self.physics.gravity.dot(at))
-    }
-
-    /// The shapes of all bodies where they are now: rapier's own, which the lanes' engine does not move.
-    pub fn colliders(&self) -> Cow<'_, ColliderSet> {
-        if self.lanes.is_none() {
-            return Cow::Borrowed(&self.physics.colliders);
-        }
-        let mut colliders = self.physics.colliders.clone();
-        for &part in &self.parts {
-            let body = &self.physics.bodies[part];
-            for &collider in body.colliders() {
-                if let Some(collider) = colliders.get_mut(collider) {
-                    collider.set_position(*body.position());
-                }
-            }
-        }
-        Cow::Owned(colliders)
     }
 
     /// The points of the contacts of the lanes' engine; none in rapier's worlds, whose contacts its narrow phase has.

@@ -1,0 +1,107 @@
+//! The worlds of the lanes as bevy_rapier3d holds them, for its debug lines and its ray casts.
+//!
+//! A lane's rollout owns the bodies that are scored. A context holds copies of them, at the lane's place on the stage, which
+//! are made when lines are drawn or a ray is cast. No plugin steps a context, so it cannot affect a result.
+
+use bevy::ecs::query::QueryData;
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::{
+    QueryFilter, RapierContextColliders, RapierContextJoints, RapierContextSimulation,
+    RapierQueryPipeline, RapierRigidBodySet,
+};
+use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, Ray};
+
+use super::lane::Lane;
+use snakes_core::world::{Pose, Simulation};
+
+/// A lane with the context that can hold its world.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct StagedWorld {
+    entity: Entity,
+    /// The lane.
+    pub lane: &'static Lane,
+    context: &'static mut RapierContextSimulation,
+    bodies: &'static mut RapierRigidBodySet,
+    colliders: &'static mut RapierContextColliders,
+    joints: &'static mut RapierContextJoints,
+}
+
+/// The surface of a lane that a ray hits.
+pub(crate) struct RayHit<'w> {
+    /// Entity of the lane.
+    pub entity: Entity,
+    /// The lane.
+    pub lane: &'w Lane,
+    /// The part of the snake; none for the stairs and the ground.
+    pub part: Option<usize>,
+    /// Along the ray, in metres.
+    pub distance_m: f32,
+}
+
+impl<'w> StagedWorldItem<'w, '_> {
+    /// Holds the world after the last step, as the engine sees it. A recording has none; it is held as it is drawn.
+    pub fn hold_last_step(&mut self) {
+        match self.lane.simulation() {
+            Some(simulation) => self.hold(simulation, simulation.poses()),
+            None => drop(self.hold_drawn()),
+        }
+    }
+
+    /// The first surface that a ray hits in the world as it is drawn.
+    pub fn cast_ray(&mut self, ray: Ray3d) -> Option<RayHit<'w>> {
+        let drawn = self.hold_drawn();
+        let RapierContextSimulation { broad_phase, integration_parameters, .. } =
+            &mut *self.context;
+        *broad_phase = DefaultBroadPhase::default();
+        for (handle, collider) in self.colliders.colliders.iter() {
+            broad_phase.set_aabb(integration_parameters, handle, collider.compute_aabb());
+        }
+        let ray = Ray::new(ray.origin, *ray.direction);
+        let (hit, distance_m) = RapierQueryPipeline::new_scoped(
+            &self.context.broad_phase,
+            &self.colliders,
+            &self.bodies,
+            &QueryFilter::default(),
+            self.context.narrow_phase.query_dispatcher(),
+            |queries| queries.query_pipeline.cast_ray(&ray, f32::MAX, true),
+        )?;
+        let body = self.colliders.colliders[hit].parent();
+        let part = drawn.parts().iter().position(|&part| Some(part) == body);
+        Some(RayHit { entity: self.entity, lane: self.lane, part, distance_m })
+    }
+
+    /// Holds the world that is drawn, with the snake between two steps. Returns that world with the snake at its start.
+    fn hold_drawn(&mut self) -> Simulation {
+        let lane = self.lane;
+        let plan = lane.trial().world_plan(&lane.staged().champion().genome);
+        let simulation = Simulation::new(&plan);
+        self.hold(&simulation, lane.drawn_poses());
+        simulation
+    }
+
+    /// Holds a world with its parts in these poses, from head to tail.
+    fn hold(&mut self, simulation: &Simulation, poses: impl Iterator<Item = Pose>) {
+        let physics = simulation.physics();
+        self.context.narrow_phase = physics.narrow_phase.clone();
+        self.joints.impulse_joints = physics.impulse_joints.clone();
+        self.bodies.bodies = physics.bodies.clone();
+        self.colliders.colliders = physics.colliders.clone();
+        let (bodies, colliders) = (&mut self.bodies.bodies, &mut self.colliders.colliders);
+        for (&part, pose) in simulation.parts().iter().zip(poses) {
+            bodies[part].set_position(pose, false);
+        }
+        let offset_m = self.lane.offset();
+        let on_stage = |at: &Pose| Pose { translation: at.translation + offset_m, ..*at };
+        for (_, body) in bodies.iter_mut() {
+            body.set_position(on_stage(body.position()), false);
+        }
+        for (_, collider) in colliders.iter_mut() {
+            collider.set_position(on_stage(collider.position()));
+            // bevy_rapier3d asks each collider for its entity, and panics if there is none.
+            collider.user_data = self.entity.to_bits().into();
+        }
+        // The colliders of bodies follow them: the engine "lanes" moves bodies only.
+        bodies.propagate_modified_body_positions_to_colliders(colliders);
+    }
+}
