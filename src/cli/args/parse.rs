@@ -69,6 +69,7 @@ fn one_line(error: &clap::Error) -> String {
     let mut paragraphs = text.split("\n\n");
     let problem = paragraphs.next().unwrap_or_default();
     let tip = setting_tip(error)
+        .or_else(|| order_tip(error))
         .or_else(|| paragraphs.find(|text| text.trim().starts_with("tip:")).map(str::to_owned));
     let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<&str>>().join(" ");
     let problem = in_one_line(problem);
@@ -90,6 +91,13 @@ fn setting_tip(error: &clap::Error) -> Option<String> {
     });
     let path = named.next()?;
     named.next().is_none().then(|| format!("tip: use --set {path}=VALUE"))
+}
+
+/// The tip to write flags after the command, if they stand before it.
+fn order_tip(error: &clap::Error) -> Option<String> {
+    let command = error.get(ContextKind::InvalidSubcommand)?;
+    let is_order = error.kind() == ErrorKind::ArgumentConflict;
+    is_order.then(|| format!("tip: write flags after the command, as in: snakes {command} --flag"))
 }
 
 #[cfg(test)]
@@ -118,6 +126,12 @@ mod tests {
             message.contains("found; tip: a similar argument exists: '--population'"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn flags_before_a_command_give_the_tip_to_write_them_after_it() {
+        let message = refusal("--saves a replay b.ron");
+        assert!(message.contains("tip: write flags after the command, as in: snakes replay"));
     }
 
     #[test]
