@@ -116,7 +116,7 @@ fn restore(
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
-        let known = Overlay::ALL.into_iter().find(|overlay| overlay.words().0 == name);
+        let known = Overlay::ALL.into_iter().find(|overlay| overlay.name() == name);
         if let Some(overlay) = known.filter(|overlay| !chosen.overlays.shows(*overlay)) {
             chosen.overlays.toggle(overlay);
         }
@@ -177,7 +177,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         ui_scale: chosen.workspace.scale.chosen(),
         window_size: window_size.filter(|_| !presents).or(before.window_size),
         layout: chosen.workspace.layout.to_text(),
-        overlays: shown.map(|overlay| overlay.words().0.to_owned()).collect(),
+        overlays: shown.map(|overlay| overlay.name().to_owned()).collect(),
         speed: chosen.playback.speed(),
         loops: if presents { before.loops } else { chosen.playback.loops() },
         smooth_edges: is_smooth.filter(|_| has_chosen),

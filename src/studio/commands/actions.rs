@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+use super::Command::{self, Exam, File, Player, Run, Share, Stage, View, Window};
 use super::camera_mode::CameraMode;
 use super::files::{FileCommand, FileQuestion};
 use super::modal::Modal;
@@ -12,8 +13,7 @@ use super::pick::Pick;
 use super::screenshot_area::ScreenshotArea;
 use super::share::ShareCommand;
 use super::{
-    Command, ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand,
-    WindowCommand,
+    ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand, WindowCommand,
 };
 use snakes_lab::export::ExportFormat;
 
@@ -92,7 +92,7 @@ pub(crate) struct Situation {
 }
 
 /// A named action.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Action {
     /// Menu that lists the action.
     pub menu: Menu,
@@ -100,43 +100,40 @@ pub(crate) struct Action {
     pub name: &'static str,
     /// Keyboard shortcuts, such as `Ctrl Z`. The first is the one that is displayed.
     pub keys: &'static [&'static str],
-    asks: ActionCommand,
-}
-
-/// The way from a situation to an action's command.
-#[derive(Clone, Copy)]
-enum ActionCommand {
-    /// The action in this situation.
-    Of(fn(Situation) -> Option<Command>),
-    /// A file of this format.
-    File(ExportFormat),
-}
-
-const fn action(
-    menu: Menu,
-    name: &'static str,
-    keys: &'static [&'static str],
-    asks: fn(Situation) -> Option<Command>,
-) -> Action {
-    Action { menu, name, keys, asks: ActionCommand::Of(asks) }
+    /// Explanation for the mouse; may be empty.
+    pub hint: &'static str,
+    /// The usual command.
+    command: Command,
 }
 
 impl Action {
     /// The command in this situation; `None` if there is nothing to do.
     pub fn command(&self, now: Situation) -> Option<Command> {
-        match &self.asks {
-            ActionCommand::Of(asks) => asks(now),
-            ActionCommand::File(_) if now.is_sharing => None,
-            ActionCommand::File(format) => Some(Command::Share(ShareCommand::Ask(*format))),
+        match &self.command {
+            Run(RunCommand::Start) if now.is_running => return Some(Run(RunCommand::Pause)),
+            Stage(StageCommand::Show(Pick::Generation(_))) => {
+                let shown = |generation| Stage(StageCommand::Show(Pick::Generation(generation)));
+                return now.digit.map(shown);
+            }
+            Stage(StageCommand::Single) if now.is_covered => {
+                return Some(Window(WindowCommand::CloseModal));
+            }
+            Stage(StageCommand::Single) if now.is_what_if => {
+                return Some(Command::Plan(PlanCommand::DropChange));
+            }
+            _ => {}
         }
-    }
-
-    /// Explanation for the mouse; may be empty.
-    pub fn hint(&self) -> &'static str {
-        match &self.asks {
-            ActionCommand::Of(_) => "",
-            ActionCommand::File(format) => format.info().sentence,
-        }
+        let is_possible = match &self.command {
+            Command::Undo => now.can_undo,
+            Command::Redo => now.can_redo,
+            Share(ShareCommand::Cancel) => now.is_sharing,
+            Share(ShareCommand::Ask(_)) => !now.is_sharing,
+            Stage(StageCommand::KeepChange) => now.is_what_if,
+            Stage(StageCommand::TryAnother) => now.can_try_another,
+            Stage(StageCommand::Single) => now.is_race,
+            _ => true,
+        };
+        is_possible.then(|| self.command.clone())
     }
 
     /// The displayed shortcut, or an empty text.
@@ -155,14 +152,31 @@ pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
     exact(keys).or_else(|| exact(keys.strip_prefix("Shift ")?))
 }
 
-/// All actions, grouped by menu.
-pub(crate) fn actions() -> &'static [Action] {
-    static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
-        let of_files = FIXED.iter().take_while(|action| action.menu == Menu::File).count();
-        let (files, rest) = FIXED.split_at(of_files);
-        [files, &ExportFormat::ALL.map(file_of), rest].concat()
-    });
-    &ALL
+/// A hint for the mouse, with the shortcut of a command behind it if the command has one.
+pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
+    // Pausing and discarding are actions in these situations only.
+    let situations = [
+        Situation::default(),
+        Situation { is_running: true, ..Situation::default() },
+        Situation { is_what_if: true, ..Situation::default() },
+        Situation { is_race: true, ..Situation::default() },
+    ];
+    let gives = |action: &&Action| {
+        situations.iter().any(|now| action.command(*now).as_ref() == Some(command))
+    };
+    match actions().iter().find(gives).map_or("", Action::key) {
+        "" => hint.to_owned(),
+        key => format!("{hint} ({key})"),
+    }
+}
+
+/// Name of an action, its shortcuts, and its usual command.
+type ActionRow = (&'static str, &'static [&'static str], Command);
+
+/// The actions of a menu.
+fn in_menu(menu: Menu, rows: impl IntoIterator<Item = ActionRow>) -> Vec<Action> {
+    let action = |(name, keys, command)| Action { menu, name, keys, hint: "", command };
+    rows.into_iter().map(action).collect()
 }
 
 /// The action that writes a file of a format.
@@ -170,203 +184,155 @@ fn file_of(format: ExportFormat) -> Action {
     let info = format.info();
     // The list of actions is made once, and its names last as long as the program.
     let name = format!("{} (.{})…", info.title, info.ending).leak();
-    Action { menu: Menu::Share, name, keys: &[], asks: ActionCommand::File(format) }
+    let command = Share(ShareCommand::Ask(format));
+    Action { menu: Menu::Share, name, keys: &[], hint: info.sentence, command }
 }
 
-/// The actions that do not depend on other lists.
-const FIXED: &[Action] = &[
-    action(Menu::File, "New run…", &["Ctrl N"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))
-    }),
-    action(Menu::File, "Open…", &["Ctrl O"], |_| {
-        Some(Command::File(FileCommand::Ask(FileQuestion::Open)))
-    }),
-    action(Menu::File, "Import…", &["Ctrl I"], |_| {
-        Some(Command::File(FileCommand::Ask(FileQuestion::Import)))
-    }),
-    action(Menu::File, "Export…", &["Ctrl E"], |_| Some(Command::File(FileCommand::AskExport))),
-    action(Menu::File, "Show saves folder", &[], |_| Some(Command::File(FileCommand::ShowSaves))),
-    action(Menu::File, "Save picture of the stage", &["P"], |_| {
-        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)))
-    }),
-    action(Menu::File, "Save picture of the window", &["Shift P"], |_| {
-        Some(Command::View(ViewCommand::TakePicture(ScreenshotArea::Window)))
-    }),
-    action(Menu::File, "Quit", &["Ctrl Q"], |_| Some(Command::Quit)),
-    action(Menu::Share, "Cancel writing the file", &[], |now| {
-        now.is_sharing.then_some(Command::Share(ShareCommand::Cancel))
-    }),
-    action(Menu::Run, "Start or pause evolution", &["E"], |now| {
-        Some(if now.is_running {
-            Command::Run(RunCommand::Pause)
-        } else {
-            Command::Run(RunCommand::Start)
-        })
-    }),
-    action(Menu::Run, "Evolve one generation", &["G"], |_| {
-        Some(Command::Run(RunCommand::SingleGeneration))
-    }),
-    action(Menu::Run, "Reset the run", &[], |_| Some(Command::Run(RunCommand::Reset))),
-    action(
-        Menu::Run,
-        "Show a generation's champion",
-        &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
-        |now| {
-            now.digit
-                .map(|generation| Command::Stage(StageCommand::Show(Pick::Generation(generation))))
-        },
-    ),
-    action(Menu::Run, "Show the saved champion", &["0"], |_| {
-        Some(Command::Stage(StageCommand::Show(Pick::Opened(0))))
-    }),
-    action(Menu::Run, "Follow evolution", &["W"], |_| {
-        Some(Command::Stage(StageCommand::ToggleFollowEvolution))
-    }),
-    action(Menu::Run, "Story: first, middle and latest generation", &["S"], |_| {
-        Some(Command::Stage(StageCommand::TellStory))
-    }),
-    action(Menu::Run, "Whole latest generation", &["I"], |_| {
-        Some(Command::Stage(StageCommand::ShowGeneration(None)))
-    }),
-    action(Menu::Run, "Race generations", &["N"], |_| {
-        Some(Command::Stage(StageCommand::RaceGenerations))
-    }),
-    action(Menu::Run, "Race best 10 of the latest generation", &["M"], |_| {
-        Some(Command::Stage(StageCommand::RaceLeaders(None)))
-    }),
-    action(Menu::Run, "Race the snake over ten staircases", &[], |_| {
-        Some(Command::Stage(StageCommand::RaceStairs))
-    }),
-    action(Menu::Run, "Examine the snake on 100 unseen staircases", &[], |_| {
-        Some(Command::Exam(ExamCommand::Examine))
-    }),
-    action(Menu::Edit, "Undo", &["Ctrl Z"], |now| now.can_undo.then_some(Command::Undo)),
-    action(Menu::Edit, "Redo", &["Ctrl Shift Z", "Ctrl Y"], |now| {
-        now.can_redo.then_some(Command::Redo)
-    }),
-    action(Menu::Edit, "Keep this change", &[], |now| {
-        now.is_what_if.then_some(Command::Stage(StageCommand::KeepChange))
-    }),
-    action(Menu::Edit, "Try another change beside this one", &[], |now| {
-        now.can_try_another.then_some(Command::Stage(StageCommand::TryAnother))
-    }),
-    action(Menu::Edit, "Leave race / Discard change", &["Esc"], |now| match now {
-        Situation { is_covered: true, .. } => Some(Command::Window(WindowCommand::CloseModal)),
-        Situation { is_what_if: true, .. } => Some(Command::Plan(PlanCommand::DropChange)),
-        Situation { is_race: true, .. } => Some(Command::Stage(StageCommand::Single)),
-        _ => None,
-    }),
-    action(Menu::Stage, "Pause / Play", &["Space"], |_| {
-        Some(Command::Player(PlayerCommand::Toggle))
-    }),
-    action(Menu::Stage, "Previous physics step", &["Left"], |_| {
-        Some(Command::Player(PlayerCommand::Step { forward: false }))
-    }),
-    action(Menu::Stage, "Next physics step", &["Right"], |_| {
-        Some(Command::Player(PlayerCommand::Step { forward: true }))
-    }),
-    action(Menu::Stage, "Play from start", &["R"], |_| {
-        Some(Command::Player(PlayerCommand::Restart))
-    }),
-    action(Menu::Stage, "Go to end", &["End"], |_| Some(Command::Player(PlayerCommand::SeekEnd))),
-    action(Menu::Stage, "Faster", &["+", "="], |_| {
-        Some(Command::Player(PlayerCommand::ChangeSpeed { faster: true }))
-    }),
-    action(Menu::Stage, "Slower", &["-"], |_| {
-        Some(Command::Player(PlayerCommand::ChangeSpeed { faster: false }))
-    }),
-    action(Menu::Stage, "Loop", &["O"], |_| Some(Command::Player(PlayerCommand::ToggleLoop))),
-    action(Menu::View, "Follow snake", &["F"], |_| Some(Command::View(ViewCommand::ToggleFollow))),
-    action(Menu::View, "Next camera", &["C"], |_| Some(Command::View(ViewCommand::NextCameraMode))),
-    action(Menu::View, "View from the side", &[], |_| {
-        Some(Command::View(ViewCommand::SetCamera(CameraMode::Side)))
-    }),
-    action(Menu::View, "View from above", &[], |_| {
-        Some(Command::View(ViewCommand::SetCamera(CameraMode::Top)))
-    }),
-    action(Menu::View, "Reset camera", &["Home"], |_| {
-        Some(Command::View(ViewCommand::ResetCamera))
-    }),
-    action(Menu::View, "Contacts and forces", &["V"], |_| {
-        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Contacts)))
-    }),
-    action(Menu::View, "Joint torques", &["J"], |_| {
-        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Torques)))
-    }),
-    action(Menu::View, "Trail", &["B"], |_| {
-        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Trail)))
-    }),
-    action(Menu::View, "Fitness line", &["L"], |_| {
-        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::FitnessLine)))
-    }),
-    action(Menu::View, "Collision shapes", &["D"], |_| {
-        Some(Command::View(ViewCommand::ToggleOverlay(Overlay::Wireframe)))
-    }),
-    action(Menu::View, "Anti-aliasing", &["A"], |_| {
-        Some(Command::View(ViewCommand::ToggleSmoothEdges))
-    }),
-    action(Menu::View, "Dark theme", &["T"], |_| Some(Command::View(ViewCommand::ToggleTheme))),
-    action(Menu::View, "Larger panels", &["Ctrl +", "Ctrl ="], |_| {
-        Some(Command::Window(WindowCommand::ChangeScale { larger: true }))
-    }),
-    action(Menu::View, "Smaller panels", &["Ctrl -"], |_| {
-        Some(Command::Window(WindowCommand::ChangeScale { larger: false }))
-    }),
-    action(Menu::View, "Reset panel size", &["Ctrl 0"], |_| {
-        Some(Command::Window(WindowCommand::ResetScale))
-    }),
-    action(Menu::View, "Show only the stage", &["H"], |_| {
-        Some(Command::Window(WindowCommand::TogglePanels))
-    }),
-    action(Menu::View, "Present on the full screen", &["F11", "F5"], |_| {
-        Some(Command::Window(WindowCommand::TogglePresenting))
-    }),
-    action(Menu::Panels, "Run", &["Ctrl 1"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Run)))
-    }),
-    action(Menu::Panels, "World", &["Ctrl 2"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::World)))
-    }),
-    action(Menu::Panels, "Charts", &["Ctrl 3"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Charts)))
-    }),
-    action(Menu::Panels, "Champions", &["Ctrl 4"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Champions)))
-    }),
-    action(Menu::Panels, "Library", &["Ctrl 5"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Library)))
-    }),
-    action(Menu::Panels, "Lessons", &["Ctrl 6"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons)))
-    }),
-    action(Menu::Panels, "Senses", &["Ctrl 7"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Senses)))
-    }),
-    action(Menu::Panels, "Machines", &["Ctrl 8"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Machines)))
-    }),
-    action(Menu::Panels, "Body", &["Ctrl 9"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Body)))
-    }),
-    action(Menu::Panels, "Stairs", &["Ctrl T"], |_| {
-        Some(Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs)))
-    }),
-    action(Menu::Panels, "Close panel", &["Ctrl W"], |_| {
-        Some(Command::Window(WindowCommand::ClosePanel))
-    }),
-    action(Menu::Panels, "Reset layout", &[], |_| {
-        Some(Command::Window(WindowCommand::ResetLayout))
-    }),
-    action(Menu::Help, "Keyboard shortcuts", &["?", "F1"], |_| {
-        Some(Command::Window(WindowCommand::ToggleModal(Modal::Keys)))
-    }),
-    action(Menu::Help, "Find a command", &["Ctrl K", "Ctrl P"], |_| {
-        Some(Command::Window(WindowCommand::ToggleModal(Modal::CommandPalette)))
-    }),
-    action(Menu::Help, "Take the tour", &[], |_| {
-        Some(Command::Window(WindowCommand::ToggleModal(Modal::Tour(0))))
-    }),
-];
+/// All actions, grouped by menu.
+pub(crate) fn actions() -> &'static [Action] {
+    static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
+        let overlay = |of: Overlay| (of.entry(), of.keys(), View(ViewCommand::ToggleOverlay(of)));
+        let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
+        let view = camera_rows().into_iter().chain(Overlay::ALL.map(overlay)).chain(window_rows());
+        let panels = PanelKind::ALL.map(panel).into_iter().chain(layout_rows());
+        [
+            in_menu(Menu::File, file_rows()),
+            in_menu(Menu::Share, share_rows()),
+            ExportFormat::ALL.map(file_of).into(),
+            in_menu(Menu::Run, run_rows()),
+            in_menu(Menu::Edit, edit_rows()),
+            in_menu(Menu::Stage, stage_rows()),
+            in_menu(Menu::View, view),
+            in_menu(Menu::Panels, panels),
+            in_menu(Menu::Help, help_rows()),
+        ]
+        .concat()
+    });
+    &ALL
+}
+
+/// Files and pictures.
+fn file_rows() -> [ActionRow; 8] {
+    [
+        ("New run…", &["Ctrl N"], Window(WindowCommand::OpenPanel(PanelKind::Run))),
+        ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
+        ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
+        ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
+        ("Show saves folder", &[], File(FileCommand::ShowSaves)),
+        (
+            "Save picture of the stage",
+            &["P"],
+            View(ViewCommand::TakePicture(ScreenshotArea::Stage)),
+        ),
+        (
+            "Save picture of the window",
+            &["Shift P"],
+            View(ViewCommand::TakePicture(ScreenshotArea::Window)),
+        ),
+        ("Quit", &["Ctrl Q"], Command::Quit),
+    ]
+}
+
+/// Files of other formats, without those that a format gives.
+fn share_rows() -> [ActionRow; 1] {
+    [("Cancel writing the file", &[], Share(ShareCommand::Cancel))]
+}
+
+/// Evolution, and the choice of champions.
+fn run_rows() -> [ActionRow; 12] {
+    [
+        ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
+        ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
+        ("Reset the run", &[], Run(RunCommand::Reset)),
+        (
+            "Show a generation's champion",
+            &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
+            Stage(StageCommand::Show(Pick::Generation(1))),
+        ),
+        ("Show the saved champion", &["0"], Stage(StageCommand::Show(Pick::Opened(0)))),
+        ("Follow evolution", &["W"], Stage(StageCommand::ToggleFollowEvolution)),
+        ("Story: first, middle and latest generation", &["S"], Stage(StageCommand::TellStory)),
+        ("Whole latest generation", &["I"], Stage(StageCommand::ShowGeneration(None))),
+        ("Race generations", &["N"], Stage(StageCommand::RaceGenerations)),
+        ("Race best 10 of the latest generation", &["M"], Stage(StageCommand::RaceLeaders(None))),
+        ("Race the snake over ten staircases", &[], Stage(StageCommand::RaceStairs)),
+        ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
+    ]
+}
+
+/// Changes.
+fn edit_rows() -> [ActionRow; 5] {
+    [
+        ("Undo", &["Ctrl Z"], Command::Undo),
+        ("Redo", &["Ctrl Shift Z", "Ctrl Y"], Command::Redo),
+        ("Keep this change", &[], Stage(StageCommand::KeepChange)),
+        ("Try another change beside this one", &[], Stage(StageCommand::TryAnother)),
+        ("Leave race / Discard change", &["Esc"], Stage(StageCommand::Single)),
+    ]
+}
+
+/// Playback.
+fn stage_rows() -> [ActionRow; 8] {
+    [
+        ("Pause / Play", &["Space"], Player(PlayerCommand::Toggle)),
+        ("Previous physics step", &["Left"], Player(PlayerCommand::Step { forward: false })),
+        ("Next physics step", &["Right"], Player(PlayerCommand::Step { forward: true })),
+        ("Play from start", &["R"], Player(PlayerCommand::Restart)),
+        ("Go to end", &["End"], Player(PlayerCommand::SeekEnd)),
+        ("Faster", &["+", "="], Player(PlayerCommand::ChangeSpeed { faster: true })),
+        ("Slower", &["-"], Player(PlayerCommand::ChangeSpeed { faster: false })),
+        ("Loop", &["O"], Player(PlayerCommand::ToggleLoop)),
+    ]
+}
+
+/// The camera.
+fn camera_rows() -> [ActionRow; 5] {
+    [
+        ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
+        ("Next camera", &["C"], View(ViewCommand::NextCameraMode)),
+        ("View from the side", &[], View(ViewCommand::SetCamera(CameraMode::Side))),
+        ("View from above", &[], View(ViewCommand::SetCamera(CameraMode::Top))),
+        ("Reset camera", &["Home"], View(ViewCommand::ResetCamera)),
+    ]
+}
+
+/// Other parts of the view.
+fn window_rows() -> [ActionRow; 7] {
+    [
+        ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
+        ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
+        (
+            "Larger panels",
+            &["Ctrl +", "Ctrl ="],
+            Window(WindowCommand::ChangeScale { larger: true }),
+        ),
+        ("Smaller panels", &["Ctrl -"], Window(WindowCommand::ChangeScale { larger: false })),
+        ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),
+        ("Show only the stage", &["H"], Window(WindowCommand::TogglePanels)),
+        ("Present on the full screen", &["F11", "F5"], Window(WindowCommand::TogglePresenting)),
+    ]
+}
+
+/// The layout of panels.
+fn layout_rows() -> [ActionRow; 2] {
+    [
+        ("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)),
+        ("Reset layout", &[], Window(WindowCommand::ResetLayout)),
+    ]
+}
+
+/// Help.
+fn help_rows() -> [ActionRow; 3] {
+    [
+        ("Keyboard shortcuts", &["?", "F1"], Window(WindowCommand::ToggleModal(Modal::Keys))),
+        (
+            "Find a command",
+            &["Ctrl K", "Ctrl P"],
+            Window(WindowCommand::ToggleModal(Modal::CommandPalette)),
+        ),
+        ("Take the tour", &[], Window(WindowCommand::ToggleModal(Modal::Tour(0)))),
+    ]
+}
 
 #[cfg(test)]
 mod tests {

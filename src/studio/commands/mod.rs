@@ -2,6 +2,7 @@
 //! executes its group.
 
 pub mod actions;
+mod block_size;
 pub mod camera_mode;
 pub mod chart_export;
 pub mod files;
@@ -18,11 +19,11 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use snakes_core::genome::{BodyChange, Segment};
+use snakes_core::genome::BodyChange;
 use snakes_core::save::library::SavePlace;
 use snakes_core::score::ExamSuite;
-use snakes_core::world::modulus_at_pa;
 
+pub(super) use block_size::BlockSize;
 use camera_mode::CameraMode;
 use chart_export::ChartExport;
 use files::FileCommand;
@@ -135,6 +136,13 @@ pub(super) enum PlanCommand {
     DropChange,
     /// Use the world of the selected lane for the next run.
     UseWorldOfLane,
+}
+
+impl PlanCommand {
+    /// The command that changes one setting.
+    pub fn set(field: &str, text: &str) -> Self {
+        Self::SetField { field: field.to_owned(), text: text.to_owned() }
+    }
 }
 
 /// A command to the lanes of the stage.
@@ -334,55 +342,6 @@ pub(super) enum BodyCommand {
     Evolve,
     /// Close the editor, and show the original alone.
     Close,
-}
-
-/// A number of a block.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum BlockSize {
-    /// Length, in metres.
-    Length,
-    /// Width, in metres.
-    Width,
-    /// Height, in metres.
-    Height,
-    /// Density, in kg/m³.
-    Density,
-    /// Largest bend of the joint in front of it, in radians.
-    BendLimit,
-    /// Largest twist of that joint, in radians.
-    TwistLimit,
-    /// Share of the torque that the joint could have.
-    Strength,
-    /// Young's modulus, in Pa. To set it makes a rigid block soft.
-    Modulus,
-}
-
-impl BlockSize {
-    /// Young's modulus of a block that has just become soft, in Pa: a block of any size then bends by a similar part of its
-    /// length as those of the preset `squishy`, which have 40,000 Pa.
-    pub fn usual_modulus_pa(segment: &Segment) -> f32 {
-        const SQUISHY_M4_S2: f32 = 370.0;
-        let sides_m = [segment.width_m, segment.height_m];
-        let modulus_pa = modulus_at_pa(SQUISHY_M4_S2, sides_m, segment.density_kg_m3);
-        (modulus_pa / 100.0).round() * 100.0
-    }
-
-    /// The number in a block.
-    pub fn of_mut(self, segment: &mut Segment) -> &mut f32 {
-        match self {
-            Self::Length => &mut segment.length_m,
-            Self::Width => &mut segment.width_m,
-            Self::Height => &mut segment.height_m,
-            Self::Density => &mut segment.density_kg_m3,
-            Self::BendLimit => &mut segment.bend_limit_rad,
-            Self::TwistLimit => &mut segment.twist_limit_rad,
-            Self::Strength => &mut segment.strength,
-            Self::Modulus => {
-                let usual_pa = Self::usual_modulus_pa(segment);
-                segment.youngs_modulus_pa.get_or_insert(usual_pa)
-            }
-        }
-    }
 }
 
 /// A command to the connection with other computers.

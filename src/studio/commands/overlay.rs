@@ -22,18 +22,56 @@ impl Overlay {
     pub const ALL: [Self; 5] =
         [Self::Contacts, Self::Torques, Self::Trail, Self::FitnessLine, Self::Wireframe];
 
+    /// Label of the button, entry of the menu, shortcuts, and tooltip.
+    fn words(self) -> (&'static str, &'static str, &'static [&'static str], &'static str) {
+        match self {
+            Self::Contacts => {
+                ("Contacts", "Contacts and forces", &["V"], "Contact points and forces")
+            }
+            Self::Torques => {
+                ("Torques", "Joint torques", &["J"], "Bend and twist torques of the joints")
+            }
+            Self::Trail => ("Trail", "Trail", &["B"], "Path of the middle block"),
+            Self::FitnessLine => {
+                ("Fitness line", "Fitness line", &["L"], "Distance of the middle block")
+            }
+            Self::Wireframe => (
+                "Collision shapes",
+                "Collision shapes",
+                &["D"],
+                "Shapes that the physics engine uses",
+            ),
+        }
+    }
+
+    /// Label of the button.
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// Name of the menu entry.
+    pub fn entry(self) -> &'static str {
+        self.words().1
+    }
+
+    /// Shortcuts that show or hide the overlay.
+    pub fn keys(self) -> &'static [&'static str] {
+        self.words().2
+    }
+
+    /// Tooltip of the button, without its shortcut.
+    pub fn hint(self) -> &'static str {
+        self.words().3
+    }
+
     /// The overlay with this one-word, lower-case name.
     ///
     /// # Errors
     /// No overlay that can be drawn in a picture has this name.
     pub fn named(name: &str) -> Result<Self, Invalid> {
-        match name {
-            "contacts" => Ok(Self::Contacts),
-            "torques" => Ok(Self::Torques),
-            "trail" => Ok(Self::Trail),
-            "line" => Ok(Self::FitnessLine),
-            _ => Err(Invalid::new("show", format!("{name:?}"), "contacts, torques, trail or line")),
-        }
+        let known = Self::ALL.into_iter().find(|overlay| overlay.short_name() == Some(name));
+        let allowed = "contacts, torques, trail or line";
+        known.ok_or_else(|| Invalid::new("show", format!("{name:?}"), allowed))
     }
 
     /// The name that [`Self::named`] knows, if pictures can have the overlay.
@@ -44,17 +82,6 @@ impl Overlay {
             Self::Trail => Some("trail"),
             Self::FitnessLine => Some("line"),
             Self::Wireframe => None,
-        }
-    }
-
-    /// Label of the button, and its tooltip.
-    pub fn words(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Contacts => ("Contacts", "Contact points and forces (V)"),
-            Self::Torques => ("Torques", "Bend and twist torques of the joints (J)"),
-            Self::Trail => ("Trail", "Path of the middle block (B)"),
-            Self::FitnessLine => ("Fitness line", "Distance of the middle block (L)"),
-            Self::Wireframe => ("Collision shapes", "Shapes that the physics engine uses (D)"),
         }
     }
 }

@@ -46,49 +46,48 @@ impl PanelKind {
 
     /// The panels of the initial layout, in the order of their tabs. Few people have several computers, so the others open
     /// on demand.
-    pub const INITIAL: [Self; 7] = [
-        Self::Run,
-        Self::World,
-        Self::Charts,
-        Self::Champions,
-        Self::Library,
-        Self::Lessons,
-        Self::Senses,
-    ];
+    pub const INITIAL: &'static [Self] = Self::ALL.split_at(7).0;
 
-    /// Label of the tab.
-    pub fn name(self) -> &'static str {
+    /// Label of the tab, shortcuts, and what the panel is for.
+    fn words(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
-            Self::Stage => "Stage",
-            Self::Run => "Run",
-            Self::World => "World",
-            Self::Charts => "Charts",
-            Self::Champions => "Champions",
-            Self::Library => "Library",
-            Self::Lessons => "Lessons",
-            Self::Senses => "Senses",
-            Self::Machines => "Machines",
-            Self::Body => "Body",
-            Self::Stairs => "Stairs",
+            Self::Stage => ("Stage", &[], "The snake on its stairs"),
+            Self::Run => ("Run", &["Ctrl 1"], "Start, pause and configure evolution"),
+            Self::World => ("World", &["Ctrl 2"], "Change the surface, the snake and the stairs"),
+            Self::Charts => ("Charts", &["Ctrl 3"], "See how evolution works"),
+            Self::Champions => ("Champions", &["Ctrl 4"], "Replay the best of every generation"),
+            Self::Library => {
+                ("Library", &["Ctrl 5"], "All saved champions and runs: replay, race, export")
+            }
+            Self::Lessons => ("Lessons", &["Ctrl 6"], "Two-minute experiments"),
+            Self::Senses => {
+                ("Senses", &["Ctrl 7"], "What the snake senses, and its controller at work")
+            }
+            Self::Machines => ("Machines", &["Ctrl 8"], "Let other computers compute, too"),
+            Self::Body => {
+                ("Body", &["Ctrl 9"], "The blocks of the snake: change, add and remove them")
+            }
+            Self::Stairs => (
+                "Stairs",
+                &["Ctrl T"],
+                "The stairs of the next run: drag their edges, draw random ones, save them",
+            ),
         }
     }
 
+    /// Label of the tab.
+    pub fn name(self) -> &'static str {
+        self.words().0
+    }
+
+    /// Shortcuts that open the panel.
+    pub fn keys(self) -> &'static [&'static str] {
+        self.words().1
+    }
+
     /// Tooltip.
-    pub fn hint(self) -> &'static str {
-        match self {
-            Self::Stage => "The snake on its stairs",
-            Self::Run => "Start, pause and configure evolution (Ctrl 1)",
-            Self::World => "Change the surface, the snake and the stairs (Ctrl 2)",
-            Self::Charts => "See how evolution works (Ctrl 3)",
-            Self::Champions => "Replay the best of every generation (Ctrl 4)",
-            Self::Library => "All saved champions and runs: replay, race, export (Ctrl 5)",
-            Self::Lessons => "Two-minute experiments (Ctrl 6)",
-            Self::Senses => "What the snake senses, and its controller at work (Ctrl 7)",
-            Self::Body => "The blocks of the snake: change, add and remove them (Ctrl 9)",
-            Self::Stairs => {
-                "The stairs of the next run: drag their edges, draw random ones, save them (Ctrl T)"
-            }
-            Self::Machines => "Let other computers compute, too (Ctrl 8)",
-        }
+    pub fn hint(self) -> String {
+        let (_, keys, hint) = self.words();
+        keys.first().map_or_else(|| hint.to_owned(), |key| format!("{hint} ({key})"))
     }
 }

@@ -8,7 +8,9 @@ use bevy_egui::egui;
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::body_editor::EditedBody;
-use crate::studio::ui::text_rows::{cancellable_progress, explain, title, title_and};
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{cancellable_progress, explain, problem, title, title_and};
 use crate::studio::ui::theme;
 use snakes_core::genome::{BodyChange, Segment};
 
@@ -72,8 +74,8 @@ impl BodyPanel {
         let is_busy = edited.tuning.is_some();
         ui.add_enabled_ui(!is_busy, |ui| self.block(ui, edited.segments, commands));
         budgets(ui, &edited);
-        if let Some(problem) = &edited.problem {
-            ui.label(egui::RichText::new(problem).color(theme::of(ui).problem));
+        if let Some(reason) = &edited.problem {
+            problem(ui, reason);
         }
         end(ui, &edited, commands);
     }
@@ -99,18 +101,17 @@ impl BodyPanel {
             "Change sizes, joints and strength of every block, add blocks and remove them: the stage shows the changed \
              snake beside the original.",
         );
-        if ui.button("Edit this body").clicked() {
+        let edit = CommandButton::new("Edit this body", "", Command::Body(BodyCommand::Edit));
+        if edit.show(ui, commands) {
             self.block = 0;
-            commands.push(Command::Body(BodyCommand::Edit));
         }
     }
 
     /// The title, and the buttons of steps.
     fn head(&self, ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
         let name = format!("Body of {}", edited.original.name());
-        let is_free = edited.tuning.is_none();
         title_and(ui, &name, |ui| {
-            let [can_undo, can_redo] = edited.steps;
+            let [can_undo, can_redo] = edited.steps.map(|can| can && edited.tuning.is_none());
             // From right to left.
             for (label, hint, is_on, command) in [
                 (
@@ -119,17 +120,11 @@ impl BodyPanel {
                     true,
                     BodyCommand::Close,
                 ),
-                ("Redo", "Redo the latest undone change", can_redo && is_free, BodyCommand::Redo),
-                (
-                    "Undo",
-                    "Undo the latest change of the body",
-                    can_undo && is_free,
-                    BodyCommand::Undo,
-                ),
+                ("Redo", "Redo the latest undone change", can_redo, BodyCommand::Redo),
+                ("Undo", "Undo the latest change of the body", can_undo, BodyCommand::Undo),
             ] {
-                if ui.add_enabled(is_on, egui::Button::new(label)).on_hover_text(hint).clicked() {
-                    commands.push(Command::Body(command));
-                }
+                let button = CommandButton::new(label, hint, Command::Body(command));
+                button.only_if(is_on).show(ui, commands);
             }
         });
     }
@@ -154,10 +149,7 @@ impl BodyPanel {
                     .clamping(egui::SliderClamping::Edits)
                     .max_decimals(2);
                 let slider = ui.add(slider).on_hover_text(*hint);
-                slider.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, *label)
-                });
-                if slider.changed() {
+                if named(slider, egui::WidgetType::Slider, label).changed() {
                     let (size, value) = (*size, *size.of_mut(&mut changed));
                     commands.push(Command::Body(BodyCommand::Set { block, size, value }));
                 }
@@ -169,10 +161,9 @@ impl BodyPanel {
         ui.horizontal_wrapped(|ui| {
             for (change, label, hint) in CHANGES {
                 let needs_next = matches!(change, BodyChange::Insert | BodyChange::Merge);
-                let button = ui.add_enabled(!(is_last && needs_next), egui::Button::new(label));
-                if button.on_hover_text(hint).clicked() {
-                    commands.push(Command::Body(BodyCommand::Change { block, change }));
-                }
+                let command = Command::Body(BodyCommand::Change { block, change });
+                let button = CommandButton::new(label, hint, command);
+                button.only_if(!(is_last && needs_next)).show(ui, commands);
             }
         });
     }
@@ -198,10 +189,7 @@ fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut V
             .clamping(egui::SliderClamping::Edits)
             .max_decimals(0);
         let slider = ui.add(slider).on_hover_text(MODULUS_HINT);
-        slider.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "Young's modulus")
-        });
-        if slider.changed() {
+        if named(slider, egui::WidgetType::Slider, "Young's modulus").changed() {
             let size = BlockSize::Modulus;
             commands.push(Command::Body(BodyCommand::Set { block, size, value }));
         }
@@ -234,9 +222,8 @@ fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) 
                 BodyCommand::Evolve,
             ),
         ] {
-            if ui.add_enabled(is_allowed, egui::Button::new(label)).on_hover_text(hint).clicked() {
-                commands.push(Command::Body(command));
-            }
+            let button = CommandButton::new(label, hint, Command::Body(command));
+            button.only_if(is_allowed).show(ui, commands);
         }
     });
 }

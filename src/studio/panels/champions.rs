@@ -2,9 +2,7 @@
 
 mod climbs;
 mod columns;
-
-use std::cmp::Ordering;
-use std::sync::Arc;
+mod summary;
 
 use bevy_egui::egui;
 
@@ -12,6 +10,7 @@ use super::shown::{ShownChampion, ShownLane};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
+use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -20,6 +19,7 @@ use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, LandingTime};
 use columns::{ChampionRowStyle, cells, heads, rows_width};
+use summary::ReportSummary;
 
 /// List of champions.
 #[derive(Debug, Default)]
@@ -31,104 +31,42 @@ pub(super) struct ChampionsPanel {
     climbs: Climbs,
 }
 
-/// Summary that is computed once for each new report instead of in every frame.
-#[derive(Debug, Clone)]
-struct ReportSummary {
-    /// Number of generations that have a champion.
-    champions: usize,
-    /// Generation of the best champion of the run.
-    best: Option<u32>,
-    /// Indices of the reports whose champions are better than all before.
-    better: Arc<[usize]>,
+/// Contents of the panel.
+pub(super) struct ChampionsView<'v> {
+    /// The champions with which the studio was opened.
+    pub opening: &'v [NamedChampion],
+    /// The reports of the run's generations.
+    pub reports: &'v [GenerationReport],
+    /// The champions of the list that are on the stage.
+    pub shown: &'v [ShownLane],
+    /// Number of the best snakes of a generation, or of the latest one, that can race.
+    pub leaders: &'v dyn Fn(Option<u32>) -> usize,
+    /// Whether the stage shows each better generation.
+    pub follows: bool,
 }
 
-impl ReportSummary {
-    fn of(reports: &[GenerationReport]) -> Self {
-        let champions = reports
-            .iter()
-            .filter_map(|report| Some((report.champion.as_ref()?, report.champion_rank()?)));
-        // The earliest of equally good champions wins.
-        let best = champions.clone().rev().max_by(|(_, a), (_, b)| {
-            let pairs = a.iter().zip(b);
-            pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(b)))
-        });
-        let mut most = [f32::MIN; 2];
-        let is_better = |report: &GenerationReport| {
-            let rank = report.champion_rank().filter(|rank| *rank > most);
-            most = rank.unwrap_or(most);
-            rank.is_some()
-        };
-        let all = reports.iter().map(is_better).enumerate();
-        let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();
-        Self {
-            champions: champions.count(),
-            best: best.map(|(champion, _)| champion.origin.generation),
-            better,
-        }
+impl ChampionsView<'_> {
+    /// Whether the run keeps only the snakes that beat those of all generations before.
+    fn has_better_only(&self) -> bool {
+        self.reports.first().is_some_and(|report| report.stairs.is_some())
+    }
+
+    /// The lane of a champion of the list, if that is on the stage.
+    fn lane_of(&self, champion: ShownChampion) -> Option<&ShownLane> {
+        self.shown.iter().find(|shown| shown.champion == champion)
     }
 }
 
 impl ChampionsPanel {
-    /// Draws the list and collects the user's commands. `follows` says whether the stage shows each better generation.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        opening: &[NamedChampion],
-        reports: &[GenerationReport],
-        shown: &[ShownLane],
-        leaders: impl Fn(Option<u32>) -> usize,
-        mut follows: bool,
-        commands: &mut Vec<Command>,
-    ) {
-        let ReportSummary { champions, best, better } = self.summary(reports);
-        let has_better_only = reports.first().is_some_and(|report| report.stairs.is_some());
+    /// Draws the list and collects the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, view: &ChampionsView, commands: &mut Vec<Command>) {
+        let summary = self.summary(view.reports);
         self.climbs.poll();
+        ui.horizontal_wrapped(|ui| buttons(ui, view, &summary, commands));
         ui.horizontal_wrapped(|ui| {
-            for (name, hint, is_on, needed, command) in [
-                (
-                    "Whole generation",
-                    "Show all snakes of the latest generation at once (I)",
-                    leaders(None) > 1,
-                    "a generation",
-                    Command::Stage(StageCommand::ShowGeneration(None)),
-                ),
-                (
-                    "Story",
-                    "Play the first, the middle and the latest of the better generations (S)",
-                    better.len() > 1,
-                    "two generations",
-                    Command::Stage(StageCommand::TellStory),
-                ),
-                (
-                    "Race generations",
-                    "Replay champions of several generations side by side (N)",
-                    champions > 1,
-                    "two generations",
-                    Command::Stage(StageCommand::RaceGenerations),
-                ),
-                (
-                    "Race best 10",
-                    "Replay the ten best snakes of the latest generation side by side (M)",
-                    leaders(None) > 1,
-                    "a generation",
-                    Command::Stage(StageCommand::RaceLeaders(None)),
-                ),
-            ] {
-                let button = egui::Button::new(name);
-                let disabled_hint = format!("Nothing to show yet: finish {needed} first");
-                let response = ui.add_enabled(is_on, button).on_hover_text(hint);
-                if response.on_disabled_hover_text(disabled_hint).clicked() {
-                    commands.push(command);
-                }
-            }
-        });
-        ui.horizontal_wrapped(|ui| {
-            let hint = "Show each better generation as soon as it is found (W)";
-            if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
-                commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
-            }
+            command_box(ui, view.follows, FOLLOW, FOLLOW_COMMAND, commands);
             let name = "Better ones only";
-            if has_better_only {
+            if view.has_better_only() {
                 let hint = "A run whose stairs evolve keeps only the snakes that beat those of all generations before";
                 ui.add_enabled_ui(false, |ui| check_box(ui, &mut true, name))
                     .inner
@@ -139,37 +77,46 @@ impl ChampionsPanel {
                 check_box(ui, &mut self.lists_better_only, name).on_hover_text(hint);
             }
         });
-        let lists_better_only = self.lists_better_only || has_better_only;
-        if reports.is_empty() {
+        if view.reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }
-        let height = theme::CHAMPION_ROW_HEIGHT;
-        let listed = if lists_better_only { better.len() } else { reports.len() };
-        let rows = opening.len() + listed;
+        self.list(ui, view, &summary, commands);
+    }
+
+    /// Draws the rows: the champions with which the studio was opened, then the newest generation first.
+    fn list(
+        &mut self,
+        ui: &mut egui::Ui,
+        view: &ChampionsView,
+        summary: &ReportSummary,
+        commands: &mut Vec<Command>,
+    ) {
+        let better = (self.lists_better_only || view.has_better_only()).then_some(&summary.better);
+        let listed = better.map_or(view.reports.len(), |better| better.len());
         let width = rows_width(ui);
         heads(ui, width);
+        let (height, rows) = (theme::CHAMPION_ROW_HEIGHT, view.opening.len() + listed);
         let area = egui::ScrollArea::vertical().auto_shrink(false);
         // A run may have thousands of generations, so only visible rows are drawn.
         area.show_rows(ui, height, rows, |ui, seen| {
             ui.set_max_width(width);
             for index in seen {
-                if let Some(saved) = opening.get(index) {
-                    let is_it =
-                        |shown: &&ShownLane| shown.champion == ShownChampion::Opening(index);
+                if let Some(saved) = view.opening.get(index) {
                     let row = ChampionRow {
-                        shown: shown.iter().find(is_it),
+                        shown: view.lane_of(ShownChampion::Opening(index)),
                         name: &saved.name,
                         champion: &saved.loaded.champion,
                         climb: self.climbs.of_save(&saved.loaded),
                         has_time: saved.loaded.is_of_this_engine(),
+                        pick: Pick::Opened(index),
+                        race: None,
                     };
-                    entry(ui, row, Pick::Opened(index), None, commands);
+                    row.ui(ui, commands);
                     continue;
                 }
-                // The newest generation is listed first.
-                let from_end = listed - 1 - (index - opening.len());
-                let place = if lists_better_only { better[from_end] } else { from_end };
-                let Some(report) = reports.get(place) else { continue };
+                let from_end = listed - 1 - (index - view.opening.len());
+                let place = better.map_or(from_end, |better| better[from_end]);
+                let Some(report) = view.reports.get(place) else { continue };
                 let generation = report.generation;
                 let name = format!("Generation {generation}");
                 let Some(champion) = &report.champion else {
@@ -180,31 +127,76 @@ impl ChampionsPanel {
                     continue;
                 };
                 let individual = champion.origin.individual;
-                let is_it = |shown: &&ShownLane| shown.champion.is(generation, individual);
-                let pick = Pick::Generation(generation);
-                let is_best = best == Some(generation);
-                let name = if is_best { format!("{name}, best") } else { name };
-                let race = (leaders(Some(generation)) > 1).then_some(generation);
+                let is_best = summary.best == Some(generation);
                 let row = ChampionRow {
-                    shown: shown.iter().find(is_it),
-                    name: &name,
+                    shown: view.lane_of(ShownChampion::Found { generation, individual }),
+                    name: &if is_best { format!("{name}, best") } else { name },
                     champion,
                     climb: self.climbs.of(champion),
                     has_time: true,
+                    pick: Pick::Generation(generation),
+                    race: ((view.leaders)(Some(generation)) > 1).then_some(generation),
                 };
-                entry(ui, row, pick, race, commands);
+                row.ui(ui, commands);
             }
         });
     }
-}
 
-impl ChampionsPanel {
     fn summary(&mut self, reports: &[GenerationReport]) -> ReportSummary {
         let now = (reports.len(), reports.last().map_or(0, |report| report.hash));
         match &self.summary {
             Some((key, summary)) if *key == now => summary.clone(),
             _ => self.summary.insert((now, ReportSummary::of(reports))).1.clone(),
         }
+    }
+}
+
+/// Label and hint of the check box for following evolution.
+pub(super) const FOLLOW: (&str, &str) =
+    ("Follow evolution", "Show each better generation as soon as it is found");
+/// The command of that check box.
+pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
+
+/// Draws the buttons that show several snakes.
+fn buttons(
+    ui: &mut egui::Ui,
+    view: &ChampionsView,
+    summary: &ReportSummary,
+    commands: &mut Vec<Command>,
+) {
+    let no_generation = Some("Nothing to show yet: finish a generation first")
+        .filter(|_| (view.leaders)(None) <= 1);
+    let one_of = |champions: usize| {
+        Some("Nothing to show yet: finish two generations first").filter(|_| champions <= 1)
+    };
+    for (name, hint, refusal, command) in [
+        (
+            "Whole generation",
+            "Show all snakes of the latest generation at once",
+            no_generation,
+            StageCommand::ShowGeneration(None),
+        ),
+        (
+            "Story",
+            "Play the first, the middle and the latest of the better generations",
+            one_of(summary.better.len()),
+            StageCommand::TellStory,
+        ),
+        (
+            "Race generations",
+            "Replay champions of several generations side by side",
+            one_of(summary.champions),
+            StageCommand::RaceGenerations,
+        ),
+        (
+            "Race best 10",
+            "Replay the ten best snakes of the latest generation side by side",
+            no_generation,
+            StageCommand::RaceLeaders(None),
+        ),
+    ] {
+        let button = CommandButton::new(name, hint, Command::Stage(command));
+        button.unless(refusal).show(ui, commands);
     }
 }
 
@@ -217,213 +209,60 @@ struct ChampionRow<'r> {
     climb: Option<&'r Climb>,
     /// Whether the time of its landing can be known: another engine would reach the top at another time.
     has_time: bool,
+    pick: Pick,
+    /// Its generation, if the best ten of that can race.
+    race: Option<u32>,
 }
 
-/// Draws the row of a champion. A click shows it alone; Shift or Control adds it to the stage. Its context menu starts
-/// the next run from it, or races the best ten of its generation.
-fn entry(
-    ui: &mut egui::Ui,
-    ChampionRow { shown, name, champion, climb, has_time }: ChampionRow<'_>,
-    pick: Pick,
-    race: Option<u32>,
-    commands: &mut Vec<Command>,
-) {
-    let time = if has_time { LandingTime::of(champion, climb) } else { LandingTime::None };
-    let style = ChampionRowStyle {
-        is_shown: shown.is_some(),
-        lane_color: shown.and_then(|shown| shown.color(theme::of(ui))),
-        picture: climb.map(|climb| &climb.picture),
-    };
-    let response = columns::row(ui, style, name, &cells(champion, time));
-    let response = response.on_hover_ui(|ui| {
-        ui.label(format!("{name}: {}", champion.reached()));
-        if let LandingTime::Known(time_s) = time {
-            ui.label(format!("Reached the top after {time_s:.2} s"));
+impl ChampionRow<'_> {
+    /// Draws the row. A click shows the champion alone; Shift or Control adds it to the stage. The context menu starts the
+    /// next run from it, or races the best ten of its generation.
+    fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+        let Self { shown, name, champion, climb, pick, .. } = *self;
+        let time = match self.has_time {
+            true => LandingTime::of(champion, climb),
+            false => LandingTime::None,
+        };
+        let style = ChampionRowStyle {
+            is_shown: shown.is_some(),
+            lane_color: shown.and_then(|shown| shown.color(theme::of(ui))),
+            picture: climb.map(|climb| &climb.picture),
+        };
+        let response = columns::row(ui, style, name, &cells(champion, time));
+        let response = response.on_hover_ui(|ui| {
+            ui.label(format!("{name}: {}", champion.reached()));
+            if let LandingTime::Known(time_s) = time {
+                ui.label(format!("Reached the top after {time_s:.2} s"));
+            }
+            if let Some(effort) = champion.evaluation.effort {
+                let (energy_kj, speed_m_s) = (effort.energy_j / 1000.0, effort.top_speed_m_s);
+                ui.label(format!("Energy {energy_kj:.1} kJ, top speed {speed_m_s:.1} m/s"));
+            }
+            ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
+        });
+        if response.clicked() {
+            let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+            commands.push(Command::Stage(match joins {
+                true => StageCommand::Join(pick),
+                false => StageCommand::Show(pick),
+            }));
         }
-        if let Some(effort) = champion.evaluation.effort {
-            let (energy_kj, speed_m_s) = (effort.energy_j / 1000.0, effort.top_speed_m_s);
-            ui.label(format!("Energy {energy_kj:.1} kJ, top speed {speed_m_s:.1} m/s"));
-        }
-        ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
-    });
-    if response.clicked() {
-        let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-        commands.push(if joins {
-            Command::Stage(StageCommand::Join(pick))
-        } else {
-            Command::Stage(StageCommand::Show(pick))
+        response.context_menu(|ui| {
+            let hint = "The first generation descends from it, in the world where it was found";
+            let start = Command::Plan(PlanCommand::StartFrom(pick));
+            let start = CommandButton::new("Start the next run from this snake", hint, start);
+            let race = self.race.map(|generation| {
+                let command = Command::Stage(StageCommand::RaceLeaders(Some(generation)));
+                CommandButton::new("Race best 10 of this generation", "", command)
+            });
+            for entry in std::iter::once(start).chain(race) {
+                if entry.show(ui, commands) {
+                    ui.close();
+                }
+            }
         });
     }
-    response.context_menu(|ui| {
-        let found = ui.button("Start the next run from this snake");
-        let hint = "The first generation descends from it, in the world where it was found";
-        if found.on_hover_text(hint).clicked() {
-            commands.push(Command::Plan(PlanCommand::StartFrom(pick)));
-            ui.close();
-        }
-        if let Some(generation) = race
-            && ui.button("Race best 10 of this generation").clicked()
-        {
-            commands.push(Command::Stage(StageCommand::RaceLeaders(Some(generation))));
-            ui.close();
-        }
-    });
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use snakes_core::evolve::{RunPlan, Settings};
-    use snakes_core::save::shipped_champion;
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
-
-    #[test]
-    fn the_summary_is_updated_after_a_report_and_in_another_run() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.5;
-        let pool = LocalPool::new(1).expect("threads");
-        let run = |seed| {
-            let mut experiment = Experiment::new(RunPlan::new("test", seed, settings.clone()));
-            let mut report =
-                || experiment.run_generation(&pool, &RunControl::default()).expect("done");
-            [report(), report(), report()]
-        };
-        let (first, second) = (run(1), run(2));
-        let mut panel = ChampionsPanel::default();
-        for reports in [&first[..0], &first[..1], &first[..], &second[..], &first[..2]] {
-            let summary = panel.summary(reports);
-            let expected = ReportSummary::of(reports);
-            assert_eq!((summary.champions, summary.best), (expected.champions, expected.best));
-            assert_eq!(summary.better, expected.better);
-        }
-    }
-
-    #[test]
-    fn a_click_on_a_generation_shows_its_champion() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
-        let pool = LocalPool::new(1).expect("threads");
-        let mut report = || experiment.run_generation(&pool, &RunControl::default()).expect("done");
-        let reports = [report(), report()];
-        let loaded = shipped_champion().expect("well formed");
-        let opening = [NamedChampion { name: "climber".to_owned(), loaded }];
-        let mut panel = ChampionsPanel::default();
-        let mut harness = Harness::new_ui_state(
-            |ui, commands| {
-                panel.ui(
-                    ui,
-                    &opening,
-                    &reports,
-                    &[ShownLane { champion: ShownChampion::Opening(0), lane: None }],
-                    |_| 2,
-                    false,
-                    commands,
-                );
-            },
-            Vec::new(),
-        );
-        harness.get_by_label_contains("Generation 2").click();
-        harness.run();
-        assert_eq!(*harness.state(), [Command::Stage(StageCommand::Show(Pick::Generation(2)))]);
-        harness.state_mut().clear();
-        harness.get_by_label_contains("Generation 1").click_modifiers(egui::Modifiers::SHIFT);
-        harness.run();
-        harness.get_by_label("Race generations").click();
-        harness.run();
-        let commands = [
-            Command::Stage(StageCommand::Join(Pick::Generation(1))),
-            Command::Stage(StageCommand::RaceGenerations),
-        ];
-        assert_eq!(*harness.state(), commands);
-    }
-
-    #[test]
-    fn better_ones_only_lists_the_generations_that_improved_on_all_before() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
-        let pool = LocalPool::new(1).expect("threads");
-        let first = experiment.run_generation(&pool, &RunControl::default()).expect("done");
-        let fitnesses = [1.0, 0.5, 2.0, 2.0, 3.0];
-        let reports: Vec<GenerationReport> = (1..)
-            .zip(fitnesses)
-            .map(|(generation, fitness)| {
-                let mut report = GenerationReport { generation, ..first.clone() };
-                let champion = report.champion.as_mut().expect("a healthy snake");
-                champion.origin.generation = generation;
-                champion.evaluation.fitness = fitness;
-                report
-            })
-            .collect();
-        let mut panel = ChampionsPanel::default();
-        let mut harness = Harness::builder().with_size(egui::vec2(360.0, 400.0)).build_ui_state(
-            |ui, commands| panel.ui(ui, &[], &reports, &[], |_| 2, false, commands),
-            Vec::new(),
-        );
-        let listed = |harness: &Harness<'_, Vec<Command>>| -> Vec<u32> {
-            let is_listed = |generation: &u32| {
-                let name = format!("Generation {generation}");
-                harness.query_by_label_contains(&name).is_some()
-            };
-            (1..=5).filter(is_listed).collect()
-        };
-        harness.run();
-        assert_eq!(listed(&harness), [1, 2, 3, 4, 5]);
-        for head in ["Fitness", "Time", "Energy"] {
-            assert!(harness.query_by_label(head).is_some(), "{head}");
-        }
-        assert!(harness.query_by_label_contains("Generation 5, best, 3.00 m, -, ").is_some());
-        harness.get_by_label("Better ones only").click();
-        harness.run();
-        assert_eq!(listed(&harness), [1, 3, 5]);
-        harness.get_by_label_contains("Generation 3").click();
-        harness.run();
-        let command = Command::Stage(StageCommand::Show(Pick::Generation(3)));
-        assert_eq!(*harness.state(), [command]);
-    }
-    #[test]
-    fn of_a_run_whose_stairs_evolve_only_generations_with_a_champion_are_listed() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
-        let pool = LocalPool::new(1).expect("threads");
-        let first = experiment.run_generation(&pool, &RunControl::default()).expect("done");
-        let stairs = snakes_core::save::StairsCount {
-            rounds: 1,
-            all: 1,
-            active: 1,
-            solved: 0,
-            challenges: 0,
-        };
-        let report = |generation: u32| {
-            let mut report = GenerationReport { generation, stairs: Some(stairs), ..first.clone() };
-            report.champion = report.champion.filter(|_| generation != 2).map(|mut champion| {
-                champion.origin.generation = generation;
-                champion
-            });
-            report
-        };
-        let reports = [1, 2, 3].map(report);
-        let mut panel = ChampionsPanel::default();
-        let mut harness = Harness::builder().with_size(egui::vec2(360.0, 400.0)).build_ui_state(
-            |ui, commands: &mut Vec<Command>| {
-                panel.ui(ui, &[], &reports, &[], |_| 2, false, commands);
-            },
-            Vec::new(),
-        );
-        harness.run();
-        for (name, is_listed) in
-            [("Generation 1", true), ("Generation 2", false), ("Generation 3", true)]
-        {
-            assert_eq!(harness.query_by_label_contains(name).is_some(), is_listed, "{name}");
-        }
-        assert!(harness.query_by_label_contains("disqualified").is_none());
-    }
-}
+mod tests;

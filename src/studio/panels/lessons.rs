@@ -7,9 +7,11 @@ use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
     Asks, FITNESS_OF_THE_LANDED, Found, LESSONS, LessonScene, LessonView, Plays, Progress,
 };
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range, x_title, y_title};
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
 use snakes_core::score::{Evaluation, Fitness};
 
@@ -31,29 +33,25 @@ fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            let title = format!("{}. {}", index + 1, lesson.title);
-            ui.label(egui::RichText::new(title).size(theme::TITLE_SIZE).strong());
+            ui.label(title_text(format!("{}. {}", index + 1, lesson.title)));
             ui.label(lesson.question);
             let name = format!("Begin lesson {}", index + 1);
-            if ui.button(&name).clicked() {
-                commands.push(Command::Lesson(LessonCommand::Begin(index)));
-            }
+            let begin = Command::Lesson(LessonCommand::Begin(index));
+            CommandButton::new(name, "", begin).show(ui, commands);
         });
     }
 }
 
 fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) {
     let lesson = &LESSONS[view.index];
-    let palette = theme::of(ui);
-    let accent = |text: &str| egui::RichText::new(text).strong().color(palette.on_accent);
     ui.horizontal_wrapped(|ui| {
-        let back = egui::Button::new(accent("Back to my own run")).fill(palette.accent);
+        let back = accent_button(ui, "Back to my own run");
         let hint = "End the lesson and restore your run, its settings and the stage";
-        if ui.add(back).on_hover_text(hint).clicked() {
-            commands.push(Command::Lesson(LessonCommand::Leave));
-        }
-        if view.index + 1 < LESSONS.len() && ui.button("Next lesson").clicked() {
-            commands.push(Command::Lesson(LessonCommand::Begin(view.index + 1)));
+        let leave = Command::Lesson(LessonCommand::Leave);
+        CommandButton::of(back, hint, leave).show(ui, commands);
+        if view.index + 1 < LESSONS.len() {
+            let next = Command::Lesson(LessonCommand::Begin(view.index + 1));
+            CommandButton::new("Next lesson", "", next).show(ui, commands);
         }
     });
     let title = format!("{}. {}", view.index + 1, lesson.title);
@@ -65,11 +63,10 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
     for (index, scene) in lesson.scenes.iter().enumerate() {
         let is_shown = index == view.scene;
         let button = egui::Button::new(scene.label()).selected(is_shown);
-        let size = egui::vec2(ui.available_width(), 0.0);
-        let response = ui.add_enabled(!view.is_busy, button.min_size(size));
-        if response.on_disabled_hover_text("The runs are still in progress").clicked() {
-            commands.push(Command::Lesson(LessonCommand::ShowScene(index)));
-        }
+        let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
+        let refusal = Some("The runs are still in progress").filter(|_| view.is_busy);
+        let show = Command::Lesson(LessonCommand::ShowScene(index));
+        CommandButton::of(button, "", show).unless(refusal).show(ui, commands);
     }
     if let Some(scene) = lesson.scenes.get(view.scene) {
         prediction(ui, scene, view, commands);
@@ -102,7 +99,6 @@ fn prediction(
     commands: &mut Vec<Command>,
 ) {
     let progress = view.progress;
-    let mut send = |command| commands.push(Command::Lesson(command));
     if let Some(question) = scene.question() {
         let palette = theme::of(ui);
         ui.add_space(theme::GAP / 2.0);
@@ -115,7 +111,7 @@ fn prediction(
                     ui.label(comparison);
                     ui.label(question.finding);
                 }
-                _ if !progress.has_begun => guess_buttons(ui, scene, &mut send),
+                _ if !progress.has_begun => guess_buttons(ui, scene, commands),
                 (guessed, None) => {
                     ui.label(match guessed {
                         Some(guessed) => format!("Your guess: {guessed}"),
@@ -124,10 +120,10 @@ fn prediction(
                     if question.asks == Asks::PlaybackSpeed {
                         explain(ui, next_play(&progress.plays));
                     } else if !view.is_busy {
-                        let text = "The result appears when the race has ended.";
-                        explain(ui, text);
-                        if guessed.is_some() && ui.button("Show the result now").clicked() {
-                            send(LessonCommand::ShowResult);
+                        explain(ui, "The result appears when the race has ended.");
+                        if guessed.is_some() {
+                            let show = Command::Lesson(LessonCommand::ShowResult);
+                            CommandButton::new("Show the result now", "", show).show(ui, commands);
                         }
                     }
                 }
@@ -150,24 +146,20 @@ fn prediction(
 }
 
 /// The answers to guess, and a way to go on without a guess.
-fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, send: &mut impl FnMut(LessonCommand)) {
+fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (index, answer) in scene.answers().into_iter().enumerate() {
-            let response = ui.button(answer);
             // Other panels may have controls of the same name.
             let name = format!("Guess: {answer}");
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::Button, ui.is_enabled(), &name)
-            });
+            let response = named(ui.button(answer), egui::WidgetType::Button, &name);
             if response.on_hover_text("Guess this, and begin the experiment").clicked() {
-                send(LessonCommand::Guess(index));
+                commands.push(Command::Lesson(LessonCommand::Guess(index)));
             }
         }
     });
     let hint = "Begin the experiment; its result appears at the end";
-    if ui.small_button("Watch without a guess").on_hover_text(hint).clicked() {
-        send(LessonCommand::Watch);
-    }
+    let watch = Command::Lesson(LessonCommand::Watch);
+    CommandButton::small("Watch without a guess", hint, watch).show(ui, commands);
 }
 
 /// The worksheet to print.
@@ -176,19 +168,19 @@ fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         explain(ui, &format!("One page: docs/worksheets/{}.md", index + 1));
         let hint = "Copy its text (Markdown), to paste it into a text processor";
-        if ui.small_button("Copy worksheet").on_hover_text(hint).clicked() {
+        let copied = Command::Notify(format!("Worksheet {} copied.", index + 1));
+        if CommandButton::small("Copy worksheet", hint, copied).show(ui, commands) {
             ui.ctx().copy_text(LESSONS[index].worksheet.to_owned());
-            commands.push(Command::Notify(format!("Worksheet {} copied.", index + 1)));
         }
     });
 }
 
 fn heading(ui: &mut egui::Ui, text: &str) {
     ui.add_space(theme::GAP / 2.0);
-    ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
+    ui.label(title_text(text));
 }
 
-/// What the reader has to do next in order to compare playbacks.
+/// The next task of a reader who compares playbacks.
 fn next_play(plays: &Plays) -> &'static str {
     match plays.finished() {
         [] => "Play it to its end. The result appears after two speeds.",

@@ -22,6 +22,8 @@ mod shown;
 mod stairs;
 mod tab_names;
 mod tab_viewer;
+#[cfg(test)]
+mod testing;
 mod thumbnail;
 mod undo_buttons;
 mod world;
@@ -46,6 +48,7 @@ use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
+use super::ui::accessible::named;
 use super::ui::theme;
 use super::ui::viewport::StageArea;
 use super::workspace::Workspace;
@@ -53,7 +56,7 @@ use super::workspace::layout::style;
 use super::workspace::scale::UiScale;
 
 use body::BodyPanel;
-use champions::ChampionsPanel;
+use champions::{ChampionsPanel, ChampionsView};
 use charts::{ChartsPanel, FitnessChart};
 use click_limits::set_click_limits;
 use help::command_palette::CommandPalette;
@@ -176,8 +179,8 @@ fn draw(
     let is_settled = context.zoom_factor() == scale;
     context.set_zoom_factor(scale);
     let mut commands = Vec::new();
-    let situation =
-        Situation::of(&data.run, &data.on_stage.mode, &workspace, &data.on_stage.history);
+    let on_stage = &data.on_stage;
+    let situation = Situation::of(&data.run, &on_stage.mode, &workspace, &on_stage.history);
     let situation = Situation { is_sharing: data.shares.busy().is_some(), ..situation };
     let mut root = egui::Ui::new(
         context.clone(),
@@ -186,8 +189,10 @@ fn draw(
             .layer_id(egui::LayerId::background())
             .max_rect(context.content_rect()),
     );
-    let mut lanes: Vec<&Lane> = data.on_stage.lanes.iter().collect();
+    let mut lanes: Vec<&Lane> = on_stage.lanes.iter().collect();
     lanes.sort_by_key(|lane| lane.number());
+    let focused = lanes.iter().find(|lane| lane.number() == on_stage.selection.lane);
+    let focused = focused.or(lanes.first()).copied();
     panels.panel_rects.clear();
     let panels = &mut *panels;
     if let Some(label) = workspace.sought.take() {
@@ -198,6 +203,7 @@ fn draw(
         panels: &mut *panels,
         data: &data,
         lanes: &lanes,
+        focused,
         stage: None,
         commands: &mut commands,
     };
@@ -211,19 +217,14 @@ fn draw(
     } else if workspace.is_bare {
         viewer.stage(&mut root);
     } else {
-        let (preset, seed) = (data.run.preset_in_words(), data.run.seed());
-        let fill = theme::of_context(&context).panel;
-        let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8 / 4);
-        egui::Panel::top("menu").frame(egui::Frame::new().fill(fill).inner_margin(margin)).show(
-            &mut root,
-            |ui| {
-                let is_on = |command: &Command| data.on_stage.is_on(command, *data.theme);
-                let about = format!("{preset}, seed {seed}");
-                let recent = &data.files.recent;
-                let share = data.shares.progress();
-                menu(ui, situation, &is_on, recent, (&about, share.as_ref()), viewer.commands);
-            },
-        );
+        let frame = bar_frame(theme::of_context(&context), theme::GAP as i8 / 4);
+        egui::Panel::top("menu").frame(frame).show(&mut root, |ui| {
+            let is_on = |command: &Command| on_stage.is_on(command, *data.theme);
+            let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.seed());
+            let share = data.shares.progress();
+            let right = (about.as_str(), share.as_ref());
+            menu(ui, situation, &is_on, &data.files.recent, right, viewer.commands);
+        });
         let style = style(&root);
         let size = root.available_size();
         DockArea::new(workspace.layout.state_in(size, is_settled))
@@ -237,13 +238,12 @@ fn draw(
     }
     if let Some(stage) = viewer.stage {
         let (mut cards, mut messages_room) = (Vec::new(), stage);
-        if let Some(lane) = focused(&lanes, &data.on_stage).filter(|_| !is_presenting) {
+        if let Some(lane) = focused.filter(|_| !is_presenting) {
             let is_touring = matches!(workspace.modal(), Some(Modal::Tour(_)));
             let (theme, progress) = (*data.theme, data.run.progress());
             let messages = area.messages_size();
             let of = CardSituation { theme, progress, is_touring, messages };
-            let around =
-                around_stage(&context, stage, &data.on_stage, &lanes, lane, &of, &mut commands);
+            let around = around_stage(&context, stage, on_stage, &lanes, lane, &of, &mut commands);
             (cards, messages_room) = (around.cards, around.messages_room);
             let is_in_sight =
                 panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
@@ -263,7 +263,7 @@ fn draw(
             let target = highlighted_panel(step)
                 .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
-            let player_commands = data.on_stage.playback.commands();
+            let player_commands = on_stage.playback.commands();
             panels.tour.ui(&context, step, target, player_commands, &mut commands);
         }
         None => {}
@@ -281,10 +281,10 @@ fn black_screen(context: &egui::Context) {
     context.layer_painter(layer).rect_filled(context.content_rect(), 0.0, egui::Color32::BLACK);
 }
 
-/// The lane whose numbers are shown.
-fn focused<'l>(lanes: &[&'l Lane], on_stage: &OnStage) -> Option<&'l Lane> {
-    let focused = lanes.iter().find(|lane| lane.number() == on_stage.selection.lane);
-    focused.or(lanes.first()).copied()
+/// The frame of the bars above and below the stage, with this margin above and below their contents, in points.
+fn bar_frame(palette: &theme::Palette, margin: i8) -> egui::Frame {
+    let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, margin);
+    egui::Frame::new().fill(palette.panel).inner_margin(margin)
 }
 
 /// Draws the panels for the dock area.
@@ -294,6 +294,8 @@ struct Viewer<'v, 'w, 's> {
     panels: &'v mut Panels,
     data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
+    /// The lane whose numbers are shown.
+    focused: Option<&'v Lane>,
     /// Rectangle of the stage, once it is drawn.
     stage: Option<egui::Rect>,
     commands: &'v mut Vec<Command>,
@@ -302,21 +304,15 @@ struct Viewer<'v, 'w, 's> {
 impl Viewer<'_, '_, '_> {
     /// Draws the player at the bottom and reserves the rest for the stage.
     fn stage(&mut self, ui: &mut egui::Ui) {
-        let OnStage { playback, .. } = &self.data.on_stage;
-        if let Some(lane) = focused(self.lanes, &self.data.on_stage) {
-            let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, theme::GAP as i8);
-            let fill = theme::of(ui).panel;
-            egui::Panel::bottom("timeline")
-                .resizable(false)
-                .frame(egui::Frame::new().fill(fill).inner_margin(margin))
-                .show(ui, |ui| {
-                    let lanes = self.lanes.iter().copied();
-                    let is_of_lesson = lane.staged().source() == ChampionSource::Lesson;
-                    let span =
-                        TimelineSpan::of(lanes, is_of_lesson && self.data.lessons.hides_result());
-                    let run = self.data.run.number();
-                    self.panels.timeline.ui(ui, lane, playback, span, run, self.commands);
-                });
+        if let Some(lane) = self.focused {
+            let frame = bar_frame(theme::of(ui), theme::GAP as i8);
+            egui::Panel::bottom("timeline").resizable(false).frame(frame).show(ui, |ui| {
+                let is_of_lesson = lane.staged().source() == ChampionSource::Lesson;
+                let hides_future = is_of_lesson && self.data.lessons.hides_result();
+                let span = TimelineSpan::of(self.lanes.iter().copied(), hides_future);
+                let (playback, run) = (&self.data.on_stage.playback, self.data.run.number());
+                self.panels.timeline.ui(ui, lane, playback, span, run, self.commands);
+            });
         }
         self.reserve_stage(ui);
     }
@@ -332,13 +328,14 @@ impl Viewer<'_, '_, '_> {
         let stage = ui.available_rect_before_wrap();
         // The stage is not an egui widget, but accessibility tools and tests need its name and rectangle.
         let place = ui.interact(stage, ui.id().with("the stage"), egui::Sense::hover());
-        place.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "The stage"));
+        named(place, egui::WidgetType::Other, "The stage");
         self.stage = Some(stage);
     }
 
     fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
         let shown = ShownLane::all(self.lanes, self.data.run.number());
-        let PanelData { run, opening, .. } = self.data;
+        let PanelData { run, opening, on_stage, .. } = self.data;
+        let (lanes, focused, history) = (self.lanes, self.focused, &on_stage.history);
         let (panels, commands) = (&mut *self.panels, &mut *self.commands);
         match kind {
             PanelKind::Stage => {}
@@ -347,41 +344,33 @@ impl Viewer<'_, '_, '_> {
                 panels.fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
             }
             PanelKind::World => {
-                let on_stage = &self.data.on_stage;
-                let focused = focused(self.lanes, on_stage);
-                let read = ReadLanes::of(self.lanes, focused, on_stage);
-                panels.world.ui(ui, run, &on_stage.history, &read, commands);
+                let read = ReadLanes::of(lanes, focused, on_stage);
+                panels.world.ui(ui, run, history, &read, commands);
             }
             PanelKind::Charts => {
-                let selected = focused(self.lanes, &self.data.on_stage).map(Lane::staged);
-                panels.charts.ui(ui, run, &shown, selected, commands);
+                panels.charts.ui(ui, run, &shown, focused.map(Lane::staged), commands);
             }
             PanelKind::Champions => {
-                let reports = run.reports();
-                let leaders = |generation| run.leaders(generation).len();
-                let follows = self.data.on_stage.following.follows_evolution();
-                panels.champions.ui(ui, &opening.0, reports, &shown, leaders, follows, commands);
+                let view = ChampionsView {
+                    opening: &opening.0,
+                    reports: run.reports(),
+                    shown: &shown,
+                    leaders: &|generation| run.leaders(generation).len(),
+                    follows: on_stage.following.follows_evolution(),
+                };
+                panels.champions.ui(ui, &view, commands);
             }
             PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
             PanelKind::Senses => {
-                let focused = focused(self.lanes, &self.data.on_stage);
-                let view = SensesView::of(self.lanes, focused, &self.data.on_stage);
+                let view = SensesView::of(lanes, focused, on_stage);
                 panels.senses.ui(ui, view.as_ref(), &self.data.exams, commands);
             }
             PanelKind::Body => {
-                let lane = focused(self.lanes, &self.data.on_stage);
-                let limb = self.data.on_stage.selection.limb;
-                panels.body.ui(ui, self.data.bodies.edited(), lane, limb, commands);
+                let limb = on_stage.selection.limb;
+                panels.body.ui(ui, self.data.bodies.edited(), focused, limb, commands);
             }
-            PanelKind::Stairs => {
-                let lane = focused(self.lanes, &self.data.on_stage);
-                let history = &self.data.on_stage.history;
-                panels.stairs.ui(ui, run, history, lane, commands);
-            }
-            PanelKind::Library => {
-                let history = &self.data.on_stage.history;
-                panels.saves.ui(ui, &self.data.saves, history, commands);
-            }
+            PanelKind::Stairs => panels.stairs.ui(ui, run, history, focused, commands),
+            PanelKind::Library => panels.saves.ui(ui, &self.data.saves, history, commands),
             PanelKind::Machines => panels.machines.ui(ui, &self.data.machines, run, commands),
         }
     }

@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, OwnKind};
 
@@ -61,10 +61,9 @@ impl OwnName {
                 prompt.ask_again();
             }
         });
-        let problem = known.problem_with(&prompt.text).filter(|_| !prompt.text.is_empty());
-        if let Some(problem) = problem {
-            let text = egui::RichText::new(problem).color(theme::of(ui).problem);
-            ui.add(egui::Label::new(text).wrap());
+        let reason = known.problem_with(&prompt.text).filter(|_| !prompt.text.is_empty());
+        if let Some(reason) = reason {
+            problem(ui, &reason);
             let allowed = known.allowed_name(&prompt.text);
             if ui.button(format!("Use the name {allowed}")).clicked() {
                 prompt.text = allowed;

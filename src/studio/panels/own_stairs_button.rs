@@ -4,6 +4,7 @@ use bevy_egui::egui;
 
 use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::buttons::CommandButton;
 
 /// Draws a button that shows a champion on its own stairs again, if it is on those of its exam.
 pub(super) fn own_stairs_button(
@@ -11,11 +12,9 @@ pub(super) fn own_stairs_button(
     staged: &StagedChampion,
     commands: &mut Vec<Command>,
 ) {
-    if !staged.is_on_stairs_of_exam() {
-        return;
-    }
-    let hint = "Show the snake where it was found, from the start";
-    if ui.button("Back to its own stairs").on_hover_text(hint).clicked() {
-        commands.push(Command::Exam(ExamCommand::BackToOwnStairs));
+    if staged.is_on_stairs_of_exam() {
+        let hint = "Show the snake where it was found, from the start";
+        let back = Command::Exam(ExamCommand::BackToOwnStairs);
+        CommandButton::new("Back to its own stairs", hint, back).show(ui, commands);
     }
 }

@@ -81,12 +81,11 @@ impl ShownLane {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::panels::testing::climber_lane;
 
     #[test]
     fn lanes_side_by_side_have_their_colours_and_ghosts_or_a_snake_alone_none() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let lane = |number| climber_lane(number, "one");
         let shown = |lanes: &[&Lane]| -> Vec<Option<usize>> {
             ShownLane::all(lanes, 0).into_iter().map(|shown| shown.lane).collect()
         };

@@ -66,7 +66,7 @@ mod tests {
         context.begin_pass(egui::RawInput::default());
         theme::apply(&context);
         let small = egui::FontId::proportional(SMALL_SIZES[1]);
-        let width = bar_width(&context, &PanelKind::INITIAL, &small);
+        let width = bar_width(&context, PanelKind::INITIAL, &small);
         assert!(width <= LEAST_PANEL, "{width}");
     }
 }

@@ -5,6 +5,7 @@ use egui_dock::{TabStyle, TabViewer};
 
 use super::tab_names::tab_name;
 use super::{PanelKind, Viewer};
+use crate::studio::ui::accessible::named;
 
 impl TabViewer for Viewer<'_, '_, '_> {
     type Tab = PanelKind;
@@ -31,8 +32,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
 
     fn on_tab_button(&mut self, kind: &mut PanelKind, response: &egui::Response) {
         let name = format!("Panel {}", kind.name());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name));
-        response.clone().on_hover_text(kind.hint());
+        named(response.clone(), egui::WidgetType::Button, &name).on_hover_text(kind.hint());
     }
 
     fn is_closeable(&self, kind: &PanelKind) -> bool {

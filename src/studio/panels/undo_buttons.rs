@@ -12,11 +12,9 @@ pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &
         (UndoDirection::Forth, Icon::Redo, "Redo", Command::Redo),
         (UndoDirection::Back, Icon::Undo, "Undo", Command::Undo),
     ] {
-        let hint = match history.next(way) {
-            Some(step) => format!("{name} {step}"),
-            None => way.nothing().to_owned(),
-        };
-        let is_on = history.next(way).is_some();
+        let step = history.next(way);
+        let hint = step.map_or(way.nothing().to_owned(), |step| format!("{name} {step}"));
+        let is_on = step.is_some();
         let button = |ui: &mut egui::Ui| small_icon_button(ui, icon, name, &hint);
         if ui.add_enabled_ui(is_on, button).inner.clicked() {
             commands.push(command);

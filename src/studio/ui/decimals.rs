@@ -1,10 +1,25 @@
-//! Numbers as text with a fixed count of decimals.
+//! Numbers as text.
 
 /// The number with this many decimals. One that rounds to zero has no minus: "0.00" instead of "-0.00".
-pub(crate) fn decimals(value: f32, count: usize) -> String {
-    let text = format!("{value:.count$}");
+pub(crate) fn decimals(value: impl Into<f64>, count: usize) -> String {
+    let text = format!("{:.count$}", value.into());
     let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
+}
+
+/// The number with at most this many decimals, without zeros at its end.
+pub(crate) fn short(value: f64, count: usize) -> String {
+    let text = format!("{value:.count$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A share as whole percents.
+pub(crate) fn in_percent(share: f32) -> String {
+    format!("{:.0} %", share * 100.0)
 }
 
 #[cfg(test)]

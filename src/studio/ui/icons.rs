@@ -1,8 +1,9 @@
 //! Icon buttons. The icons are drawn, because no font has all of them in one style.
 
 use bevy_egui::egui;
-use bevy_egui::egui::{Pos2, Rect, Shape, Stroke, WidgetInfo, WidgetType};
+use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke, WidgetType};
 
+use super::accessible::{named, named_selected};
 use super::theme;
 
 /// An icon.
@@ -113,52 +114,55 @@ pub(crate) fn small_icon_button(
     hint: &str,
 ) -> egui::Response {
     let palette = theme::of(ui);
-    let size = egui::Vec2::splat(SMALL_SIDE);
-    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
-    let is_on = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, is_on, label));
-    if ui.is_rect_visible(rect) {
-        let corner = ui.visuals().widgets.inactive.corner_radius;
-        if response.hovered() {
-            ui.painter().rect_filled(rect, corner, palette.field_hovered);
-        }
-        if response.has_focus() {
-            let stroke = Stroke::new(1.5, palette.accent);
-            ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
-        }
-        let color = if is_on { palette.text } else { palette.text_weak.gamma_multiply(0.5) };
-        let square = Rect::from_center_size(rect.center(), size * 0.55);
-        ui.painter().extend(icon.shapes(square, Stroke::new(1.6, color)));
-    }
+    let fill = |is_hovered: bool| is_hovered.then_some(palette.field_hovered);
+    let color = match ui.is_enabled() {
+        true => palette.text,
+        false => palette.text_weak.gamma_multiply(0.5),
+    };
+    let response = square_button(ui, SMALL_SIDE, fill, |square| {
+        icon.shapes(middle_of(square, 0.55), Stroke::new(1.6, color))
+    });
+    let response = named(response, WidgetType::Button, label);
     response.on_hover_text(hint).on_disabled_hover_text(hint)
 }
 
 /// An icon button.
-pub(crate) fn icon_button(
-    ui: &mut egui::Ui,
-    icon: Icon,
-    is_on: bool,
-    hint: &str,
-) -> egui::Response {
+pub(crate) fn icon_button(ui: &mut egui::Ui, icon: Icon, is_on: bool) -> egui::Response {
     let palette = theme::of(ui);
-    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(SIDE), egui::Sense::click());
-    response.widget_info(|| {
-        WidgetInfo::selected(WidgetType::Button, ui.is_enabled(), is_on, icon.label())
+    let fill = |is_hovered| match (is_on, is_hovered) {
+        (true, _) => Some(palette.accent_soft),
+        (false, true) => Some(palette.field_hovered),
+        (false, false) => Some(palette.field),
+    };
+    let response = square_button(ui, SIDE, fill, |square| {
+        icon.shapes(middle_of(square, 0.42), Stroke::new(2.0, palette.text))
     });
+    named_selected(response, WidgetType::Button, is_on, icon.label())
+}
+
+/// A square button. `fill` is its background, which depends on whether the pointer is over it; `shapes` are drawn on that.
+fn square_button(
+    ui: &mut egui::Ui,
+    side: f32,
+    fill: impl Fn(bool) -> Option<Color32>,
+    shapes: impl FnOnce(Rect) -> Vec<Shape>,
+) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(side), egui::Sense::click());
     if ui.is_rect_visible(rect) {
-        let fill = match (is_on, response.hovered()) {
-            (true, _) => palette.accent_soft,
-            (false, true) => palette.field_hovered,
-            (false, false) => palette.field,
-        };
         let corner = ui.visuals().widgets.inactive.corner_radius;
-        ui.painter().rect_filled(rect, corner, fill);
+        if let Some(fill) = fill(response.hovered()) {
+            ui.painter().rect_filled(rect, corner, fill);
+        }
         if response.has_focus() {
-            let stroke = Stroke::new(1.5, palette.accent);
+            let stroke = Stroke::new(1.5, theme::of(ui).accent);
             ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
         }
-        let square = Rect::from_center_size(rect.center(), egui::Vec2::splat(SIDE * 0.42));
-        ui.painter().extend(icon.shapes(square, Stroke::new(2.0, palette.text)));
+        ui.painter().extend(shapes(rect));
     }
-    response.on_hover_text(hint)
+    response
+}
+
+/// The middle of a square, of this share of its side.
+fn middle_of(square: Rect, share: f32) -> Rect {
+    Rect::from_center_size(square.center(), square.size() * share)
 }

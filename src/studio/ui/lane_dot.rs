@@ -1,14 +1,18 @@
-//! The dot that marks a lane by its colour.
+//! Dots in the colours of lanes and states.
 
 use bevy_egui::egui;
 
 use super::theme;
 
-/// Draws the dot in the colour of a lane (the first is 0), of this diameter in points.
+/// Draws the dot that marks a lane (the first is 0) by its colour, of this diameter in points.
 pub(crate) fn lane_dot(ui: &mut egui::Ui, lane: usize, diameter: f32) -> egui::Response {
+    dot(ui, theme::of(ui).lane_color(lane), diameter)
+}
+
+/// Draws a dot of this diameter, in points.
+pub(crate) fn dot(ui: &mut egui::Ui, color: egui::Color32, diameter: f32) -> egui::Response {
     let (rect, response) =
         ui.allocate_exact_size(egui::Vec2::splat(diameter), egui::Sense::hover());
-    let color = theme::of(ui).lane_color(lane);
     ui.painter().circle_filled(rect.center(), diameter / 2.0, color);
     response
 }

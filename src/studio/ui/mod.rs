@@ -1,5 +1,7 @@
 //! Widgets, theme and fonts that all panels share.
 
+pub mod accessible;
+pub mod buttons;
 pub mod check_box;
 pub mod decimals;
 pub mod icons;

@@ -6,6 +6,7 @@ use std::str::FromStr;
 
 use bevy_egui::egui;
 
+use super::text_rows::text_field;
 use super::theme;
 
 /// A number field and its unfinished input.
@@ -28,11 +29,9 @@ impl NumberField {
     ) -> Option<T> {
         let name = ui.label(label);
         let mut text = self.text.clone().unwrap_or_else(|| value.to_string());
-        let field = egui::TextEdit::singleline(&mut text)
-            .desired_width(theme::FIELD_WIDTH)
-            .margin(egui::Margin::symmetric(8, 4));
+        let field = text_field(&mut text).desired_width(theme::FIELD_WIDTH);
         let response = ui.add(field).labelled_by(name.id).on_hover_text(hint);
-        select_all_on_focus(ui, &response, &text);
+        select_all_on_focus(&response, &text);
         let parsed = text.trim().parse().ok().filter(|number| range.contains(number));
         if response.changed() {
             self.problem = parsed.is_none().then(|| {
@@ -52,13 +51,18 @@ impl NumberField {
         self.problem.as_deref()
     }
 }
+
 /// Selects the whole text when a field gets the focus, so that typing replaces it.
-pub(crate) fn select_all_on_focus(ui: &egui::Ui, field: &egui::Response, text: &str) {
-    if !field.gained_focus() {
-        return;
+pub(crate) fn select_all_on_focus(field: &egui::Response, text: &str) {
+    if field.gained_focus() {
+        select(field, 0, text.chars().count());
     }
-    let mut state = egui::TextEdit::load_state(ui.ctx(), field.id).unwrap_or_default();
-    let [start, end] = [0, text.chars().count()].map(egui::text::CCursor::new);
-    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
-    state.store(ui.ctx(), field.id);
+}
+
+/// Selects the characters of a text field from one index to another.
+pub(crate) fn select(field: &egui::Response, from: usize, to: usize) {
+    let mut state = egui::TextEdit::load_state(&field.ctx, field.id).unwrap_or_default();
+    let [from, to] = [from, to].map(egui::text::CCursor::new);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(from, to)));
+    state.store(&field.ctx, field.id);
 }

@@ -11,7 +11,7 @@ pub struct Outlines {
 }
 
 impl Outlines {
-    /// Those of a body.
+    /// The outlines of a body.
     pub fn of(body: &BodyPlan) -> Self {
         let poses = body.limb_poses(&body.rest_poses());
         let corners = |(limb, pose): (usize, &Pose)| -> [Vector; 8] {

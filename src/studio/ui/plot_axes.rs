@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use bevy_egui::egui;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotBounds, uniform_grid_spacer};
 
+use super::decimals::{decimals, short};
+use super::text_rows::weak;
 use super::theme;
 use snakes_lab::plot::tick_step;
 
@@ -40,10 +42,7 @@ const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
 /// The number at a grid line, with the digits that tell it from its neighbours.
 fn tick_text(mark: GridMark) -> String {
     let digits = libm::ceil(-libm::log10(mark.step_size) - 1.0e-6).clamp(0.0, 9.0) as usize;
-    let text = format!("{:.digits$}", mark.value);
-    // Rounding makes a zero of either sign.
-    let is_zero = text.chars().all(|letter| !letter.is_ascii_digit() || letter == '0');
-    if is_zero { text.trim_start_matches('-').to_owned() } else { text }
+    decimals(mark.value, digits)
 }
 
 /// Tick step for a range: 1, 2 or 5 times a power of ten.
@@ -67,12 +66,7 @@ pub(crate) fn number(value: f64) -> String {
         size if size >= 0.0995 || size == 0.0 => 2,
         _ => 3,
     };
-    let text = format!("{value:.digits$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    short(value, digits)
 }
 
 /// The range of the values, with a margin; `None` without finite values.
@@ -98,7 +92,7 @@ pub(crate) fn bounds(x: &RangeInclusive<f64>, y: &RangeInclusive<f64>) -> PlotBo
 
 /// Label of an axis, in small weak text.
 pub(crate) fn axis_name(ui: &egui::Ui, text: &str) -> egui::RichText {
-    egui::RichText::new(text).color(theme::of(ui).text_weak).small()
+    weak(ui, text).small()
 }
 
 /// Title of a vertical axis, above its upper end, where it is read without turning the head.

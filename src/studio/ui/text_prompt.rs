@@ -4,24 +4,17 @@
 //! widget has the focus: see [`is_open`].
 
 use bevy_egui::egui;
-use bevy_egui::egui::text::{CCursor, CCursorRange};
+
+use super::number_field::select;
 
 /// A text field that waits for Enter or Escape.
 #[derive(Debug)]
 pub(crate) struct TextPrompt {
     /// Text typed so far.
     pub text: String,
-    /// Text to select when the field takes the focus, until it has done so.
-    pending: Option<Select>,
-}
-
-/// Text to select in a field that takes the focus.
-#[derive(Debug, Clone, Copy)]
-enum Select {
-    /// The whole text, so that typing replaces it.
-    All,
-    /// Nothing; the cursor goes to the end, so that typing continues the text.
-    End,
+    /// Until the field has taken the focus: whether it then selects the whole text, so that typing replaces it, or else
+    /// puts the cursor at the end.
+    pending: Option<bool>,
 }
 
 /// The end of a prompt.
@@ -36,7 +29,7 @@ pub(crate) enum PromptEnd {
 impl TextPrompt {
     /// A prompt with a suggestion, which is selected.
     pub fn new(suggestion: String) -> Self {
-        Self { text: suggestion, pending: Some(Select::All) }
+        Self { text: suggestion, pending: Some(true) }
     }
 
     /// The text without spaces at its ends.
@@ -46,7 +39,7 @@ impl TextPrompt {
 
     /// Takes the focus again, for a text that was not allowed.
     pub fn ask_again(&mut self) {
-        self.pending = Some(Select::End);
+        self.pending = Some(false);
     }
 
     /// Draws the field with `add`. Returns its response, and how the prompt ended if it did.
@@ -63,17 +56,11 @@ impl TextPrompt {
             self.take_letters(&context);
         }
         let response = add(ui, egui::TextEdit::singleline(&mut self.text));
-        if let Some(select) = self.pending.take() {
+        if let Some(selects_all) = self.pending.take() {
             response.request_focus();
             let length = self.text.chars().count();
-            let end = CCursor::new(length);
-            let range = match select {
-                Select::All => CCursorRange::two(CCursor::new(0), end),
-                Select::End => CCursorRange::one(end),
-            };
-            let mut state = egui::TextEdit::load_state(&context, response.id).unwrap_or_default();
-            state.cursor.set_char_range(Some(range));
-            state.store(&context, response.id);
+            let from = if selects_all { 0 } else { length };
+            select(&response, from, length);
             return (response, None);
         }
         let is_left = response.lost_focus() && !is_covered(&context);
@@ -99,7 +86,7 @@ impl TextPrompt {
         });
         if !typed.is_empty() {
             self.text.push_str(&typed);
-            self.pending = Some(Select::End);
+            self.pending = Some(false);
         }
     }
 }

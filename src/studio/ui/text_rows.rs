@@ -1,13 +1,23 @@
-//! Rows of text that panels share: titles, explanations, clickable rows.
+//! Texts that panels share: titles, explanations, problems, fields, clickable rows.
 
 use bevy_egui::egui;
 
 use super::theme;
 
+/// Text in the style of a section's title.
+pub(crate) fn title_text(text: impl Into<String>) -> egui::RichText {
+    egui::RichText::new(text).size(theme::TITLE_SIZE).strong()
+}
+
+/// Explanatory text.
+pub(crate) fn weak(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
+    egui::RichText::new(text).color(theme::of(ui).text_weak)
+}
+
 /// A section's title.
 pub(crate) fn title(ui: &mut egui::Ui, text: &str) {
     ui.add_space(theme::GAP);
-    ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
+    ui.label(title_text(text));
 }
 
 /// A section's title, with widgets at the right end of its line.
@@ -16,15 +26,42 @@ pub(crate) fn title_and(ui: &mut egui::Ui, text: &str, right: impl FnOnce(&mut e
     // Compensate for the height of buttons, which is larger than that of text.
     ui.spacing_mut().interact_size.y -= theme::GAP * 0.75;
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), right);
+        ui.label(title_text(text));
+        at_right(ui, right);
     });
     ui.spacing_mut().interact_size.y += theme::GAP * 0.75;
 }
 
+/// Draws widgets from the right end of a line to the left.
+pub(crate) fn at_right(ui: &mut egui::Ui, content: impl FnOnce(&mut egui::Ui)) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), content);
+}
+
 /// A line of explanatory text.
 pub(crate) fn explain(ui: &mut egui::Ui, text: &str) {
-    ui.label(egui::RichText::new(text).color(theme::of(ui).text_weak));
+    ui.label(weak(ui, text));
+}
+
+/// A sentence about something that is wrong.
+pub(crate) fn problem(ui: &mut egui::Ui, text: &str) {
+    let text = egui::RichText::new(text).color(theme::of(ui).problem);
+    ui.add(egui::Label::new(text).wrap());
+}
+
+/// A field for a line of text.
+pub(crate) fn text_field(text: &mut String) -> egui::TextEdit<'_> {
+    let margin = egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2);
+    egui::TextEdit::singleline(text).margin(margin)
+}
+
+/// A section that a click on its header folds, with a hint on the header.
+pub(crate) fn folded(
+    ui: &mut egui::Ui,
+    header: egui::CollapsingHeader,
+    hint: &str,
+    content: impl FnOnce(&mut egui::Ui),
+) {
+    header.show_unindented(ui, content).header_response.on_hover_text(hint);
 }
 
 /// Progress of work in the background beside a button that cancels it. Returns whether the button was clicked.

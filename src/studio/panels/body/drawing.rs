@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
 use snakes_core::world::BodyPlan;
@@ -69,9 +70,7 @@ pub(super) fn drawing(
         }
         top += of_view_m * scale + SPACE;
     }
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Drawing of the blocks")
-    });
+    let response = named(response, egui::WidgetType::Other, "Drawing of the blocks");
     if selected.is_some() {
         response.on_hover_text("Click a block to change it. The head is on the left");
     }

@@ -1,12 +1,11 @@
 //! Tests of the body panel.
 
 use super::*;
-use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::panels::testing::{climber, panel, shows};
 use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use snakes_core::save::shipped_champion;
 
 struct Edit {
     editor: BodyEditor,
@@ -16,8 +15,7 @@ struct Edit {
 
 /// The panel while the body of the built-in champion is edited.
 fn editing(width: f32) -> Harness<'static, Edit> {
-    let champion = shipped_champion().expect("well formed");
-    let staged = StagedChampion::from_file(&champion, 0, "climber");
+    let staged = climber(0, "climber");
     let mut editor = BodyEditor::default();
     editor.apply(&BodyCommand::Edit, Some(&staged), &mut prepared_run()).expect("a gait");
     let state = Edit { editor, panel: BodyPanel::default(), commands: Vec::new() };
@@ -82,10 +80,9 @@ fn a_block_becomes_soft_and_rigid_again() {
 fn budgets_are_in_words_and_nothing_is_undone_before_the_first_change() {
     for width in [300.0, 900.0] {
         let mut harness = editing(width);
-        for text in ["Volume", "Length", "Torque"] {
-            assert!(harness.query_all_by_label(text).next().is_some(), "{text}");
+        for text in ["Volume", "Length", "Torque", "the original has"] {
+            assert!(shows(&harness, text), "{text}");
         }
-        assert!(harness.query_by_label_contains("the original has").is_some());
         harness.get_by_label("Undo").click();
         harness.run();
         assert_eq!(harness.state().commands, [], "there is nothing to undo");
@@ -97,10 +94,7 @@ fn budgets_are_in_words_and_nothing_is_undone_before_the_first_change() {
 
 #[test]
 fn without_a_snake_the_panel_says_what_will_be_there() {
-    let mut harness = Harness::builder().build_ui_state(
-        |ui, commands| BodyPanel::default().ui(ui, None, None, None, commands),
-        Vec::new(),
-    );
-    harness.run();
-    assert!(harness.query_by_label_contains("will appear here").is_some());
+    let harness =
+        panel([800.0, 600.0], |ui, sent| BodyPanel::default().ui(ui, None, None, None, sent));
+    assert!(shows(&harness, "will appear here"));
 }

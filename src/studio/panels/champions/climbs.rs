@@ -102,8 +102,7 @@ impl Climbs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::lane::Lane;
-    use crate::studio::stage::staged_champion::StagedChampion;
+    use crate::studio::panels::testing::climber_lane;
     use snakes_core::save::shipped_champion;
 
     #[test]
@@ -115,7 +114,7 @@ mod tests {
         while climbs.of(champion).is_none() {
             climbs.poll();
         }
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let mut lane = climber_lane(0, "climber");
         lane.finish_lookahead();
         let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
         let climb = climbs.of(champion).expect("it is known");

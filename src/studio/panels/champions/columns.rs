@@ -4,6 +4,8 @@ use bevy_egui::egui;
 
 use super::climbs::LandingTime;
 use crate::studio::panels::thumbnail::thumbnail;
+use crate::studio::ui::accessible::named_selected;
+use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::Thumbnail;
@@ -52,7 +54,7 @@ pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
     for (index, cell) in places(rect, count(width)).into_iter().enumerate() {
         let (name, hint) = HEADS[index];
-        let text = egui::RichText::new(name).small().color(theme::of(ui).text_weak);
+        let text = weak(ui, name).small();
         let layout = egui::Layout::right_to_left(egui::Align::Center);
         let mut cell = ui.new_child(egui::UiBuilder::new().max_rect(cell).layout(layout));
         cell.label(text).on_hover_text(hint);
@@ -85,9 +87,7 @@ pub(super) fn row(
     let response = ui.add(button);
     let label = std::iter::once(name).chain(cells[..count].iter().map(String::as_str));
     let label = label.collect::<Vec<_>>().join(", ");
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::WidgetType::Button, ui.is_enabled(), is_shown, &label)
-    });
+    let response = named_selected(response, egui::WidgetType::Button, is_shown, &label);
     let rect = response.rect;
     let palette = theme::of(ui);
     let font = egui::TextStyle::Button.resolve(ui.style());

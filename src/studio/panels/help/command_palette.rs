@@ -2,11 +2,14 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::actions::{Situation, actions};
+use crate::studio::commands::actions::{Action, Situation, actions};
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_rows::{explain, weak};
 use crate::studio::ui::theme;
 use snakes_core::save::shipped_presets;
+use snakes_core::schema::ListedSetting;
 
 /// The palette with its search text.
 #[derive(Debug, Default)]
@@ -22,7 +25,7 @@ pub(crate) struct CommandPalette {
 /// Entry that the palette can find.
 #[derive(Debug, Clone, PartialEq)]
 struct PaletteEntry {
-    group: String,
+    group: &'static str,
     name: String,
     key: &'static str,
     command: Command,
@@ -68,10 +71,7 @@ impl CommandPalette {
             let field = egui::TextEdit::singleline(&mut self.typed)
                 .hint_text("Search commands, settings, presets and lessons")
                 .desired_width(f32::INFINITY);
-            let field = ui.add(field);
-            field.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "Find a command")
-            });
+            let field = named(ui.add(field), egui::WidgetType::TextEdit, "Find a command");
             if is_new {
                 field.request_focus();
             }
@@ -79,15 +79,12 @@ impl CommandPalette {
                 self.chosen = 0;
             }
             if found.is_empty() {
-                crate::studio::ui::text_rows::explain(
-                    ui,
-                    "No command, setting, preset or lesson matches.",
-                );
+                explain(ui, "No command, setting, preset or lesson matches.");
             }
             for (index, entry) in found.iter().enumerate() {
                 let name = format!("{}: {}", entry.group, entry.name);
-                let key = egui::RichText::new(entry.key).color(palette.text_weak);
-                let button = egui::Button::selectable(index == self.chosen, name).right_text(key);
+                let button = egui::Button::selectable(index == self.chosen, name)
+                    .right_text(weak(ui, entry.key));
                 let row = ui.add(button.truncate().min_size(egui::vec2(ui.available_width(), 0.0)));
                 if row.clicked() {
                     taken = Some(entry.clone());
@@ -107,29 +104,26 @@ impl CommandPalette {
     }
 
     fn entries(&self, situation: Situation, lessons: &[&str]) -> Vec<PaletteEntry> {
-        let of_action = |action: &crate::studio::commands::actions::Action| {
+        let of_action = |action: &Action| {
             let is_itself = action.name == "Find a command";
             let command = action.command(situation).filter(|_| !is_itself)?;
-            let (group, name) = (action.menu.name().to_owned(), action.name.to_owned());
+            let (group, name) = (action.menu.name(), action.name.to_owned());
             Some(PaletteEntry { group, name, key: action.key(), command })
         };
+        let entry = |group, name, command| PaletteEntry { group, name, key: "", command };
         let presets = self.presets.iter().map(|(name, about)| {
-            let name_and_words = format!("{name} - {}", first_sentence(about));
             let command = Command::Plan(PlanCommand::SetPreset(name.clone()));
-            PaletteEntry { group: "Preset".to_owned(), name: name_and_words, key: "", command }
+            entry("Preset", format!("{name} - {}", first_sentence(about)), command)
         });
-        let lessons = lessons.iter().enumerate().map(|(index, name)| PaletteEntry {
-            group: "Lesson".to_owned(),
-            name: (*name).to_owned(),
-            key: "",
-            command: Command::Lesson(LessonCommand::Begin(index)),
+        let lessons = lessons.iter().enumerate().map(|(index, name)| {
+            let command = Command::Lesson(LessonCommand::Begin(index));
+            entry("Lesson", (*name).to_owned(), command)
         });
-        let settings = every_setting().into_iter().map(|listed| PaletteEntry {
-            group: "Setting".to_owned(),
-            name: format!("{} ({})", listed.setting.label, listed.section.title.to_lowercase()),
-            key: "",
-            command: Command::Window(WindowCommand::FindSetting(listed.setting.label)),
-        });
+        let settings =
+            every_setting().into_iter().map(|ListedSetting { setting, section, .. }| {
+                let name = format!("{} ({})", setting.label, section.title.to_lowercase());
+                entry("Setting", name, Command::Window(WindowCommand::FindSetting(setting.label)))
+            });
         let actions = actions().iter().filter_map(of_action);
         actions.chain(presets).chain(lessons).chain(settings).collect()
     }
@@ -173,68 +167,56 @@ fn matching(entries: &[PaletteEntry], typed: &str) -> Vec<PaletteEntry> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::commands::screenshot_area::ScreenshotArea;
     use crate::studio::commands::{PlayerCommand, ViewCommand};
-    use egui_kittest::Harness;
+    use crate::studio::panels::testing::{Sent, panel, press};
     use egui_kittest::kittest::{NodeT, Queryable};
 
-    /// Commands sent after `typed` is entered and `act` is performed.
-    fn sent(typed: &str, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+    /// The palette in a window of this size, after a text was typed.
+    fn palette(size: [f32; 2], typed: &str) -> Sent<'static> {
         let mut palette = CommandPalette::default();
-        let mut harness = Harness::new_ui_state(
-            |ui, commands| {
-                palette.ui(
-                    &ui.ctx().clone(),
-                    Situation::default(),
-                    &["The grip of a step"],
-                    commands,
-                );
-            },
-            Vec::new(),
-        );
-        harness.run();
+        let mut harness = panel(size, move |ui, commands| {
+            let lessons = ["The grip of a step"];
+            palette.ui(&ui.ctx().clone(), Situation::default(), &lessons, commands);
+        });
         harness.get_by_label("Find a command").type_text(typed);
         harness.run();
+        harness
+    }
+
+    /// Commands sent after `typed` is entered and `act` is performed: one that follows the end of the palette, or none.
+    fn sent(typed: &str, act: impl FnOnce(&mut Sent<'_>)) -> Option<Command> {
+        let mut harness = palette([800.0, 600.0], typed);
         act(&mut harness);
         harness.run();
-        harness.state().clone()
+        match &harness.state()[..] {
+            [] => None,
+            [Command::Window(WindowCommand::CloseModal), command] => Some(command.clone()),
+            other => panic!("{other:?}"),
+        }
     }
 
     #[test]
     fn enter_runs_the_first_match() {
-        let press = |harness: &mut Harness<'_, Vec<Command>>| harness.key_press(egui::Key::Enter);
-        assert_eq!(
-            sent("dark", press),
-            [Command::Window(WindowCommand::CloseModal), Command::View(ViewCommand::ToggleTheme)]
-        );
-        let ice = Command::Plan(PlanCommand::SetPreset("ice".to_owned()));
-        assert_eq!(sent("preset ice", press), [Command::Window(WindowCommand::CloseModal), ice]);
-        assert_eq!(
-            sent("grip", press),
-            [Command::Window(WindowCommand::CloseModal), Command::Lesson(LessonCommand::Begin(0))]
-        );
-        let setting = Command::Window(WindowCommand::FindSetting("Creep (slip)"));
-        assert_eq!(
-            sent("setting slip", press),
-            [Command::Window(WindowCommand::CloseModal), setting]
-        );
-        assert_eq!(sent("no such thing", press), []);
+        for (typed, command) in [
+            ("dark", Some(Command::View(ViewCommand::ToggleTheme))),
+            ("preset ice", Some(Command::Plan(PlanCommand::SetPreset("ice".to_owned())))),
+            ("grip", Some(Command::Lesson(LessonCommand::Begin(0)))),
+            ("setting slip", Some(Command::Window(WindowCommand::FindSetting("Creep (slip)")))),
+            ("no such thing", None),
+        ] {
+            assert_eq!(sent(typed, |harness| press(harness, egui::Key::Enter)), command, "{typed}");
+        }
     }
 
     #[test]
     fn arrow_keys_select_a_match() {
         let sent = sent("picture", |harness| {
-            harness.key_press(egui::Key::ArrowDown);
-            harness.run();
-            harness.key_press(egui::Key::Enter);
+            press(harness, egui::Key::ArrowDown);
+            press(harness, egui::Key::Enter);
         });
-        let window = crate::studio::commands::screenshot_area::ScreenshotArea::Window;
-        assert_eq!(
-            sent,
-            [
-                Command::Window(WindowCommand::CloseModal),
-                Command::View(ViewCommand::TakePicture(window))
-            ]
-        );
+        let picture = ViewCommand::TakePicture(ScreenshotArea::Window);
+        assert_eq!(sent, Some(Command::View(picture)));
     }
 
     #[test]
@@ -242,28 +224,12 @@ mod tests {
         let sent = sent("loop", |harness| {
             harness.get_by_label_contains("Stage: Loop").click();
         });
-        assert_eq!(
-            sent,
-            [
-                Command::Window(WindowCommand::CloseModal),
-                Command::Player(PlayerCommand::ToggleLoop)
-            ]
-        );
+        assert_eq!(sent, Some(Command::Player(PlayerCommand::ToggleLoop)));
     }
 
     #[test]
     fn lines_that_are_too_long_end_within_the_palette() {
-        let mut palette = CommandPalette::default();
-        let builder = Harness::builder().with_size(egui::vec2(400.0, 700.0));
-        let mut harness = builder.build_ui_state(
-            |ui, commands: &mut Vec<Command>| {
-                palette.ui(&ui.ctx().clone(), Situation::default(), &[], commands);
-            },
-            Vec::new(),
-        );
-        harness.run();
-        harness.get_by_label("Find a command").type_text("preset");
-        harness.run();
+        let harness = palette([400.0, 700.0], "preset");
         let field = harness.get_by_label("Find a command").rect();
         let is_preset = |label: String| label.starts_with("Preset: ");
         let rows: Vec<egui::Rect> = harness

@@ -2,8 +2,10 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::actions::{Menu, actions};
+use crate::studio::commands::actions::{Action, Menu, actions};
 use crate::studio::commands::{Command, WindowCommand};
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{at_right, explain, title_text};
 use crate::studio::ui::theme;
 
 /// Mouse actions on the stage.
@@ -27,16 +29,12 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
         ui.set_width(room.min(columns as f32 * theme::KEY_COLUMN_WIDTH));
         ui.horizontal(|ui| {
             ui.label(egui::RichText::new("Keyboard and mouse").size(theme::HEADING_SIZE).strong());
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.button("Close").on_hover_text("Esc or ?").clicked() {
-                    commands.push(Command::Window(WindowCommand::CloseModal));
-                }
+            at_right(ui, |ui| {
+                let close = Command::Window(WindowCommand::CloseModal);
+                CommandButton::new("Close", "Esc or ?", close).show(ui, commands);
             });
         });
-        ui.label(
-            egui::RichText::new("Press Ctrl K to search all commands by name.")
-                .color(palette.text_weak),
-        );
+        explain(ui, "Press Ctrl K to search all commands by name.");
         ui.add_space(theme::GAP);
         let height = screen.height() - theme::GAP * 16.0;
         let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
@@ -56,7 +54,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
     }
 }
 
-/// KeyGroup of shortcuts: keys with their effects.
+/// A group of shortcuts: keys with their effects.
 struct KeyGroup {
     name: &'static str,
     keys: Vec<(&'static str, &'static str)>,
@@ -65,9 +63,7 @@ struct KeyGroup {
 /// All groups in menu order, followed by the mouse.
 fn groups() -> Vec<KeyGroup> {
     let of = |menu: Menu| {
-        let with_key = |action: &&crate::studio::commands::actions::Action| {
-            action.menu == menu && !action.keys.is_empty()
-        };
+        let with_key = |action: &&Action| action.menu == menu && !action.keys.is_empty();
         let keys = actions().iter().filter(with_key).map(|action| (action.key(), action.name));
         KeyGroup { name: menu.name(), keys: keys.collect() }
     };
@@ -101,7 +97,7 @@ fn in_columns(groups: &[KeyGroup], columns: usize) -> Vec<&[KeyGroup]> {
 
 fn draw(ui: &mut egui::Ui, group: &KeyGroup) {
     let palette = theme::of(ui);
-    ui.label(egui::RichText::new(group.name).size(theme::TITLE_SIZE).strong());
+    ui.label(title_text(group.name));
     let spacing = [theme::GAP * 1.5, theme::GAP / 2.0];
     egui::Grid::new(group.name).num_columns(2).spacing(spacing).show(ui, |ui| {
         for (key, effect) in &group.keys {

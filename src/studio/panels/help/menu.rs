@@ -11,7 +11,11 @@ use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::share::ShareCommand;
 use crate::studio::state::files::RecentFiles;
 use crate::studio::state::shares::ShareProgress;
+use crate::studio::ui::accessible::named_selected;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
+use crate::studio::ui::decimals::in_percent;
+use crate::studio::ui::text_rows::{at_right, weak};
 use crate::studio::ui::theme;
 use snakes_core::save::library::run_of_plan;
 
@@ -54,12 +58,11 @@ pub(crate) fn menu(
                 });
             });
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        at_right(ui, |ui| {
             if let Some(share) = share {
                 share_progress(ui, share, commands);
             }
-            let text = egui::RichText::new(about).color(theme::of(ui).text_weak);
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(about);
+            ui.add(egui::Label::new(weak(ui, about)).truncate()).on_hover_text(about);
         });
     });
 }
@@ -67,11 +70,10 @@ pub(crate) fn menu(
 /// Draws the progress of the file that is being written, and a button that cancels it.
 fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<Command>) {
     let cancel = egui::Button::new("Cancel").frame(true).small();
-    if ui.add(cancel).on_hover_text("Cancel writing the file").clicked() {
-        commands.push(Command::Share(ShareCommand::Cancel));
-    }
+    let stop = Command::Share(ShareCommand::Cancel);
+    CommandButton::of(cancel, "Cancel writing the file", stop).show(ui, commands);
     let ShareProgress { name, share } = share;
-    let text = format!("{name}  {:.0} %", share * 100.0);
+    let text = format!("{name}  {}", in_percent(*share));
     let bar = egui::ProgressBar::new(*share).desired_width(theme::COLUMN_WIDTHS[2]);
     ui.add(bar.desired_height(ui.spacing().interact_size.y * 0.5));
     ui.add(egui::Label::new(text).truncate());
@@ -131,14 +133,11 @@ fn entry(
             if let Some(rect) = shown.rect(place) {
                 paint_check_box(ui, rect, is_on);
             }
-            shown.response.widget_info(|| {
-                let kind = egui::WidgetType::Checkbox;
-                egui::WidgetInfo::selected(kind, is_enabled, is_on, action.name)
-            });
+            return named_selected(shown.response, egui::WidgetType::Checkbox, is_on, action.name);
         }
         shown.response
     });
-    let shown = match action.hint() {
+    let shown = match action.hint {
         "" => shown.inner,
         hint => shown.inner.on_hover_text(hint),
     };
@@ -152,65 +151,51 @@ fn entry(
 mod tests {
     use super::*;
     use crate::studio::commands::RunCommand;
+    use crate::studio::panels::testing::{Sent, clicked, panel};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    /// The menu bar in the usual situation.
+    fn bar<'a>(is_on: IsOn<'a>, recent: &'a RecentFiles) -> Sent<'a> {
+        panel([800.0, 600.0], move |ui, commands| {
+            menu(ui, Situation::default(), is_on, recent, ("climb, seed 1", None), commands);
+        })
+    }
+
+    /// Opens a menu, and clicks an entry. Returns all commands that were sent.
+    fn chosen(bar: &mut Sent<'_>, menu: &str, entry: &str) -> Vec<Command> {
+        clicked(bar, menu);
+        bar.get_by_label_contains(entry).click();
+        bar.run();
+        bar.state().clone()
+    }
+
     #[test]
     fn a_menu_entry_sends_its_command() {
-        let mut harness = Harness::new_ui_state(
-            |ui, commands| {
-                let recent = RecentFiles::default();
-                menu(
-                    ui,
-                    Situation::default(),
-                    &|_| None,
-                    &recent,
-                    ("climb, seed 1", None),
-                    commands,
-                );
-            },
-            Vec::new(),
-        );
-        harness.get_by_label("Run").click();
-        harness.run();
-        harness.get_by_label_contains("Evolve one generation").click();
-        harness.run();
-        assert_eq!(*harness.state(), [Command::Run(RunCommand::SingleGeneration)]);
-        harness.get_by_label("Edit").click();
-        harness.run();
-        harness.get_by_label_contains("Undo").click();
-        harness.run();
-        assert_eq!(harness.state().len(), 1, "there is nothing to undo");
+        let recent = RecentFiles::default();
+        let mut bar = bar(&|_| None, &recent);
+        let one = [Command::Run(RunCommand::SingleGeneration)];
+        assert_eq!(chosen(&mut bar, "Run", "Evolve one generation"), one);
+        assert_eq!(chosen(&mut bar, "Edit", "Undo"), one, "there is nothing to undo");
     }
 
     #[test]
     fn the_file_menu_asks_for_files_and_lists_those_opened_lately() {
         let texts = ["/saves/mine.ron", "/runs/climb-seed1-be07eab1/run.ron"];
         let recent = RecentFiles::from_texts(&texts.map(str::to_owned));
-        let mut harness = Harness::new_ui_state(
-            |ui, commands| menu(ui, Situation::default(), &|_| None, &recent, ("", None), commands),
-            Vec::new(),
-        );
+        let mut bar = bar(&|_| None, &recent);
         for (entry, command) in [
             ("Import…", FileCommand::Ask(FileQuestion::Import)),
             ("Export…", FileCommand::AskExport),
             ("Show saves folder", FileCommand::ShowSaves),
         ] {
-            harness.get_by_label("File").click();
-            harness.run();
-            harness.get_by_label_contains(entry).click();
-            harness.run();
-            assert_eq!(harness.state().last(), Some(&Command::File(command)), "{entry}");
+            let sent = chosen(&mut bar, "File", entry);
+            assert_eq!(sent.last(), Some(&Command::File(command)), "{entry}");
         }
         for (name, path) in ["mine", "climb-seed1-be07eab1"].into_iter().zip(texts) {
-            harness.get_by_label("File").click();
-            harness.run();
-            harness.get_by_label_contains("Open recent").click();
-            harness.run();
-            harness.get_by_label(name).click();
-            harness.run();
+            chosen(&mut bar, "File", "Open recent");
             let expected = FileCommand::Answer(FileQuestion::Open, vec![path.into()]);
-            assert_eq!(harness.state().last(), Some(&Command::File(expected)));
+            assert_eq!(clicked(&mut bar, name).last(), Some(&Command::File(expected)));
         }
     }
 
@@ -285,30 +270,17 @@ mod tests {
             Command::Player(PlayerCommand::ToggleLoop) => Some(true),
             _ => None,
         };
-        let mut harness = Harness::new_ui_state(
-            |ui, commands| {
-                menu(
-                    ui,
-                    Situation::default(),
-                    &is_on,
-                    &RecentFiles::default(),
-                    ("climb, seed 1", None),
-                    commands,
-                )
-            },
-            Vec::new(),
-        );
-        harness.get_by_label("View").click();
-        harness.run();
-        let state = |harness: &Harness<'_, Vec<Command>>, name: &str| {
+        let recent = RecentFiles::default();
+        let mut bar = bar(&is_on, &recent);
+        clicked(&mut bar, "View");
+        let state = |name: &str| {
             let role = egui::accesskit::Role::CheckBox;
-            harness.get_by_role_and_label(role, name).accesskit_node().toggled()
+            bar.get_by_role_and_label(role, name).accesskit_node().toggled()
         };
         use egui::accesskit::Toggled;
-        assert_eq!(state(&harness, "Dark theme"), Some(Toggled::True));
-        assert_eq!(state(&harness, "Follow snake"), Some(Toggled::False));
-        harness.get_by_label("Dark theme").click();
-        harness.run();
-        assert_eq!(*harness.state(), [Command::View(ViewCommand::ToggleTheme)]);
+        assert_eq!(state("Dark theme"), Some(Toggled::True));
+        assert_eq!(state("Follow snake"), Some(Toggled::False));
+        let sent = clicked(&mut bar, "Dark theme");
+        assert_eq!(sent, [Command::View(ViewCommand::ToggleTheme)]);
     }
 }

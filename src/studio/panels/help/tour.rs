@@ -8,6 +8,9 @@ use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, PlayerCommand, RunCommand};
 use crate::studio::commands::{StageCommand, WindowCommand};
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::{CommandButton, accent_button};
+use crate::studio::ui::text_rows::{at_right, explain, title_text};
 use crate::studio::ui::theme;
 
 /// Step of the tour: the panel to highlight, its text, and what to try.
@@ -134,7 +137,7 @@ impl Tour {
         let shown = area.show(context, |ui| {
             palette.dialog().show(ui, |ui| {
                 ui.set_width(width);
-                ui.label(egui::RichText::new(step.title).size(theme::TITLE_SIZE).strong());
+                ui.label(title_text(step.title));
                 ui.label(step.text);
                 to_try(ui, step.try_it, is_done);
                 ui.add_space(theme::GAP / 2.0);
@@ -168,7 +171,7 @@ fn to_try(ui: &mut egui::Ui, text: &str, is_done: bool) {
         let size = egui::Vec2::splat(theme::TITLE_SIZE);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
         let name = if is_done { format!("Done: {text}") } else { format!("Try it: {text}") };
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &name));
+        named(response, egui::WidgetType::Label, &name);
         let painter = ui.painter();
         let rect = rect.shrink(1.0);
         let color = if is_done { palette.accent } else { palette.text_weak };
@@ -183,17 +186,16 @@ fn to_try(ui: &mut egui::Ui, text: &str, is_done: bool) {
     });
 }
 
+/// The command that shows a step.
+fn go_to(step: usize) -> Command {
+    Command::Window(WindowCommand::ToggleModal(Modal::Tour(step)))
+}
+
 fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
-    let palette = theme::of(ui);
-    let go_to = |step| Command::Window(WindowCommand::ToggleModal(Modal::Tour(step)));
+    let end = Command::Window(WindowCommand::CloseModal);
     let is_last = index + 1 == STEPS.len();
-    let (label, next) = if is_last {
-        ("Done", Command::Window(WindowCommand::CloseModal))
-    } else {
-        ("Next", go_to(index + 1))
-    };
-    let text = egui::RichText::new(label).strong().color(palette.on_accent);
-    let forward = ui.add(egui::Button::new(text).fill(palette.accent));
+    let (label, next) = if is_last { ("Done", end.clone()) } else { ("Next", go_to(index + 1)) };
+    let forward = ui.add(accent_button(ui, label));
     if ui.memory(|memory| memory.focused().is_none()) {
         // The focus lets Enter step through the whole tour.
         forward.request_focus();
@@ -201,46 +203,35 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     if forward.clicked() {
         commands.push(next);
     }
-    if index > 0 && ui.button("Back").clicked() {
-        commands.push(go_to(index - 1));
+    if index > 0 {
+        CommandButton::new("Back", "", go_to(index - 1)).show(ui, commands);
     }
-    if !is_last && ui.button("Skip the tour").on_hover_text("Esc").clicked() {
-        commands.push(Command::Window(WindowCommand::CloseModal));
+    if !is_last {
+        CommandButton::new("Skip the tour", "Esc", end).show(ui, commands);
     }
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let count = format!("{} of {}", index + 1, STEPS.len());
-        ui.label(egui::RichText::new(count).color(palette.text_weak));
-    });
+    at_right(ui, |ui| explain(ui, &format!("{} of {}", index + 1, STEPS.len())));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::studio::commands::pick::Pick;
+    use crate::studio::panels::testing::{Sent, clicked, panel, press, shows};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
+
+    /// A step of the tour in a window of this size.
+    fn step(size: [f32; 2], index: usize) -> Sent<'static> {
+        let mut cards = Tour::default();
+        panel(size, move |ui, commands| cards.ui(&ui.ctx().clone(), index, None, 0, commands))
+    }
 
     #[test]
     fn every_tour_step_can_be_continued_or_skipped() {
         for index in 0..STEPS.len() {
-            let click = |label: &str| {
-                let mut harness =
-                    Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
-                        |ui, commands| {
-                            Tour::default().ui(&ui.ctx().clone(), index, None, 0, commands);
-                        },
-                        Vec::new(),
-                    );
-                harness.run();
-                harness.get_by_label(label).click();
-                harness.run();
-                harness.state().clone()
-            };
+            let click = |label: &str| clicked(&mut step([800.0, 600.0], index), label);
             if index + 1 < STEPS.len() {
-                assert_eq!(
-                    click("Next"),
-                    [Command::Window(WindowCommand::ToggleModal(Modal::Tour(index + 1)))]
-                );
+                assert_eq!(click("Next"), [go_to(index + 1)]);
                 assert_eq!(click("Skip the tour"), [Command::Window(WindowCommand::CloseModal)]);
             } else {
                 assert_eq!(click("Done"), [Command::Window(WindowCommand::CloseModal)]);
@@ -250,26 +241,15 @@ mod tests {
 
     #[test]
     fn while_another_panel_is_in_front_the_card_covers_neither_tabs_nor_buttons_below_them() {
-        let mut harness = Harness::builder().with_size(egui::vec2(1024.0, 640.0)).build_ui(|ui| {
-            Tour::default().ui(&ui.ctx().clone(), 3, None, 0, &mut Vec::new());
-        });
-        harness.run();
-        let title = harness.get_by_label(STEPS[3].title).rect();
+        let title = step([1024.0, 640.0], 3).get_by_label(STEPS[3].title).rect();
         assert!(title.top() > 400.0, "{title:?}");
     }
 
     #[test]
     fn enter_continues_the_tour() {
-        let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
-            |ui, commands| {
-                Tour::default().ui(&ui.ctx().clone(), 0, None, 0, commands);
-            },
-            Vec::new(),
-        );
-        harness.run();
-        harness.key_press(egui::Key::Enter);
-        harness.run();
-        assert_eq!(*harness.state(), [Command::Window(WindowCommand::ToggleModal(Modal::Tour(1)))]);
+        let mut first = step([800.0, 600.0], 0);
+        press(&mut first, egui::Key::Enter);
+        assert_eq!(*first.state(), [go_to(1)]);
     }
 
     #[test]
@@ -284,14 +264,14 @@ mod tests {
         player.borrow_mut().hold_at(0.0);
         harness.run();
         let words = STEPS[0].try_it;
-        assert!(harness.query_by_label(&format!("Try it: {words}")).is_some());
+        assert!(shows(&harness, &format!("Try it: {words}")));
         player.borrow_mut().restart();
         player.borrow_mut().apply(&PlayerCommand::SetSpeed(2.0), 1.0 / 60.0, 5.0);
         harness.run();
-        assert!(harness.query_by_label(&format!("Try it: {words}")).is_some());
+        assert!(shows(&harness, &format!("Try it: {words}")));
         player.borrow_mut().apply(&PlayerCommand::Toggle, 1.0 / 60.0, 5.0);
         harness.run();
-        assert!(harness.query_by_label(&format!("Done: {words}")).is_some());
+        assert!(shows(&harness, &format!("Done: {words}")));
     }
 
     #[test]
@@ -305,15 +285,9 @@ mod tests {
             Command::Lesson(LessonCommand::Begin(0)),
         ];
         for (index, command) in tried.into_iter().enumerate() {
-            let mut cards = Tour::default();
-            let mut harness =
-                Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui_state(
-                    |ui, commands| cards.ui(&ui.ctx().clone(), index, None, 0, commands),
-                    Vec::new(),
-                );
-            harness.run();
+            let mut harness = step([800.0, 600.0], index);
             let words = STEPS[index].try_it;
-            assert!(harness.query_by_label(&format!("Try it: {words}")).is_some(), "{index}");
+            assert!(shows(&harness, &format!("Try it: {words}")), "{index}");
             let is_lesson = matches!(command, Command::Lesson(_));
             harness.state_mut().push(command);
             harness.step();
@@ -322,7 +296,7 @@ mod tests {
             assert_eq!(ends, is_lesson, "{index}");
             harness.state_mut().clear();
             harness.run();
-            assert!(harness.query_by_label(&format!("Done: {words}")).is_some(), "{index}");
+            assert!(shows(&harness, &format!("Done: {words}")), "{index}");
         }
     }
 }

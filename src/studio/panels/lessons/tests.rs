@@ -1,6 +1,7 @@
 //! The lessons panel: guesses, results and worksheets.
 
 use super::*;
+use crate::studio::panels::testing::{self, Sent, clicked, panel};
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::lessons::Lessons;
@@ -8,16 +9,13 @@ use crate::studio::state::undo::UndoHistory;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+fn panel_of(of: &Lessons) -> Sent<'_> {
+    panel([theme::PANEL_WIDTH, 1600.0], move |ui, commands| lessons(ui, of.view(), commands))
+}
+
 /// Commands sent by a click on `label`.
 fn sent(of: &Lessons, label: &str) -> Vec<Command> {
-    let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
-    let mut harness = Harness::builder()
-        .with_size(size)
-        .build_ui_state(|ui, commands| lessons(ui, of.view(), commands), Vec::new());
-    harness.run();
-    harness.get_by_label(label).click();
-    harness.run();
-    harness.state().clone()
+    clicked(&mut panel_of(of), label)
 }
 
 #[test]
@@ -44,11 +42,7 @@ fn after(commands: &[LessonCommand]) -> Lessons {
 
 /// Whether the panel shows a label that contains `part`.
 fn shows(of: &Lessons, part: &str) -> bool {
-    let size = egui::vec2(theme::PANEL_WIDTH, 1600.0);
-    let mut commands = Vec::new();
-    let harness =
-        Harness::builder().with_size(size).build_ui(|ui| lessons(ui, of.view(), &mut commands));
-    harness.query_all_by_label_contains(part).next().is_some()
+    testing::shows(&panel_of(of), part)
 }
 
 #[test]

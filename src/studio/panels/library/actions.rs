@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use bevy_egui::egui::Key as Press;
+
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::stage::MAX_LANES;
@@ -15,6 +17,8 @@ pub struct LibraryAction {
     pub name: &'static str,
     /// Hover text with its shortcut.
     pub hint: &'static str,
+    /// Its shortcut, if it has one.
+    pub key: Option<Press>,
     /// Reason why it is disabled, if it is.
     pub refusal: Option<&'static str>,
     /// Effect of the action.
@@ -34,13 +38,6 @@ pub enum LibraryActionKind {
     ShowChampions(PathBuf),
 }
 
-impl LibraryActionKind {
-    /// Whether this action deletes saves.
-    pub fn deletes(&self) -> bool {
-        matches!(self, Self::Send(Command::Library(LibraryCommand::Delete(_))))
-    }
-}
-
 const SELECT_ONE: Option<&str> = Some("Select a single save first");
 const DAMAGED: Option<&str> = Some("This save cannot be read");
 const NO_CHAMPION: Option<&str> = Some("The run has no champion yet");
@@ -55,12 +52,14 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         1 => LibraryAction {
             name: "Replay",
             hint: "Show it on the stage; for a run, its best snake (Enter or double-click)",
+            key: Some(Press::Enter),
             refusal: replay_refusal,
             act: library_command(LibraryCommand::Replay(first.place().clone())),
         },
         several => LibraryAction {
             name: "Race",
             hint: "Replay them side by side; for a run, its best snake (Enter)",
+            key: Some(Press::Enter),
             refusal: if several > MAX_LANES {
                 Some("At most ten snakes fit on the stage")
             } else {
@@ -72,6 +71,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
     actions.push(LibraryAction {
         name: "New run from this",
         hint: "Start a run whose first generation descends from this snake",
+        key: None,
         refusal: single.or(replay_refusal),
         act: LibraryActionKind::Send(Command::Plan(PlanCommand::StartFromSave(
             first.place().clone(),
@@ -89,6 +89,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
             name: "Examine",
             hint: "Test each champion in some 300 other trials: other step rates, stairs, friction, and shoves. The \
                    results are stored in its file and shown in its details",
+            key: None,
             refusal,
             act: library_command(LibraryCommand::Examine(places.clone())),
         });
@@ -107,6 +108,7 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
             } else {
                 "Change the name (F2)"
             },
+            key: Some(Press::F2),
             refusal: single
                 .or(has_shipped
                     .then_some("A built-in champion cannot be renamed; duplicate it first")),
@@ -115,18 +117,21 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         LibraryAction {
             name: "Duplicate",
             hint: "Make a copy (Ctrl D)",
+            key: Some(Press::D),
             refusal: has_run.then_some("Runs cannot be duplicated, but they can be exported"),
             act: library_command(LibraryCommand::Duplicate(places.clone())),
         },
         LibraryAction {
             name: "Export",
             hint: "Copy it to another folder",
+            key: None,
             refusal: None,
             act: LibraryActionKind::Export,
         },
         LibraryAction {
             name: "Delete",
             hint: "Move it to the .deleted folder inside the saves folder; Ctrl Z restores it (Del)",
+            key: Some(Press::Delete),
             refusal: has_shipped.then_some("Built-in champions cannot be deleted").or_else(|| {
                 let goes_on = places.iter().any(|place| library.is_current(place));
                 goes_on.then_some("This run is open in this window; start another one first")
@@ -151,12 +156,14 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
         LibraryAction {
             name: "Resume",
             hint: "Resume this run where it stopped; the current run stays saved",
+            key: None,
             refusal,
             act: LibraryActionKind::Send(Command::Run(RunCommand::Continue(folder.to_owned()))),
         },
         LibraryAction {
             name: "Champions",
             hint: "List the best snake of each generation, to replay and race",
+            key: None,
             refusal: if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) },
             act: LibraryActionKind::ShowChampions(folder.to_owned()),
         },
@@ -171,8 +178,4 @@ fn replay_refusal(item: &LibraryItem) -> Option<&'static str> {
 
 fn library_command(command: LibraryCommand) -> LibraryActionKind {
     LibraryActionKind::Send(Command::Library(command))
-}
-
-pub(super) fn send(commands: &mut Vec<Command>, command: LibraryCommand) {
-    commands.push(Command::Library(command));
 }

@@ -1,7 +1,5 @@
 //! Below the list: details of the selected save, and buttons for its actions.
 
-use std::path::PathBuf;
-
 use bevy_egui::egui;
 
 use super::actions::{LibraryAction, LibraryActionKind};
@@ -9,42 +7,44 @@ use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::LibraryItem;
-use crate::studio::ui::text_rows::{explain, row};
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{explain, problem, row};
 use crate::studio::ui::theme;
 use snakes_core::save::library::{RunDetails, SavePlace};
 use snakes_core::schema::Choices;
 
 /// Draws a button for each action. Returns the action that was clicked.
 pub fn buttons(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {
-    let mut clicked_action = None;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::Vec2::splat(theme::GAP / 2.0);
-        for action in actions {
-            if button(ui, action, true) {
-                clicked_action = Some(action.act.clone());
-            }
-        }
-    });
-    clicked_action
+        clicked_of(ui, actions, egui::Button::small)
+    })
+    .inner
 }
 
 /// Draws the actions as menu entries. Returns the action that was clicked.
 pub fn menu(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {
-    let mut clicked_action = None;
-    for action in actions {
-        if button(ui, action, false) {
-            clicked_action = Some(action.act.clone());
-            ui.close();
-        }
+    let clicked = clicked_of(ui, actions, |button| button);
+    if clicked.is_some() {
+        ui.close();
     }
-    clicked_action
+    clicked
 }
 
-fn button(ui: &mut egui::Ui, action: &LibraryAction, is_small: bool) -> bool {
-    let button = egui::Button::new(action.name);
-    let button = if is_small { button.small() } else { button };
-    let response = ui.add_enabled(action.refusal.is_none(), button).on_hover_text(action.hint);
-    response.on_disabled_hover_text(action.refusal.unwrap_or_default()).clicked()
+fn clicked_of(
+    ui: &mut egui::Ui,
+    actions: &[LibraryAction],
+    look: fn(egui::Button<'static>) -> egui::Button<'static>,
+) -> Option<LibraryActionKind> {
+    let mut clicked = None;
+    for action in actions {
+        let button = look(egui::Button::new(action.name));
+        let response = ui.add_enabled(action.refusal.is_none(), button).on_hover_text(action.hint);
+        if response.on_disabled_hover_text(action.refusal.unwrap_or_default()).clicked() {
+            clicked = Some(action.act.clone());
+        }
+    }
+    clicked
 }
 
 /// Draws the details of one save; `is_open` says that it is the run that this window has open.
@@ -55,9 +55,8 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     if item.name() != folder {
         explain(ui, &format!("Folder {folder}"));
     }
-    if let Some(problem) = item.problem() {
-        ui.add(egui::Label::new(egui::RichText::new(problem).color(theme::of(ui).problem)));
-        return;
+    if let Some(reason) = item.problem() {
+        return problem(ui, reason);
     }
     if !item.is_read() {
         return explain(ui, "Loading…");
@@ -137,14 +136,12 @@ pub fn champions(
     run: &RunDetails,
     commands: &mut Vec<Command>,
 ) {
-    let Some(folder) = place.run().map(ToOwned::to_owned) else { return };
-    let folder: PathBuf = folder;
+    let Some(folder) = place.run() else { return };
     if run.champions.len() > 1 {
         let hint = "Replay the best of its generations side by side, spread evenly over the run";
-        if ui.button("Race generations").on_hover_text(hint).clicked() {
-            let (run, generations) = (folder.clone(), run.champions.clone());
-            commands.push(Command::Library(LibraryCommand::RaceGenerations { run, generations }));
-        }
+        let (run, generations) = (folder.to_owned(), run.champions.clone());
+        let race = Command::Library(LibraryCommand::RaceGenerations { run, generations });
+        CommandButton::new("Race generations", hint, race).show(ui, commands);
     }
     let area =
         egui::ScrollArea::vertical().id_salt("champions").max_height(theme::CHAMPIONS_HEIGHT);
@@ -157,7 +154,7 @@ pub fn champions(
             let name = format!("Generation {generation}");
             let response = row(ui, false, &name, &about.unwrap_or_default());
             if response.on_hover_text("Click to replay").clicked() {
-                let (run, generation) = (folder.clone(), *generation);
+                let (run, generation) = (folder.to_owned(), *generation);
                 commands
                     .push(Command::Library(LibraryCommand::ReplayGeneration { run, generation }));
             }

@@ -3,16 +3,16 @@
 use std::path::PathBuf;
 
 use bevy_egui::egui;
-use bevy_egui::egui::Key as Press;
+use bevy_egui::egui::{Key as Press, WidgetType};
 
 use super::LibraryPanel;
-use super::actions::send;
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::LibraryItem;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_prompt::{PromptEnd, TextPrompt};
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
 use snakes_core::check::Invalid;
 use snakes_core::save::library::{SavePlace, check_entry_name};
@@ -71,24 +71,18 @@ impl RenameField {
 
 impl LibraryPanel {
     /// Draws a text field over the name of a row. Enter accepts the name, Escape cancels.
-    pub(super) fn edit_name(
-        &mut self,
-        ui: &mut egui::Ui,
-        rect: egui::Rect,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn edit_name(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let Some(renaming) = &mut self.renaming else { return };
         let problem = renaming.problem();
-        let edge = problem.as_ref().map(|_| theme::of(ui).problem);
         // A child leaves the next row where it is.
         let mut over_row = ui.new_child(egui::UiBuilder::new().max_rect(rect));
         let (response, end) = renaming.prompt.ui(&mut over_row, |ui, field| {
             let margin = egui::Margin::symmetric(theme::GAP as i8 / 2, 0);
             ui.put(rect, field.margin(margin).vertical_align(egui::Align::Center))
         });
-        label(ui, &response, "New name");
-        if let Some(edge) = edge {
-            let stroke = egui::Stroke::new(1.5, edge);
+        let response = named(response, WidgetType::TextEdit, "New name");
+        if problem.is_some() {
+            let stroke = egui::Stroke::new(1.5, theme::of(ui).problem);
             ui.painter().rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
         }
         if end.is_none() && !response.lost_focus() {
@@ -97,7 +91,8 @@ impl LibraryPanel {
         let name = renaming.prompt.trimmed().to_owned();
         let is_changed = name != renaming.before && end != Some(PromptEnd::Cancelled);
         if is_changed && problem.is_none() {
-            send(commands, LibraryCommand::Rename { place: renaming.place.clone(), name });
+            let rename = LibraryCommand::Rename { place: renaming.place.clone(), name };
+            self.send(rename);
         } else if is_changed && end == Some(PromptEnd::Accepted) {
             // The reason is shown below the list.
             return renaming.prompt.ask_again();
@@ -107,21 +102,14 @@ impl LibraryPanel {
     }
 
     /// Draws the notes of a save, which are kept when the field is left. Escape restores them.
-    pub(super) fn notes(
-        &mut self,
-        ui: &mut egui::Ui,
-        item: &LibraryItem,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn notes(&mut self, ui: &mut egui::Ui, item: &LibraryItem) {
         if item.place().path().is_none() {
             return;
         }
         let kept = match item.notes() {
             Ok(notes) => notes.text.as_str(),
-            Err(problem) => {
-                let text = egui::RichText::new(format!("Its notes cannot be read. {problem}"));
-                ui.add(egui::Label::new(text.color(theme::of(ui).problem)).wrap());
-                return;
+            Err(reason) => {
+                return problem(ui, &format!("Its notes cannot be read. {reason}"));
             }
         };
         let edited = self.notes.take().map(|field| (field.text, field.is_sent));
@@ -132,18 +120,18 @@ impl LibraryPanel {
             .desired_width(f32::INFINITY)
             .margin(egui::Margin::symmetric(8, 4));
         let response = ui.add(field).on_hover_text("Your notes about this save");
-        label(ui, &response, "Notes");
-        let problem = check_notes(text.trim()).err();
-        if let Some(problem) = &problem {
-            ui.colored_label(theme::of(ui).problem, problem.to_string());
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Notes"));
+        let refusal = check_notes(text.trim()).err();
+        if let Some(refusal) = &refusal {
+            problem(ui, &refusal.to_string());
         }
         is_sent &= !response.changed();
         let is_restored =
             response.lost_focus() && ui.input(|input| input.key_pressed(Press::Escape));
         let is_edited = text.trim() != kept.trim() && !is_restored;
-        if response.lost_focus() && is_edited && !is_sent && problem.is_none() {
+        if response.lost_focus() && is_edited && !is_sent && refusal.is_none() {
             let (place, text) = (item.place().clone(), text.clone());
-            send(commands, LibraryCommand::SetNotes { place, text });
+            self.send(LibraryCommand::SetNotes { place, text });
             is_sent = true;
         }
         // After the command, the text typed is shown until the new notes are read.
@@ -154,14 +142,10 @@ impl LibraryPanel {
 
     /// Keeps notes that were being edited when another save was selected: that may take the focus away without a frame
     /// in between.
-    pub(super) fn keep_notes_of_others(
-        &mut self,
-        shown: Option<&LibraryItem>,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn keep_notes_of_others(&mut self, shown: Option<&LibraryItem>) {
         let is_other = |field: &mut NotesField| Some(&field.place) != shown.map(LibraryItem::place);
         if let Some(NotesField { place, text, is_sent: false }) = self.notes.take_if(is_other) {
-            send(commands, LibraryCommand::SetNotes { place, text });
+            self.send(LibraryCommand::SetNotes { place, text });
         }
     }
 
@@ -177,7 +161,7 @@ impl LibraryPanel {
     }
 
     /// Draws the path field, if it is open.
-    pub(super) fn path_field(&mut self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    pub(super) fn path_field(&mut self, ui: &mut egui::Ui) {
         let Some(PathPrompt { question, reason, prompt }) = &mut self.path_prompt else { return };
         let (label, hint) = match question {
             FileQuestion::Open => ("Open", "Path of a champion file or a run folder"),
@@ -205,7 +189,7 @@ impl LibraryPanel {
             let is_accepted = end == Some(PromptEnd::Accepted) || ok.clicked();
             if is_accepted && has_text {
                 let paths = vec![PathBuf::from(prompt.trimmed())];
-                commands.push(Command::File(FileCommand::Answer(question.clone(), paths)));
+                self.sent.push(Command::File(FileCommand::Answer(question.clone(), paths)));
                 is_closed = true;
             } else if is_accepted {
                 prompt.ask_again();
@@ -218,9 +202,4 @@ impl LibraryPanel {
             self.wants_keyboard = true;
         }
     }
-}
-
-/// Sets the accessible name of a widget.
-pub fn label(ui: &egui::Ui, response: &egui::Response, name: &str) {
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }

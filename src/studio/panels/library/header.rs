@@ -1,11 +1,9 @@
 //! Above the list: title, search field and sort order.
 
 use bevy_egui::egui;
-use bevy_egui::egui::{Key as Press, Sense};
+use bevy_egui::egui::{Key as Press, Sense, WidgetType};
 
 use super::LibraryPanel;
-use super::actions::send;
-use super::fields::label;
 use super::order::{SortKey, SortOrder};
 use super::row::column;
 use crate::studio::commands::Command;
@@ -14,39 +12,30 @@ use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::undo_buttons::undo_buttons;
 use crate::studio::state::library::Library;
 use crate::studio::state::undo::UndoHistory;
-use crate::studio::ui::text_rows::title_and;
+use crate::studio::ui::accessible::{named, named_selected};
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{cancellable_progress, text_field, title_and};
 use crate::studio::ui::theme;
 
 impl LibraryPanel {
     /// Draws the title, the search field and the sort order.
-    pub(super) fn header(
-        &mut self,
-        ui: &mut egui::Ui,
-        library: &Library,
-        history: &UndoHistory,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn header(&mut self, ui: &mut egui::Ui, library: &Library, history: &UndoHistory) {
+        let commands = &mut self.sent;
         title_and(ui, "Library", |ui| {
             let hint = format!("Read the folder again: {}", library.folder().display());
-            let refresh = egui::Button::new("Refresh").small();
-            if ui.add(refresh).on_hover_text(hint).clicked() {
-                send(commands, LibraryCommand::Refresh);
-            }
-            let import = egui::Button::new("Import").small();
+            let refresh = Command::Library(LibraryCommand::Refresh);
+            CommandButton::small("Refresh", hint, refresh).show(ui, commands);
             let hint =
                 "Copy champions or a run into the library; you can also drop files onto the window";
-            if ui.add(import).on_hover_text(hint).clicked() {
-                commands.push(Command::File(FileCommand::Ask(FileQuestion::Import)));
-            }
+            let import = Command::File(FileCommand::Ask(FileQuestion::Import));
+            CommandButton::small("Import", hint, import).show(ui, commands);
             undo_buttons(ui, history, commands);
         });
         batch_progress(ui, library, commands);
-        let field = egui::TextEdit::singleline(&mut self.search)
+        let field = text_field(&mut self.search)
             .hint_text("Search name, notes, preset, controller, \"damaged\"")
-            .desired_width(f32::INFINITY)
-            .margin(egui::Margin::symmetric(8, 4));
-        let response = ui.add(field);
-        label(ui, &response, "Search the library");
+            .desired_width(f32::INFINITY);
+        let response = named(ui.add(field), WidgetType::TextEdit, "Search the library");
         // Enter or Down moves the focus from the search field to the list.
         let is_left = response.lost_focus();
         let is_in_it = response.has_focus();
@@ -102,11 +91,10 @@ impl LibraryPanel {
                 let color = theme::of(ui).text;
                 ui.painter().add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
             }
-            label(ui, &response, &format!("Sort by {}", key.name().to_lowercase()));
-            if response
-                .on_hover_text("Sort by this column; click again to reverse the order")
-                .clicked()
-            {
+            let name = format!("Sort by {}", key.name().to_lowercase());
+            let response = named_selected(response, WidgetType::Button, is_key, &name);
+            let hint = "Sort by this column; click again to reverse the order";
+            if response.on_hover_text(hint).clicked() {
                 self.sort = self.sort.clicked(key);
             }
         }
@@ -120,11 +108,8 @@ fn batch_progress(ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Comma
     let files = library.under_way().map(|progress| (progress, of_files));
     let exam = library.exam_under_way().map(|progress| (progress, of_exam));
     for ((words, share), hint) in files.chain(exam) {
-        ui.horizontal(|ui| {
-            if ui.button("Cancel").on_hover_text(hint).clicked() {
-                send(commands, LibraryCommand::Cancel);
-            }
-            ui.add(egui::ProgressBar::new(share).text(words));
-        });
+        if cancellable_progress(ui, hint, share, &words) {
+            commands.push(Command::Library(LibraryCommand::Cancel));
+        }
     }
 }

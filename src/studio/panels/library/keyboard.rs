@@ -4,9 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Key as Press, Modifiers};
 
 use super::LibraryPanel;
-use super::actions::LibraryActionKind;
 use crate::studio::commands::Command;
-use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::Library;
 
 /// Number of rows that Page Up and Page Down move.
@@ -14,7 +12,7 @@ const PAGE_ROWS: usize = 10;
 
 impl LibraryPanel {
     /// Handles key presses while the list has the focus.
-    pub(super) fn keys(&mut self, ui: &egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+    pub(super) fn keys(&mut self, ui: &egui::Ui, library: &Library) {
         let (held, pressed) = ui.input(|input| {
             let of = |event: &egui::Event| match event {
                 egui::Event::Key { key, pressed: true, .. } => Some(*key),
@@ -24,49 +22,28 @@ impl LibraryPanel {
         });
         for key in pressed {
             self.update_actions(library);
-            let acts = |is_match: fn(&LibraryActionKind) -> bool| {
-                let possible = self.actions.1.iter().filter(|action| action.refusal.is_none());
-                possible.map(|action| &action.act).find(|act| is_match(act)).cloned()
+            let is_letter = matches!(key, Press::A | Press::D);
+            if is_letter && !held.command {
+                continue;
+            }
+            if key == Press::A {
+                let rows = self.order.rows();
+                self.selection.all(rows.iter().map(|row| library.items()[*row].place()));
+                continue;
+            }
+            let Some(action) = self.actions.1.iter().find(|action| action.key == Some(key)) else {
+                self.move_cursor(key, held, library);
+                continue;
             };
-            // A disabled action reports why it is disabled.
-            let refused = |is_match: fn(&LibraryActionKind) -> bool| {
-                let of = self.actions.1.iter().find(|action| is_match(&action.act));
-                of.and_then(|action| action.refusal)
-            };
-            let why = match key {
-                Press::F2 => refused(|act| matches!(act, LibraryActionKind::Rename(_))),
-                Press::Delete => refused(LibraryActionKind::deletes),
-                _ => None,
-            };
-            commands.extend(why.map(|why| Command::Notify(format!("{why}."))));
-            let wanted = match key {
-                Press::Enter => acts(|act| {
-                    matches!(
-                        act,
-                        LibraryActionKind::Send(Command::Library(
-                            LibraryCommand::Replay(_) | LibraryCommand::Race(_)
-                        ))
-                    )
-                }),
-                Press::F2 => acts(|act| matches!(act, LibraryActionKind::Rename(_))),
-                Press::Delete => acts(LibraryActionKind::deletes),
-                Press::D if held.command => acts(|act| {
-                    matches!(
-                        act,
-                        LibraryActionKind::Send(Command::Library(LibraryCommand::Duplicate(_)))
-                    )
-                }),
-                Press::A if held.command => {
-                    let rows = self.order.rows();
-                    self.selection.all(rows.iter().map(|row| library.items()[*row].place()));
-                    None
+            let (wanted, refusal) = (Some(action.act.clone()), action.refusal);
+            match refusal {
+                None => self.act(wanted, library),
+                // A disabled action reports why it is disabled.
+                Some(why) if matches!(key, Press::F2 | Press::Delete) => {
+                    self.sent.push(Command::Notify(format!("{why}.")));
                 }
-                _ => {
-                    self.move_cursor(key, held, library);
-                    None
-                }
-            };
-            self.act(wanted, library, commands);
+                Some(_) => {}
+            }
         }
     }
 

@@ -16,16 +16,16 @@ mod tests;
 
 use std::path::PathBuf;
 
-use bevy_egui::egui::{self, EventFilter, Sense, WidgetInfo, WidgetType};
+use bevy_egui::egui::{self, EventFilter, Sense, WidgetType};
 
 use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::{Library, LibraryItem};
 use crate::studio::state::undo::UndoHistory;
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
-use actions::send;
 use snakes_core::save::library::{EXPORTS, SavePlace};
 
 use actions::{LibraryAction, LibraryActionKind, actions};
@@ -70,6 +70,8 @@ pub(super) struct LibraryPanel {
     height: f32,
     /// Heights above and below the list in the previous frame, in points.
     surrounding_heights: [f32; 2],
+    /// The user's commands in this frame.
+    sent: Vec<Command>,
 }
 
 impl LibraryPanel {
@@ -82,22 +84,25 @@ impl LibraryPanel {
         commands: &mut Vec<Command>,
     ) {
         if !library.is_open() {
-            send(commands, LibraryCommand::Refresh);
+            self.send(LibraryCommand::Refresh);
         }
         let available = ui.available_height();
-        if !available.is_finite() {
-            return self.parts(ui, library, history, theme::LIST_HEIGHTS[0], commands);
-        }
         let [usual, least] = theme::LIST_HEIGHTS;
-        let rest = if self.surrounding_heights == [0.0; 2] {
-            usual
+        if available.is_finite() {
+            let rest = match self.surrounding_heights {
+                [0.0, 0.0] => usual,
+                [above, below] => available - above - below,
+            };
+            let area = egui::ScrollArea::vertical().id_salt("library").auto_shrink(false);
+            area.show(ui, |ui| self.parts(ui, library, history, rest.floor().max(least)));
         } else {
-            available - self.surrounding_heights[0] - self.surrounding_heights[1]
-        };
-        let area = egui::ScrollArea::vertical().id_salt("library").auto_shrink(false);
-        area.show(ui, |ui| {
-            self.parts(ui, library, history, rest.floor().max(least), commands);
-        });
+            self.parts(ui, library, history, usual);
+        }
+        commands.append(&mut self.sent);
+    }
+
+    fn send(&mut self, command: LibraryCommand) {
+        self.sent.push(Command::Library(command));
     }
 
     fn parts(
@@ -106,17 +111,15 @@ impl LibraryPanel {
         library: &Library,
         history: &UndoHistory,
         list_height: f32,
-        commands: &mut Vec<Command>,
     ) {
         let gaps = ui.spacing().item_spacing.y * 2.0;
-        let header =
-            ui.scope(|ui| self.header(ui, library, history, commands)).response.rect.height();
+        let header = ui.scope(|ui| self.header(ui, library, history)).response.rect.height();
         self.follow(library);
-        self.take_requests(library, commands);
+        self.take_requests(library);
         let now_s = ui.input(|input| input.time);
         self.order.update(library, &self.search, self.sort, now_s);
-        self.list(ui, library, list_height, commands);
-        let footer = ui.scope(|ui| self.footer(ui, library, commands)).response.rect.height();
+        self.list(ui, library, list_height);
+        let footer = ui.scope(|ui| self.footer(ui, library)).response.rect.height();
         self.surrounding_heights = [header + gaps, footer];
     }
 
@@ -139,7 +142,7 @@ impl LibraryPanel {
     }
 
     /// Follows requests that come from the menu or the system's dialogs.
-    fn take_requests(&mut self, library: &Library, commands: &mut Vec<Command>) {
+    fn take_requests(&mut self, library: &Library) {
         let (count, unanswered) = library.unanswered();
         if let Some((question, reason)) = unanswered.filter(|_| count != self.unanswered) {
             self.unanswered = count;
@@ -158,29 +161,21 @@ impl LibraryPanel {
             self.export_requests = library.export_requests();
             if self.selection.places().len() == 0 {
                 let text = "Select what to export in the library first.".to_owned();
-                commands.push(Command::Notify(text));
+                self.sent.push(Command::Notify(text));
             } else {
-                self.act(Some(LibraryActionKind::Export), library, commands);
+                self.act(Some(LibraryActionKind::Export), library);
             }
         }
     }
 
-    fn list(
-        &mut self,
-        ui: &mut egui::Ui,
-        library: &Library,
-        height: f32,
-        commands: &mut Vec<Command>,
-    ) {
+    fn list(&mut self, ui: &mut egui::Ui, library: &Library, height: f32) {
         let id = ui.id().with("list");
         let size = egui::vec2(ui.available_width(), height);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         let list = ui.interact(rect, id, Sense::FOCUSABLE);
         let cursor = self.selection.cursor().and_then(|place| library.item(place));
-        list.widget_info(|| {
-            let now = cursor.map_or("nothing selected".to_owned(), LibraryItem::label);
-            WidgetInfo::labeled(WidgetType::Other, true, format!("Saves: {now}"))
-        });
+        let now = cursor.map_or("nothing selected".to_owned(), LibraryItem::label);
+        let list = named(list, WidgetType::Other, &format!("Saves: {now}"));
         let role = egui::accesskit::Role::ListBox;
         ui.ctx().accesskit_node_builder(id, |node| node.set_role(role));
         if std::mem::take(&mut self.wants_keyboard) {
@@ -190,7 +185,7 @@ impl LibraryPanel {
         if has_keyboard {
             let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
-            self.keys(ui, library, commands);
+            self.keys(ui, library);
         }
         let palette = theme::of(ui);
         let edge = if has_keyboard { palette.accent } else { palette.field_hovered };
@@ -198,16 +193,10 @@ impl LibraryPanel {
         let stroke = egui::Stroke::new(if library.is_drop_near() { 3.0 } else { 1.0 }, edge);
         ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside);
         let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(2.0)));
-        self.rows(&mut inside, library, has_keyboard, commands);
+        self.rows(&mut inside, library, has_keyboard);
     }
 
-    fn rows(
-        &mut self,
-        ui: &mut egui::Ui,
-        library: &Library,
-        has_keyboard: bool,
-        commands: &mut Vec<Command>,
-    ) {
+    fn rows(&mut self, ui: &mut egui::Ui, library: &Library, has_keyboard: bool) {
         let rows = self.order.rows();
         if rows.is_empty() {
             let text = match (library.problem(), library.is_listed(), self.search.is_empty()) {
@@ -246,7 +235,7 @@ impl LibraryPanel {
             {
                 let size = egui::vec2(ui.available_width(), theme::LIBRARY_ROW_HEIGHT);
                 let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-                self.row(ui, rect, library, item, has_keyboard, commands);
+                self.row(ui, rect, library, item, has_keyboard);
                 if !item.is_read() {
                     visible.push(item.place().clone());
                 }
@@ -254,7 +243,7 @@ impl LibraryPanel {
         });
         self.offset = output.state.offset.y;
         if visible != self.visible && !visible.is_empty() {
-            send(commands, LibraryCommand::LoadFirst(visible.clone()));
+            self.send(LibraryCommand::LoadFirst(visible.clone()));
         }
         self.visible = visible;
     }
@@ -266,7 +255,6 @@ impl LibraryPanel {
         library: &Library,
         item: &LibraryItem,
         has_keyboard: bool,
-        commands: &mut Vec<Command>,
     ) {
         let place = item.place();
         let style = RowStyle {
@@ -275,7 +263,7 @@ impl LibraryPanel {
         };
         let response = row(ui, rect, item, style);
         if self.renaming.as_ref().is_some_and(|renaming| renaming.place == *place) {
-            return self.edit_name(ui, name_rect(rect), commands);
+            return self.edit_name(ui, name_rect(rect));
         }
         if response.clicked() {
             let held = ui.input(|input| input.modifiers);
@@ -293,14 +281,14 @@ impl LibraryPanel {
             self.selection.only(place);
         }
         if response.double_clicked() {
-            send(commands, LibraryCommand::Replay(place.clone()));
+            self.send(LibraryCommand::Replay(place.clone()));
         }
         let mut wanted = None;
         response.context_menu(|ui| {
             self.update_actions(library);
             wanted = details::menu(ui, &self.actions.1);
         });
-        self.act(wanted, library, commands);
+        self.act(wanted, library);
     }
 
     /// Items of the selected saves.
@@ -316,22 +304,17 @@ impl LibraryPanel {
         }
     }
 
-    fn act(
-        &mut self,
-        wanted: Option<LibraryActionKind>,
-        library: &Library,
-        commands: &mut Vec<Command>,
-    ) {
+    fn act(&mut self, wanted: Option<LibraryActionKind>, library: &Library) {
         match wanted {
             None => {}
-            Some(LibraryActionKind::Send(command)) => commands.push(command),
+            Some(LibraryActionKind::Send(command)) => self.sent.push(command),
             Some(LibraryActionKind::Rename(place)) => {
                 self.renaming = library.item(&place).map(RenameField::new);
                 self.scroll_to = Some(place);
             }
             Some(LibraryActionKind::Export) => {
                 let places = self.selection.places().cloned().collect();
-                commands.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
+                self.sent.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
             }
             Some(LibraryActionKind::ShowChampions(run)) => {
                 let is_listed = self.listed_run.as_ref() == Some(&run);
@@ -341,7 +324,7 @@ impl LibraryPanel {
     }
 
     /// Draws the details of the selection and its actions.
-    fn footer(&mut self, ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+    fn footer(&mut self, ui: &mut egui::Ui, library: &Library) {
         let (shown, all) = (self.order.rows().len(), library.items().len());
         let found =
             if shown == all { format!("{all} saves") } else { format!("{shown} of {all} saves") };
@@ -352,23 +335,23 @@ impl LibraryPanel {
         let chosen = self.selection.places().len();
         let several = if chosen > 1 { format!(", {chosen} selected") } else { String::new() };
         explain(ui, &format!("{found}{reading}{several}"));
-        if let Some(problem) = self.renaming.as_ref().and_then(RenameField::problem) {
-            ui.colored_label(theme::of(ui).problem, problem);
+        if let Some(reason) = self.renaming.as_ref().and_then(RenameField::problem) {
+            problem(ui, &reason);
         }
         self.update_actions(library);
         let wanted = details::buttons(ui, &self.actions.1);
-        self.path_field(ui, commands);
+        self.path_field(ui);
         let only = self.selection.places().next().filter(|_| chosen == 1);
         let only = only.and_then(|place| library.item(place));
-        self.keep_notes_of_others(only, commands);
+        self.keep_notes_of_others(only);
         if let Some(item) = only {
             details::details(ui, item, library.is_current(item.place()));
-            self.notes(ui, item, commands);
+            self.notes(ui, item);
             let is_listed = item.place().run() == self.listed_run.as_deref();
             if let Some(run) = item.run().filter(|_| is_listed) {
-                details::champions(ui, item.place(), run, commands);
+                details::champions(ui, item.place(), run, &mut self.sent);
             }
         }
-        self.act(wanted, library, commands);
+        self.act(wanted, library);
     }
 }

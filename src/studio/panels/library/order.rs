@@ -67,7 +67,7 @@ impl SortOrder {
         if self.key == key { self.reversed() } else { Self::by(key) }
     }
 
-    /// The same key in the opposite direction.
+    /// This order in the opposite direction.
     pub fn reversed(self) -> Self {
         Self { is_descending: !self.is_descending, ..self }
     }
@@ -106,7 +106,7 @@ pub struct SortedItems {
     sorted_at_s: f64,
 }
 
-#[derive(Debug, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct SortInput {
     listings: u64,
     sortings: u64,
@@ -128,7 +128,7 @@ impl SortedItems {
         };
         let is_current = self.input.as_ref().is_some_and(|input| {
             let only_read_on =
-                SortInput { sortings: input_now.sortings, ..input.copy() } == input_now;
+                SortInput { sortings: input_now.sortings, ..input.clone() } == input_now;
             let is_young = library.unread() > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
             *input == input_now || (only_read_on && is_young)
         });
@@ -153,12 +153,6 @@ impl SortedItems {
     /// Indices into the library's items, row by row.
     pub fn rows(&self) -> Arc<[usize]> {
         Arc::clone(&self.rows)
-    }
-}
-
-impl SortInput {
-    fn copy(&self) -> Self {
-        Self { search: self.search.clone(), ..*self }
     }
 }
 

@@ -2,11 +2,12 @@
 
 use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::LayoutJob;
-use bevy_egui::egui::{Align, FontId, Rect, Response, Sense, WidgetInfo, WidgetType};
+use bevy_egui::egui::{Align, FontId, Rect, Response, Sense, WidgetType};
 
 use super::order::SortKey;
 use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::state::library::LibraryItem;
+use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::theme;
 
 /// Highlighting of a row.
@@ -23,9 +24,8 @@ pub fn row(ui: &mut egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) -
     let id = ui.id().with(item.place().path()).with(item.name());
     // The list takes the focus as a whole, because it may have ten thousand rows.
     let response = ui.interact(rect, id, Sense::CLICK);
-    response.widget_info(|| {
-        WidgetInfo::selected(WidgetType::SelectableLabel, true, style.is_chosen, item.label())
-    });
+    let (kind, name) = (WidgetType::SelectableLabel, item.label());
+    let response = named_selected(response, kind, style.is_chosen, &name);
     let palette = theme::of(ui);
     let ground = rect.shrink2(egui::vec2(0.0, 1.0));
     let fill = match (style.is_chosen, response.hovered()) {

@@ -11,6 +11,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
 use crate::studio::commands::{PlanCommand, RunCommand};
+use crate::studio::panels::testing::{Sent as Test, clicked, shows, type_into};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::EntryNotes;
@@ -76,8 +77,6 @@ fn library() -> Library {
     ])
 }
 
-type Test<'a> = Harness<'a, Vec<Command>>;
-
 fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
     let mut panel = LibraryPanel::default();
     // Two clicks count as a double click only if the frames are short.
@@ -105,11 +104,6 @@ fn sent(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryComman
         other => panic!("{other:?}"),
     });
     commands.collect()
-}
-
-fn click(harness: &mut Test<'_>, label: &str) {
-    harness.get_by_label(label).click();
-    harness.run();
 }
 
 /// Selects the row whose label starts with this name.
@@ -140,13 +134,13 @@ fn each_button_sends_its_command_for_the_selected_save() {
     ] {
         let found = sent(&library, |harness| {
             select(harness, row);
-            click(harness, button);
+            clicked(harness, button);
         });
         assert_eq!(found, [request], "{button} of {row}");
     }
     let mut harness = harness(&library, [420.0, 900.0]);
     select(&mut harness, "alpha");
-    click(&mut harness, "New run from this");
+    clicked(&mut harness, "New run from this");
     let expected = Command::Plan(PlanCommand::StartFromSave(file("alpha")));
     assert_eq!(*harness.state(), [expected]);
 }
@@ -163,7 +157,7 @@ fn impossible_actions_are_disabled() {
         let found = sent(&library, |harness| {
             select(harness, row);
             assert!(harness.get_by_label(button).accesskit_node().is_disabled(), "{button}");
-            click(harness, button);
+            clicked(harness, button);
         });
         assert_eq!(found, [], "{button} of {row}");
     }
@@ -174,13 +168,13 @@ fn a_stopped_run_is_resumed_and_lists_its_champions() {
     let library = library();
     let mut harness = harness(&library, [420.0, 900.0]);
     select(&mut harness, "climb-seed8-0123abcd");
-    click(&mut harness, "Resume");
+    clicked(&mut harness, "Resume");
     assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
     harness.state_mut().clear();
-    click(&mut harness, "Champions");
+    clicked(&mut harness, "Champions");
     harness.get_by_label_contains("Generation 1").click();
     harness.run();
-    click(&mut harness, "Race generations");
+    clicked(&mut harness, "Race generations");
     let run = run_folder();
     let expected = [
         LibraryCommand::ReplayGeneration { run: run.clone(), generation: 1 },
@@ -196,9 +190,9 @@ fn the_details_of_the_run_that_is_open_in_this_window_say_so() {
     for (is_open, words) in [(true, "Open in this window"), (false, "Can be resumed")] {
         let mut harness = Harness::new_ui(|ui| details::details(ui, item, is_open));
         harness.run();
-        assert!(harness.query_by_label_contains(words).is_some(), "{words}");
+        assert!(shows(&harness, words), "{words}");
         let other = if is_open { "Can be resumed" } else { "Open in this window" };
-        assert!(harness.query_by_label_contains(other).is_none(), "not {other}");
+        assert!(!shows(&harness, other), "not {other}");
     }
 }
 
@@ -211,9 +205,9 @@ fn shift_and_control_select_several_saves_for_a_race() {
         harness.run();
         row_of(harness, "fast").click_modifiers(Modifiers::COMMAND);
         harness.run();
-        click(harness, "Race");
+        clicked(harness, "Race");
         assert!(harness.get_by_label("Rename").accesskit_node().is_disabled());
-        click(harness, "Delete");
+        clicked(harness, "Delete");
     });
     let places = vec![SavePlace::Shipped("fast"), file("alpha"), file("beta")];
     assert_eq!(found, [LibraryCommand::Race(places)], "built-in champions cannot be deleted");
@@ -262,13 +256,10 @@ fn every_mouse_action_has_a_key() {
 fn the_search_shows_only_saves_that_match_all_words() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
-    harness.get_by_label("Search the library").focus();
-    harness.run();
-    harness.get_by_label("Search the library").type_text("damaged");
-    harness.run();
-    assert!(harness.query_by_label_contains("1 of 5 saves").is_some());
-    assert!(harness.query_by_label_contains("broken, damaged: cut off at line 3").is_some());
-    assert!(harness.query_by_label_contains("alpha, ").is_none());
+    type_into(&mut harness, "Search the library", "damaged");
+    assert!(shows(&harness, "1 of 5 saves"));
+    assert!(shows(&harness, "broken, damaged: cut off at line 3"));
+    assert!(!shows(&harness, "alpha, "));
     harness.get_by_label("Search the library").type_text("xyz");
     harness.run();
     assert!(harness.query_by_label("No save matches all of these words.").is_some());
@@ -280,9 +271,9 @@ fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
     let mut harness = harness(&library, [900.0, 800.0]);
     let top = |harness: &Test<'_>, name: &str| row_of(harness, name).rect().top();
     assert!(top(&harness, "alpha") < top(&harness, "beta"), "the newest first");
-    click(&mut harness, "Sort by name");
+    clicked(&mut harness, "Sort by name");
     assert!(top(&harness, "beta") < top(&harness, "fast"));
-    click(&mut harness, "Sort by name");
+    clicked(&mut harness, "Sort by name");
     assert!(top(&harness, "beta") > top(&harness, "fast"));
 }
 
@@ -371,7 +362,7 @@ fn long_operations_can_be_cancelled_and_short_ones_show_no_progress() {
         let found = sent(&library, |harness| {
             assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
             if shown {
-                click(harness, "Cancel");
+                clicked(harness, "Cancel");
             }
         });
         assert_eq!(found.first(), shown.then_some(&LibraryCommand::Cancel));

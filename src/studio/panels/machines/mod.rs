@@ -9,11 +9,14 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, MachinesCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::machines::{KnownServer, LinkState, MachinesLink, checked};
-use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::accent_button;
+use crate::studio::ui::lane_dot::dot;
+use crate::studio::ui::text_rows::{at_right, explain, problem, text_field, title};
 use crate::studio::ui::theme;
 
 use queues::queues;
-use workers::{used, workers, workers_in_words};
+use workers::{in_threads, used, workers, workers_in_words};
 
 /// The panel with its text field.
 #[derive(Debug, Default)]
@@ -24,7 +27,7 @@ pub(super) struct MachinesPanel {
     problem: Option<String>,
 }
 
-/// What the window's run needs from other computers.
+/// Share of other computers in the window's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct RunPart {
     /// Whether a run is in progress.
@@ -72,9 +75,9 @@ impl MachinesPanel {
                     ui.label(format!("Connecting to {}…", link.address()));
                 });
             }
-            LinkState::Failed(problem) => {
+            LinkState::Failed(reason) => {
                 state(ui, theme::of(ui).problem, "Not connected");
-                reason(ui, problem);
+                problem(ui, reason);
                 first_steps(ui, copied);
             }
             LinkState::Connected(known) => connected(ui, link, known, part, copied),
@@ -89,7 +92,7 @@ impl MachinesPanel {
         ui.add_space(theme::GAP / 2.0);
         ui.horizontal(|ui| {
             let name = ui.label("Server");
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_right(ui, |ui| {
                 let (label, hint) = match link.state() {
                     LinkState::Connected(_) => {
                         ("Disconnect", "Compute on this computer only, from the next generation on")
@@ -97,24 +100,19 @@ impl MachinesPanel {
                     LinkState::Connecting => ("Cancel", "Stop connecting"),
                     _ => ("Connect", "Let the workers of this server compute, too"),
                 };
-                let palette = theme::of(ui);
                 let can_connect = !is_off || !text.trim().is_empty();
                 let button = match is_off && can_connect {
-                    true => {
-                        let text = egui::RichText::new(label).strong().color(palette.on_accent);
-                        egui::Button::new(text).fill(palette.accent)
-                    }
+                    true => accent_button(ui, label),
                     false => egui::Button::new(label),
                 };
                 let response = ui.add_enabled(can_connect, button).on_hover_text(hint);
                 let response = response.on_disabled_hover_text("Type the server's address first");
                 is_asked = response.clicked() && is_off;
                 is_left = response.clicked() && !is_off;
-                let field = egui::TextEdit::singleline(&mut text)
+                let field = text_field(&mut text)
                     .hint_text("nats://HOST:4222")
                     .desired_width(ui.available_width())
-                    .interactive(is_off)
-                    .margin(egui::Margin::symmetric(8, 4));
+                    .interactive(is_off);
                 let response = ui.add(field).labelled_by(name.id);
                 let hint = "Address of the NATS server: nats://HOST:PORT, or tls://HOST:PORT";
                 let response = response.on_hover_text(hint);
@@ -137,8 +135,8 @@ impl MachinesPanel {
                 Err(problem) => self.problem = Some(problem),
             }
         }
-        if let Some(problem) = &self.problem {
-            ui.colored_label(theme::of(ui).problem, problem);
+        if let Some(reason) = &self.problem {
+            problem(ui, reason);
         }
     }
 }
@@ -146,9 +144,7 @@ impl MachinesPanel {
 /// Draws a dot and the state of the connection.
 fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
     ui.horizontal(|ui| {
-        let size = egui::Vec2::splat(theme::LANE_DOT);
-        let (place, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-        ui.painter().circle_filled(place.center(), theme::LANE_DOT / 2.0, color);
+        dot(ui, color, theme::LANE_DOT);
         ui.add(egui::Label::new(egui::RichText::new(text).strong()).wrap());
     });
 }
@@ -165,7 +161,7 @@ fn entry(
         ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
         ui.spacing_mut().interact_size.y = 0.0;
         ui.horizontal(|ui| {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_right(ui, |ui| {
                 ui.label(right);
                 ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                     ui.add(egui::Label::new(name).truncate());
@@ -175,12 +171,6 @@ fn entry(
         rest(ui);
     });
     ui.add_space(theme::GAP / 2.0);
-}
-
-/// Draws why the server cannot be used.
-fn reason(ui: &mut egui::Ui, text: &str) {
-    let text = egui::RichText::new(text).color(theme::of(ui).problem);
-    ui.add(egui::Label::new(text).wrap());
 }
 
 /// Draws what to do before the first connection.
@@ -211,9 +201,9 @@ fn connected(
 ) {
     let palette = theme::of(ui);
     match (&known.problem, &known.machines) {
-        (Some(problem), _) => {
+        (Some(reason), _) => {
             state(ui, palette.problem, "The server does not answer; asking again");
-            reason(ui, problem);
+            problem(ui, reason);
         }
         (None, None) => state(ui, palette.accent, "Connected; looking for workers…"),
         (None, Some(machines)) => {
@@ -224,27 +214,24 @@ fn connected(
     let used = known.machines.as_ref().map_or(0, |machines| used(machines, &known.proof).count());
     explain(ui, &part.in_words(used));
     if let Some(machines) = &known.machines {
-        if machines.workers.is_empty() {
-            title(ui, "No worker is there yet");
-            explain(ui, "Type this on a second computer, where this program is installed:");
-            worker_command(ui, link.address(), copied);
-        } else {
+        let (heading, other) = match machines.workers.is_empty() {
+            true => ("No worker is there yet", "a second computer"),
+            false => ("Add a worker", "one more computer"),
+        };
+        if !machines.workers.is_empty() {
             workers(ui, machines, &known.proof);
-            title(ui, "Add a worker");
-            explain(ui, "Type this on one more computer, where this program is installed:");
-            worker_command(ui, link.address(), copied);
         }
+        title(ui, heading);
+        explain(ui, &format!("Type this on {other}, where this program is installed:"));
+        worker_command(ui, link.address(), copied);
         queues(ui, link.address(), known, machines, copied);
     }
 }
 
 impl RunPart {
-    /// Who computes the run of this window, in a sentence.
+    /// A sentence that names the computers of the run.
     fn in_words(self, workers: usize) -> String {
-        let threads = match self.threads {
-            1 => "1 thread of this computer".to_owned(),
-            threads => format!("{threads} threads of this computer"),
-        };
+        let threads = format!("{} of this computer", in_threads(self.threads as u32));
         match (self.is_under_way, self.is_shared) {
             (false, _) => format!("Workers and {threads} compute your next run."),
             (true, _) if workers == 0 => {
@@ -288,10 +275,7 @@ fn command_line(ui: &mut egui::Ui, command: &str, copied: &mut dyn FnMut(&str)) 
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
                 let response = ui.small_button("Copy").on_hover_text("Copy this command");
                 let name = format!("Copy: {command}");
-                response.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name)
-                });
-                if response.clicked() {
+                if named(response, egui::WidgetType::Button, &name).clicked() {
                     ui.ctx().copy_text(command.to_owned());
                     copied("Command");
                 }

@@ -6,8 +6,7 @@ use bevy_egui::egui;
 
 use super::{command_line, entry};
 use crate::studio::state::machines::KnownServer;
-use crate::studio::ui::text_rows::{explain, title};
-use crate::studio::ui::theme;
+use crate::studio::ui::text_rows::{explain, problem, title, weak};
 use snakes_cluster::Machines;
 
 /// Draws the runs, the one of this window first.
@@ -37,7 +36,6 @@ pub(super) fn queues(
 
 /// Draws what waits for a run.
 fn queue(ui: &mut egui::Ui, name: &str, is_own: bool, machines: &Machines) {
-    let palette = theme::of(ui);
     let (run, queue) = (machines.runs.get(name), machines.queues.get(name));
     let place = match run {
         _ if is_own => "this window".to_owned(),
@@ -49,13 +47,12 @@ fn queue(ui: &mut egui::Ui, name: &str, is_own: bool, machines: &Machines) {
     let words =
         format!("{}{batches} batches and {results} results waiting", pending.unwrap_or_default());
     let set_aside = run.map_or(&[][..], |run| &run.set_aside);
-    let (name, place) = (egui::RichText::new(name).strong(), egui::RichText::new(place));
-    entry(ui, name, place.color(palette.text_weak), |ui| {
+    let place = weak(ui, place);
+    entry(ui, egui::RichText::new(name).strong(), place, |ui| {
         explain(ui, &words);
         if !set_aside.is_empty() {
             let names = set_aside.join(", ");
-            let words = format!("Set aside, because their results were wrong: {names}");
-            ui.colored_label(palette.problem, words);
+            problem(ui, &format!("Set aside, because their results were wrong: {names}"));
         }
     });
 }

@@ -1,6 +1,7 @@
 //! The machines panel in each state of the connection.
 
 use super::*;
+use crate::studio::panels::testing::{press, shows};
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -27,10 +28,6 @@ fn panel(link: MachinesLink, width: f32) -> Harness<'static, State> {
 
 fn narrow(link: MachinesLink) -> Harness<'static, State> {
     panel(link, theme::PANEL_WIDTH)
-}
-
-fn shows(panel: &Harness<'_, State>, part: &str) -> bool {
-    panel.query_all_by_label_contains(part).next().is_some()
 }
 
 /// A worker with this name and this proof.
@@ -87,8 +84,7 @@ fn the_last_address_is_offered_and_enter_connects() {
     let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Off));
     panel.get_by_label("Server").click();
     panel.run();
-    panel.key_press(egui::Key::Enter);
-    panel.run();
+    press(&mut panel, egui::Key::Enter);
     let connect = MachinesCommand::Connect(URL.to_owned());
     assert_eq!(panel.state().1, [Command::Machines(connect)]);
 }

@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use super::entry;
-use crate::studio::ui::text_rows::{explain, title};
+use crate::studio::ui::text_rows::{at_right, explain, problem, title, weak};
 use crate::studio::ui::theme;
 use snakes_cluster::{Machines, WorkerNotice};
 
@@ -25,31 +25,29 @@ pub(super) fn workers_in_words(machines: &Machines, proof: &str) -> String {
     let all = || used(machines, proof);
     let (count, threads) = (all().count(), all().map(|worker| worker.threads).sum::<u32>());
     let per_s: f32 = all().map(|worker| worker.per_s).sum();
-    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    let plural = if count == 1 { "" } else { "s" };
     match count {
         0 if machines.workers.is_empty() => "no workers".to_owned(),
         0 => "no worker that can be used".to_owned(),
-        _ => format!(
-            "{count} worker{}, {threads} thread{}, {per_s:.1} per second",
-            plural(count),
-            plural(threads as usize)
-        ),
+        _ => format!("{count} worker{plural}, {}, {per_s:.1} per second", in_threads(threads)),
     }
+}
+
+/// A number of threads in words.
+pub(super) fn in_threads(threads: u32) -> String {
+    format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
 }
 
 /// Draws the workers.
 pub(super) fn workers(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
     title(ui, "Workers");
     if ui.available_width() < TABLE_WIDTH {
-        for worker in machines.workers.values() {
-            worker_entry(ui, worker, proof);
-        }
-    } else {
-        table(ui, machines, proof);
+        machines.workers.values().for_each(|worker| worker_entry(ui, worker, proof));
+        return;
     }
-    let is_other = |worker: &WorkerNotice| worker.proof != proof;
-    if machines.workers.values().any(is_other) && ui.available_width() >= TABLE_WIDTH {
-        ui.colored_label(theme::of(ui).problem, OTHER_PROOF);
+    table(ui, machines, proof);
+    if machines.workers.values().any(|worker| worker.proof != proof) {
+        problem(ui, OTHER_PROOF);
     }
 }
 
@@ -61,15 +59,14 @@ fn worker_entry(ui: &mut egui::Ui, worker: &WorkerNotice, proof: &str) {
     let name = egui::RichText::new(&worker.worker).strong().color(color);
     let pace = egui::RichText::new(format!("{:.1} per s", worker.per_s)).color(color);
     entry(ui, name, pace, |ui| {
-        let plural = if worker.threads == 1 { "" } else { "s" };
-        let words = format!(
-            "on {}: {} thread{plural}, {} evaluations, {} redelivered",
-            worker.host, worker.threads, worker.evaluations, worker.redelivered
-        );
+        let WorkerNotice { host, evaluations, redelivered, .. } = worker;
+        let threads = in_threads(worker.threads);
+        let words =
+            format!("on {host}: {threads}, {evaluations} evaluations, {redelivered} redelivered");
         explain(ui, &words);
         explain(ui, &worker.engine_words());
         if !is_used {
-            ui.colored_label(palette.problem, OTHER_PROOF);
+            problem(ui, OTHER_PROOF);
         }
     });
 }
@@ -87,7 +84,7 @@ fn table(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
             ("Redelivered", "Batches that another worker had before, and did not finish"),
             ("Engine", "Version, processor and proof: the hash of its bits in some short cases"),
         ] {
-            ui.label(egui::RichText::new(head).color(theme::of(ui).text_weak)).on_hover_text(hint);
+            ui.label(weak(ui, head)).on_hover_text(hint);
         }
         ui.end_row();
         for worker in machines.workers.values() {
@@ -100,9 +97,7 @@ fn table(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
                 worker.evaluations.to_string(),
                 worker.redelivered.to_string(),
             ] {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.label(number);
-                });
+                at_right(ui, |ui| drop(ui.label(number)));
             }
             match is_used {
                 true => ui.label(worker.engine_words()),

@@ -8,7 +8,7 @@ use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::commands::{Command, ViewCommand};
 use crate::studio::scene::overlays::Overlays;
-use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::theme::Theme;
 
 /// Draws the bar and collects the user's commands.
@@ -31,11 +31,8 @@ pub(crate) fn view_bar(
                     "Keep the camera where it is (F). Double-click a place to centre it"
                 }
             };
-            if ui
-                .selectable_label(camera_mode == choice, choice.name())
-                .on_hover_text(hint)
-                .clicked()
-            {
+            let button = ui.selectable_label(camera_mode == choice, choice.name());
+            if button.on_hover_text(hint).clicked() {
                 commands.push(Command::View(ViewCommand::SetCamera(choice)));
             }
         }
@@ -43,26 +40,21 @@ pub(crate) fn view_bar(
         let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Show").config(stays).ui(ui, |ui| {
             for overlay in Overlay::ALL {
-                let (name, hint) = overlay.words();
-                let mut is_shown = overlays.shows(overlay);
-                if check_box(ui, &mut is_shown, name).on_hover_text(hint).changed() {
-                    commands.push(Command::View(ViewCommand::ToggleOverlay(overlay)));
-                }
+                let (is_shown, words) = (overlays.shows(overlay), (overlay.name(), overlay.hint()));
+                let toggle = Command::View(ViewCommand::ToggleOverlay(overlay));
+                command_box(ui, is_shown, words, toggle, commands);
             }
             ui.separator();
-            let mut is_smooth = has_smooth_edges;
-            let hint = "Smooth edges with four samples per pixel; slow without a graphics card (A)";
-            if check_box(ui, &mut is_smooth, "Anti-aliasing").on_hover_text(hint).changed() {
-                commands.push(Command::View(ViewCommand::ToggleSmoothEdges));
-            }
+            let hint = "Smooth edges with four samples per pixel; slow without a graphics card";
+            let (words, toggle) = (("Anti-aliasing", hint), ViewCommand::ToggleSmoothEdges);
+            command_box(ui, has_smooth_edges, words, Command::View(toggle), commands);
         });
         let (name, hint) = match theme {
-            Theme::Light => ("Dark", "Switch to the dark theme (T)"),
-            Theme::Dark => ("Light", "Switch to the light theme (T)"),
+            Theme::Light => ("Dark", "Switch to the dark theme"),
+            Theme::Dark => ("Light", "Switch to the light theme"),
         };
-        if ui.button(name).on_hover_text(hint).clicked() {
-            commands.push(Command::View(ViewCommand::ToggleTheme));
-        }
+        let toggle = Command::View(ViewCommand::ToggleTheme);
+        CommandButton::new(name, hint, toggle).show(ui, commands);
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
         if ui.button("Picture").on_hover_text(hint).clicked() {
             commands.push(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)));
@@ -73,8 +65,7 @@ pub(crate) fn view_bar(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use crate::studio::panels::testing::{clicked, panel};
 
     #[test]
     fn each_button_sends_its_command() {
@@ -83,16 +74,11 @@ mod tests {
             ("Dark", Command::View(ViewCommand::ToggleTheme)),
             ("Picture", Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage))),
         ] {
-            let overlays = Overlays::default();
-            let mut harness = Harness::new_ui_state(
-                |ui, commands| {
-                    view_bar(ui, CameraMode::Follow, &overlays, false, Theme::Light, commands)
-                },
-                Vec::new(),
-            );
-            harness.get_by_label(label).click();
-            harness.run();
-            assert_eq!(*harness.state(), [command], "{label}");
+            let mut bar = panel([800.0, 600.0], |ui, commands| {
+                let overlays = Overlays::default();
+                view_bar(ui, CameraMode::Follow, &overlays, false, Theme::Light, commands);
+            });
+            assert_eq!(clicked(&mut bar, label), [command], "{label}");
         }
     }
 }

@@ -11,7 +11,7 @@ const FROM_LIMBS: f32 = theme::GAP * 1.5;
 /// Minimum width of messages, in points.
 const LEAST_MESSAGES: f32 = 200.0;
 
-/// What the card with a limb's readings must not cover, in points.
+/// Areas that the card with a limb's readings must not cover, in points.
 pub(super) struct AroundLimb<'a> {
     /// Room for the card.
     pub room: Rect,

@@ -14,6 +14,7 @@ use crate::studio::commands::{Command, LessonCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::theme;
 
 /// Draws the reminder that a lesson is in progress, for when the lessons panel is hidden.
@@ -28,12 +29,10 @@ pub(crate) fn lesson_card(
         palette.card(palette.accent).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.label(format!("Lesson {} is in progress.", lesson + 1));
-                if ui.button("Show lesson").clicked() {
-                    commands.push(Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons)));
-                }
-                if ui.button("Back to my own run").clicked() {
-                    commands.push(Command::Lesson(LessonCommand::Leave));
-                }
+                let show = Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons));
+                CommandButton::new("Show lesson", "", show).show(ui, commands);
+                let leave = Command::Lesson(LessonCommand::Leave);
+                CommandButton::new("Back to my own run", "", leave).show(ui, commands);
             });
         });
     });
@@ -50,7 +49,7 @@ pub(crate) struct AroundStage {
     pub messages_room: egui::Rect,
 }
 
-/// What the cards depend on besides the stage.
+/// State on which the cards depend besides the stage.
 pub(crate) struct CardSituation {
     pub theme: theme::Theme,
     /// The evaluated and all snakes of the current generation.

@@ -104,9 +104,8 @@ fn changes(levels: &[u32], sample_s: f64) -> Vec<ClimbEvent> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
+    use crate::studio::panels::testing::climber_lane;
     use ClimbEventKind::{Climbed, Landed, Lost, Touched};
-    use snakes_core::save::shipped_champion;
 
     #[test]
     fn steps_climbed_and_lost_are_marked_but_not_a_hop_at_an_edge() {
@@ -121,8 +120,7 @@ mod tests {
 
     #[test]
     fn the_champion_touches_the_stairs_climbs_its_steps_and_lands() {
-        let loaded = shipped_champion().expect("well formed");
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let mut lane = climber_lane(0, "climber");
         assert_eq!(events(&lane), [], "not known yet");
         lane.finish_lookahead();
         let events = events(&lane);

@@ -3,10 +3,12 @@
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use crate::studio::panels::champions::{FOLLOW, FOLLOW_COMMAND};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::following::Following;
-use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
 /// Draws the card of the generation on the stage. `best` is the lane of its best snake, `shown` the number of lanes.
@@ -19,25 +21,18 @@ pub(crate) fn generation_card(
     commands: &mut Vec<Command>,
 ) {
     let StageMode::Generation { number, size } = mode else { return };
-    let palette = theme::of(ui);
     let (caption, detail) = captions(*number, *size, shown);
     ui.label(egui::RichText::new(caption).size(theme::CAPTION_SIZE).strong());
     ui.label(detail);
     ui.label(format!("Best: {}", best.staged().champion().reached()));
     if let Some((part, parts)) = following.story_part() {
-        let text = format!("Story, part {part} of {parts}");
-        ui.label(egui::RichText::new(text).color(palette.text_weak));
+        explain(ui, &format!("Story, part {part} of {parts}"));
     }
     ui.horizontal(|ui| {
-        let hint = "Show each better generation as soon as it is found (W)";
-        let mut follows = following.follows_evolution();
-        if check_box(ui, &mut follows, "Follow evolution").on_hover_text(hint).clicked() {
-            commands.push(Command::Stage(StageCommand::ToggleFollowEvolution));
-        }
-        let hint = "Show only the best snake of this generation (Esc)";
-        if ui.button("Only the best").on_hover_text(hint).clicked() {
-            commands.push(Command::Stage(StageCommand::Single));
-        }
+        command_box(ui, following.follows_evolution(), FOLLOW, FOLLOW_COMMAND, commands);
+        let hint = "Show only the best snake of this generation";
+        let single = Command::Stage(StageCommand::Single);
+        CommandButton::new("Only the best", hint, single).show(ui, commands);
     });
 }
 
@@ -59,10 +54,9 @@ pub(crate) fn waiting_card(
 ) {
     ui.label(egui::RichText::new("Generation 1").size(theme::CAPTION_SIZE).strong());
     ui.label(format!("{done} of {all} random snakes tried. They appear here in a moment."));
-    let hint = "Watch a snake of an earlier run that climbs the stairs (Space)";
-    if ui.button("Play the built-in champion instead").on_hover_text(hint).clicked() {
-        commands.push(Command::Player(PlayerCommand::Toggle));
-    }
+    let hint = "Watch a snake of an earlier run that climbs the stairs";
+    let play = Command::Player(PlayerCommand::Toggle);
+    CommandButton::new("Play the built-in champion instead", hint, play).show(ui, commands);
 }
 
 #[cfg(test)]

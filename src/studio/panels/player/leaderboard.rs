@@ -7,8 +7,11 @@ use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::ranking::{RankedLane, ranking};
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
+use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::Stairs;
@@ -60,19 +63,16 @@ pub(crate) fn leaderboard(
     commands: &mut Vec<Command>,
 ) {
     let palette = theme::of(ui);
-    let title = |ui: &mut egui::Ui, text: &str| {
-        ui.label(egui::RichText::new(text).size(theme::TITLE_SIZE).strong());
-    };
-    match mode {
+    let heading = match mode {
         // A generation has a card of its own.
         StageMode::Solo | StageMode::Generation { .. } => return,
-        StageMode::Race => title(ui, "Race"),
-        StageMode::WhatIf { .. } => {
-            title(ui, "What if");
-            if let Some(beginning) = common_beginning(lanes) {
-                ui.label(egui::RichText::new(beginning).color(palette.text_weak));
-            }
-        }
+        StageMode::Race => "Race",
+        StageMode::WhatIf { .. } => "What if",
+    };
+    ui.label(title_text(heading));
+    let beginning = common_beginning(lanes).filter(|_| *mode != StageMode::Race);
+    if let Some(beginning) = beginning {
+        explain(ui, &beginning);
     }
     // One copy is kept by the button below.
     let keeps_each = matches!(mode, StageMode::WhatIf { .. }) && lanes.len() > 2;
@@ -129,16 +129,15 @@ pub(crate) fn leaderboard(
     if let StageMode::WhatIf { beside, current, .. } = mode
         && *current <= beside.len()
     {
-        ui.label(egui::RichText::new(NEXT_LANE).color(palette.text_weak));
+        explain(ui, NEXT_LANE);
     }
     let selected = lanes.iter().find(|lane| lane.number() == focus);
     ui.horizontal(|ui| {
         buttons(ui, mode, keeps_each, commands);
         if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged().is_changed()) {
             let hint = "Use the changed settings of the selected snake's world for the next run";
-            if ui.button("Use this world").on_hover_text(hint).clicked() {
-                commands.push(Command::Plan(PlanCommand::UseWorldOfLane));
-            }
+            let use_it = Command::Plan(PlanCommand::UseWorldOfLane);
+            CommandButton::new("Use this world", hint, use_it).show(ui, commands);
         }
     });
 }
@@ -160,9 +159,8 @@ fn common_beginning(lanes: &[&Lane]) -> Option<String> {
 fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Command>) {
     let said = format!("Keep {}", ranked.name);
     let hint = format!("{said}: only this lane stays, and the next run gets its world");
-    let (button, is_on) = (ui.small_button("Keep").on_hover_text(hint), ui.is_enabled());
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, is_on, &said));
-    if button.clicked() {
+    let button = ui.small_button("Keep").on_hover_text(hint);
+    if named(button, egui::WidgetType::Button, &said).clicked() {
         commands.push(Command::Plan(PlanCommand::KeepLane(ranked.lane)));
     }
 }
@@ -170,26 +168,25 @@ fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Comman
 /// Draws the buttons below the lanes.
 fn buttons(ui: &mut egui::Ui, mode: &StageMode, keeps_each: bool, commands: &mut Vec<Command>) {
     let StageMode::WhatIf { .. } = mode else {
-        if ui.button("Leave race").on_hover_text("Show only the selected snake (Esc)").clicked() {
-            commands.push(Command::Stage(StageCommand::Single));
-        }
+        let (hint, single) = ("Show only the selected snake", Command::Stage(StageCommand::Single));
+        CommandButton::new("Leave race", hint, single).show(ui, commands);
         return;
     };
-    let keep = "Keep this change, also for the next run";
-    if !keeps_each && ui.button("Keep").on_hover_text(keep).clicked() {
-        commands.push(Command::Stage(StageCommand::KeepChange));
+    if !keeps_each {
+        let hint = "Keep this change, also for the next run";
+        let keep = Command::Stage(StageCommand::KeepChange);
+        CommandButton::new("Keep", hint, keep).show(ui, commands);
     }
-    let discard = if keeps_each {
-        "Discard the latest copy. The next run gets the world of the lane before it (Esc)"
-    } else {
-        "Discard this change, also for the next run (Esc)"
+    let hint = match keeps_each {
+        true => "Discard the latest copy. The next run gets the world of the lane before it",
+        false => "Discard this change, also for the next run",
     };
-    if ui.button("Discard").on_hover_text(discard).clicked() {
-        commands.push(Command::Plan(PlanCommand::DropChange));
-    }
-    let another = "Leave this copy as it is: the next change makes another one beside it";
-    if mode.can_try_another() && ui.button("Try another").on_hover_text(another).clicked() {
-        commands.push(Command::Stage(StageCommand::TryAnother));
+    let discard = Command::Plan(PlanCommand::DropChange);
+    CommandButton::new("Discard", hint, discard).show(ui, commands);
+    if mode.can_try_another() {
+        let hint = "Leave this copy as it is: the next change makes another one beside it";
+        let another = Command::Stage(StageCommand::TryAnother);
+        CommandButton::new("Try another", hint, another).show(ui, commands);
     }
 }
 

@@ -2,10 +2,10 @@
 
 use bevy_egui::egui;
 
-use crate::studio::panels::world::surface_readout::in_percent;
 use crate::studio::stage::contact_meter::SPAN_S;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::decimals::decimals;
+use crate::studio::ui::decimals::{decimals, in_percent};
+use crate::studio::ui::text_rows::{title_text, weak};
 use crate::studio::ui::theme;
 use snakes_core::world::JointState;
 
@@ -42,7 +42,7 @@ pub(super) enum CardSize {
 /// Stage width and height below the camera bar that the full card needs, in points: beside it, a limb in the middle of
 /// the stage is in sight.
 const FULL_NEEDS: egui::Vec2 = egui::vec2(720.0, 300.0);
-/// The same for the narrow card.
+/// Stage width and height below the camera bar that the narrow card needs, in points.
 const NARROW_NEEDS: egui::Vec2 = egui::vec2(560.0, 225.0);
 
 impl CardSize {
@@ -79,7 +79,6 @@ pub(super) fn limb_card(
     let poses = body.limb_poses(lane.last_poses());
     let Some(pose) = poses.get(limb) else { return };
     ui.set_min_width(size.width());
-    let palette = theme::of(ui);
     let count = body.limbs();
     let part = match limb {
         0 => ", the head",
@@ -87,7 +86,7 @@ pub(super) fn limb_card(
         _ => "",
     };
     let title = format!("Limb {} of {count}{part}", limb + 1);
-    ui.label(egui::RichText::new(title).size(theme::TITLE_SIZE).strong());
+    ui.label(title_text(title));
     let mut rows = Vec::new();
     if size == CardSize::Full {
         let [width_m, length_m, height_m] = body.limb_size_m(limb);
@@ -121,19 +120,18 @@ pub(super) fn limb_card(
     grid.spacing([theme::GAP * 1.5, 0.0]).show(ui, |ui| {
         ui.spacing_mut().interact_size.y = theme::GAP * 2.25;
         for Reading { name, value, when } in rows {
-            ui.label(egui::RichText::new(name).color(palette.text_weak));
+            ui.label(weak(ui, name));
             ui.horizontal(|ui| {
                 ui.label(egui::RichText::new(value).monospace());
                 if !when.is_empty() {
-                    ui.label(egui::RichText::new(when).small().color(palette.text_weak));
+                    ui.label(weak(ui, when).small());
                 }
             });
             ui.end_row();
         }
     });
     if size == CardSize::Full {
-        let text = egui::RichText::new("Drag the limb to pull it").small();
-        ui.label(text.color(palette.text_weak));
+        ui.label(weak(ui, "Drag the limb to pull it").small());
     }
 }
 
@@ -219,15 +217,13 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
+    use crate::studio::panels::testing::climber_lane;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-    use snakes_core::save::shipped_champion;
 
     #[test]
     fn a_limb_that_has_just_left_the_ground_says_which_readings_are_of_the_moment() {
-        let loaded = shipped_champion().expect("well formed");
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let mut lane = climber_lane(0, "climber");
         let has_left = |lane: &Lane| {
             let touches = lane.readings().contacts.iter().any(|contact| contact.limb == 0);
             !touches && lane.readings().meter.limb(false, 0, |_| true).is_some()
@@ -254,9 +250,8 @@ mod tests {
     #[test]
     fn a_reading_that_rounds_to_zero_has_no_minus() {
         assert_eq!(format!("{:+.1}", tenths(-0.04)), "+0.0");
-        let loaded = shipped_champion().expect("well formed");
         // It lies at x = 0 at first.
-        let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let lane = climber_lane(0, "climber");
         let card = Harness::new_ui(|ui| limb_card(ui, &lane, 2, false, CardSize::Full));
         assert!(card.query_by_label_contains("-0.0").is_none());
         assert!(card.query_by_label_contains("x 0.00").is_some());
@@ -264,8 +259,7 @@ mod tests {
 
     #[test]
     fn a_small_stage_has_a_smaller_card() {
-        let loaded = shipped_champion().expect("well formed");
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+        let mut lane = climber_lane(0, "climber");
         lane.show(4.0, None, 3000).expect("healthy");
         let mut sizes = Vec::new();
         for stage in [egui::vec2(895.0, 500.0), egui::vec2(640.0, 355.0), egui::vec2(435.0, 228.0)]

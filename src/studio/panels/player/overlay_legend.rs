@@ -6,6 +6,7 @@ use bevy_egui::egui::{Color32, Pos2, Shape, Stroke};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::scene::overlays::{Overlays, WEIGHT_M};
 use crate::studio::scene::wireframe::{block_color, stairs_color};
+use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 
@@ -32,7 +33,7 @@ pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: 
     // Rows as low as their samples, because the legend may cover the snake.
     ui.spacing_mut().interact_size.y = SAMPLE.y;
     for overlay in Overlay::ALL.into_iter().filter(|overlay| overlays.shows(*overlay)) {
-        let name = overlay.words().0;
+        let name = overlay.name();
         let entries = entries(overlay, is_pulled, theme::of(ui));
         let is_one = entries.len() == 1;
         if !is_one {
@@ -47,8 +48,7 @@ pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: 
             });
         }
         if overlay == Overlay::Torques {
-            let places = egui::RichText::new("At the sides: bend. Around the body: twist.");
-            let places = places.small().color(theme::of(ui).text_weak);
+            let places = weak(ui, "At the sides: bend. Around the body: twist.").small();
             ui.add(egui::Label::new(places).extend());
         }
     }
@@ -122,6 +122,7 @@ fn arrow(from: Pos2, to: Pos2, width: f32, color: Color32) -> Vec<Shape> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::shows;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -147,9 +148,12 @@ mod tests {
         for shown in Overlay::ALL {
             let harness = legend(&[shown], false);
             for overlay in Overlay::ALL {
-                let name = overlay.words().0;
-                let is_named = harness.query_all_by_label_contains(name).next().is_some();
-                assert_eq!(is_named, overlay == shown, "{overlay:?} while {shown:?} is shown");
+                let name = overlay.name();
+                assert_eq!(
+                    shows(&harness, name),
+                    overlay == shown,
+                    "{overlay:?} while {shown:?} is shown"
+                );
             }
             assert!(!entries(shown, false, theme::of_context(&harness.ctx)).is_empty());
         }

@@ -18,7 +18,7 @@ const NAMED: usize = 3;
 /// Least difference of a what-if that is called one, in metres.
 const EQUAL_M: f32 = 0.05;
 
-/// What the caption says.
+/// Texts of the caption.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PresentedCaption {
     /// The large line, with the lane whose dot stands before it.
@@ -206,15 +206,13 @@ fn width_of(ui: &egui::Ui, text: &str, size: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
+    use crate::studio::panels::testing::climber_lane;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-    use snakes_core::save::shipped_champion;
 
     /// The shipped climber in this lane, at this time.
     fn lane(number: usize, name: &str, time_s: f64) -> Lane {
-        let loaded = shipped_champion().expect("well formed");
-        let mut lane = Lane::new(StagedChampion::from_file(&loaded, number, name), number);
+        let mut lane = climber_lane(number, name);
         lane.finish_lookahead();
         lane.skip_to(time_s);
         lane

@@ -5,6 +5,7 @@ use bevy_egui::egui::emath::TSTransform;
 use bevy_egui::egui::{Color32, Rect, Shape, Stroke};
 
 use super::climb_events::{ClimbEvent, ClimbEventKind};
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_core::world::JointPlan;
@@ -72,8 +73,7 @@ pub(super) fn landing_flag(ui: &mut egui::Ui, said: &str) -> egui::Response {
     let mut flag = shape(kind, egui::Pos2::ZERO, color_of(kind, theme::of(ui)));
     flag.transform(TSTransform::new(rect.center().to_vec2(), 1.4));
     ui.painter().add(flag);
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, said));
-    response
+    named(response, egui::WidgetType::Image, said)
 }
 
 /// The mark of an event: shapes differ, so that colours are not needed to tell them apart.
@@ -140,13 +140,7 @@ pub(super) fn legend(ui: &mut egui::Ui, joints: &[JointPlan]) {
         let mark = shape(kind, egui::pos2(HALF + 1.0, 0.0), color_of(kind, palette));
         item(Some(mark), name.to_owned());
     }
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(
-            egui::WidgetType::Label,
-            true,
-            format!("Legend: {}", names.join(", ")),
-        )
-    });
+    named(response, egui::WidgetType::Label, &format!("Legend: {}", names.join(", ")));
 }
 
 /// Width of a sample, in points.

@@ -9,12 +9,15 @@ use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};
 use crate::studio::stage::staged_champion::ChampionSource;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::{CommandButton, hint_of_command};
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::icons::{Icon, icon_button};
+use crate::studio::ui::text_rows::{at_right, explain, title_text, weak};
 use crate::studio::ui::theme;
 use snakes_core::score::Fitness;
 
-/// What the time line shows of the time.
+/// The part of the time that the time line shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimelineSpan {
     /// Its end, in simulated seconds.
@@ -65,9 +68,7 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
             player(ui, playback, span.end_s, commands);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                readings(ui, lane);
-            });
+            at_right(ui, |ui| readings(ui, lane));
         });
         let height = theme::TORQUE_STRIP_HEIGHT;
         let moment = self.torque_strip.ui(ui, lane, playback.time_s(), span, height);
@@ -85,17 +86,15 @@ impl TimelinePanel {
     ) {
         let staged = lane.staged();
         ui.horizontal(|ui| {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            at_right(ui, |ui| {
                 if staged.other_engine().is_some() && staged.could_be_as_found() {
-                    if ui.button("As recorded").on_hover_text("Play the recording").clicked() {
-                        commands.push(Command::Stage(StageCommand::ShowAsFound));
-                    }
+                    let show = Command::Stage(StageCommand::ShowAsFound);
+                    CommandButton::new("As recorded", "Play the recording", show).show(ui, commands);
                 } else if staged.recording().is_some() {
                     let hint = "Simulate it with this version of the engine. The motion may differ from \
                                 the recording";
-                    if ui.button("Simulate again").on_hover_text(hint).clicked() {
-                        commands.push(Command::Stage(StageCommand::Simulate));
-                    }
+                    let simulate = Command::Stage(StageCommand::Simulate);
+                    CommandButton::new("Simulate again", hint, simulate).show(ui, commands);
                 }
                 own_stairs_button(ui, staged, commands);
                 if lane.is_disturbed() {
@@ -110,8 +109,7 @@ impl TimelinePanel {
                         true => staged.label().to_owned(),
                         false => format!("{prefix}{}", staged.caption()),
                     };
-                    let text = egui::RichText::new(text).size(theme::TITLE_SIZE).strong();
-                    ui.add(egui::Label::new(text).truncate());
+                    ui.add(egui::Label::new(title_text(text)).truncate());
                 });
             });
         });
@@ -120,34 +118,20 @@ impl TimelinePanel {
 
 /// Draws the playback buttons, the speed and the time.
 fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec<Command>) {
-    let (play, play_hint) = if playback.is_playing() {
-        (Icon::Pause, "Pause (Space)")
-    } else {
-        (Icon::Play, "Play (Space)")
+    let play = match playback.is_playing() {
+        true => (Icon::Pause, "Pause", PlayerCommand::Toggle),
+        false => (Icon::Play, "Play", PlayerCommand::Toggle),
     };
-    for (icon, is_on, hint, command) in [
-        (Icon::ToStart, false, "Play from the start (R)", Command::Player(PlayerCommand::Restart)),
-        (
-            Icon::StepBack,
-            false,
-            "Previous physics step (Left)",
-            Command::Player(PlayerCommand::Step { forward: false }),
-        ),
-        (play, false, play_hint, Command::Player(PlayerCommand::Toggle)),
-        (
-            Icon::StepForward,
-            false,
-            "Next physics step (Right)",
-            Command::Player(PlayerCommand::Step { forward: true }),
-        ),
-        (
-            Icon::Loop,
-            playback.loops(),
-            "Loop: start again at the end (O)",
-            Command::Player(PlayerCommand::ToggleLoop),
-        ),
+    for (icon, hint, command) in [
+        (Icon::ToStart, "Play from the start", PlayerCommand::Restart),
+        (Icon::StepBack, "Previous physics step", PlayerCommand::Step { forward: false }),
+        play,
+        (Icon::StepForward, "Next physics step", PlayerCommand::Step { forward: true }),
+        (Icon::Loop, "Loop: start again at the end", PlayerCommand::ToggleLoop),
     ] {
-        if icon_button(ui, icon, is_on, hint).clicked() {
+        let (is_on, command) = (icon == Icon::Loop && playback.loops(), Command::Player(command));
+        let button = icon_button(ui, icon, is_on);
+        if hint_of_command(button, hint, &command).clicked() {
             commands.push(command);
         }
     }
@@ -176,10 +160,8 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
 fn readings(ui: &mut egui::Ui, lane: &Lane) {
     let evaluation = lane.evaluation();
     let trial = lane.trial();
-    let palette = theme::of(ui);
     if let Some(reason) = evaluation.disqualified {
-        disqualification(ui, &format!("disqualified: {}", reason.words()));
-        return;
+        return disqualification(ui, &format!("disqualified: {}", reason.words()));
     }
     let unit = trial.fitness.unit();
     // A recording stores only the final evaluation.
@@ -187,8 +169,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     if is_on_record {
         let place = format!("{} m", decimals(evaluation.centre_y_m, 2));
         ui.label(egui::RichText::new(place).monospace());
-        ui.label(egui::RichText::new("position").color(palette.text_weak));
-        return;
+        return explain(ui, "position");
     }
     let behaviour = evaluation.behaviour;
     let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
@@ -238,7 +219,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     // The layout runs from right to left.
     for (name, value, hint) in shown.iter().rev() {
         ui.label(egui::RichText::new(value).monospace()).on_hover_text(*hint);
-        ui.label(egui::RichText::new(*name).color(palette.text_weak)).on_hover_text(*hint);
+        ui.label(weak(ui, *name)).on_hover_text(*hint);
         ui.add_space(theme::GAP / 2.0);
     }
 }
@@ -247,8 +228,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
 /// is hardly any.
 fn disqualification(ui: &mut egui::Ui, sentence: &str) {
     if ui.available_width() < LEAST_SENTENCE {
-        more_readings(ui, &[(sentence, String::new(), "")]);
-        return;
+        return more_readings(ui, &[(sentence, String::new(), "")]);
     }
     let text = egui::RichText::new(sentence).color(theme::of(ui).problem);
     ui.add(egui::Label::new(text).truncate()).on_hover_text(sentence);
@@ -265,101 +245,89 @@ fn more_readings(ui: &mut egui::Ui, readings: &[(&str, String, &str)]) {
         }
     };
     let button = ui.menu_button("…", lines).response;
-    let is_on = ui.is_enabled();
-    let said = "More readings";
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, is_on, said));
-    button.on_hover_ui(|ui| lines(ui));
+    named(button, egui::WidgetType::Button, "More readings").on_hover_ui(|ui| lines(ui));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::{Sent, clicked, climber_lane, panel, shows};
     use crate::studio::stage::staged_champion::StagedChampion;
-    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use snakes_core::save::shipped_champion;
 
     const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
 
-    /// Commands sent after `act` in a panel of this width.
-    fn sent(width: f32, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+    /// The panel of a lane at this width.
+    fn timeline(lane: &Lane, span: TimelineSpan, width: f32) -> Sent<'_> {
+        timeline_in(lane, span, width, |_| ())
+    }
+
+    /// The panel of a lane at this width, in a style.
+    fn timeline_in(
+        lane: &Lane,
+        span: TimelineSpan,
+        width: f32,
+        style: fn(&egui::Context),
+    ) -> Sent<'_> {
+        let (mut timeline, playback) = (TimelinePanel::default(), Playback::default());
+        panel([width, 200.0], move |ui, commands| {
+            style(ui.ctx());
+            timeline.ui(ui, lane, &playback, span, 0, commands);
+        })
+    }
+
+    /// The climber of a lesson in a world whose speed limit it breaks on its way.
+    fn disqualified() -> Lane {
         let loaded = shipped_champion().expect("well formed");
-        let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
-        let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
-        let size = egui::vec2(width, 200.0);
-        let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| panel.ui(ui, &lane, &playback, SPAN, 0, commands),
-            Vec::new(),
-        );
-        act(&mut harness);
-        harness.run();
-        harness.state().clone()
+        let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
+        let mut trial = lesson.trial().clone();
+        trial.health.speed_m_s = 6.0;
+        let mut lane = Lane::new(lesson.in_world(&trial, "a low limit".to_owned()), 0);
+        lane.finish_lookahead();
+        assert!(lane.end_s() < 14.0, "it is disqualified after {} s", lane.end_s());
+        lane
     }
 
     #[test]
     fn each_button_of_the_player_sends_its_command() {
+        let lane = climber_lane(0, "climber");
         for (label, command) in [
-            ("Play from start", Command::Player(PlayerCommand::Restart)),
-            ("Previous step", Command::Player(PlayerCommand::Step { forward: false })),
-            ("Pause playback", Command::Player(PlayerCommand::Toggle)),
-            ("Next step", Command::Player(PlayerCommand::Step { forward: true })),
-            ("Loop", Command::Player(PlayerCommand::ToggleLoop)),
+            ("Play from start", PlayerCommand::Restart),
+            ("Previous step", PlayerCommand::Step { forward: false }),
+            ("Pause playback", PlayerCommand::Toggle),
+            ("Next step", PlayerCommand::Step { forward: true }),
+            ("Loop", PlayerCommand::ToggleLoop),
         ] {
-            assert_eq!(sent(900.0, |harness| harness.get_by_label(label).click()), [command]);
+            let mut timeline = timeline(&lane, SPAN, 900.0);
+            assert_eq!(clicked(&mut timeline, label), [Command::Player(command)]);
         }
     }
 
     #[test]
     fn before_a_lesson_was_watched_neither_caption_nor_time_reveals_its_result() {
-        let loaded = shipped_champion().expect("well formed");
-        let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
-        let mut trial = lesson.trial().clone();
-        // A speed limit that the climber breaks on its way.
-        trial.health.speed_m_s = 6.0;
-        let mut lane = Lane::new(lesson.in_world(&trial, "a low limit".to_owned()), 0);
-        lane.finish_lookahead();
-        assert!(lane.end_s() < 14.0, "it is disqualified after {} s", lane.end_s());
+        let lane = disqualified();
         for hides_future in [true, false] {
             let span = TimelineSpan::of(std::iter::once(&lane), hides_future);
-            let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
-            let size = egui::vec2(900.0, 200.0);
-            let mut harness = Harness::builder().with_size(size).build_ui_state(
-                |ui, commands| panel.ui(ui, &lane, &playback, span, 0, commands),
-                Vec::new(),
-            );
-            harness.run();
-            assert_eq!(harness.query_by_label_contains("26.00 m").is_none(), hides_future);
-            assert_eq!(harness.query_by_label_contains("of 15.00 s").is_some(), hides_future);
+            let timeline = timeline(&lane, span, 900.0);
+            assert_eq!(!shows(&timeline, "26.00 m"), hides_future);
+            assert_eq!(shows(&timeline, "of 15.00 s"), hides_future);
         }
     }
 
     #[test]
     fn the_reason_of_a_disqualification_never_covers_the_time() {
-        let loaded = shipped_champion().expect("well formed");
-        let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
-        let mut trial = lesson.trial().clone();
-        trial.health.speed_m_s = 6.0;
-        let mut lane = Lane::new(lesson.in_world(&trial, "a low limit".to_owned()), 0);
-        lane.finish_lookahead();
+        let mut lane = disqualified();
         lane.show(lane.end_s() + 0.1, None, 3000).expect("shown");
         assert!(lane.evaluation().disqualified.is_some());
         for width in [368.0, 480.0, 608.0, 900.0] {
-            let (mut panel, playback) = (TimelinePanel::default(), Playback::default());
-            let size = egui::vec2(width, 200.0);
-            let mut harness = Harness::builder().with_size(size).build_ui_state(
-                |ui, commands| {
-                    theme::apply(ui.ctx());
-                    panel.ui(ui, &lane, &playback, SPAN, 0, commands);
-                },
-                Vec::new(),
-            );
-            harness.run();
+            let timeline = timeline_in(&lane, SPAN, width, theme::apply);
             // Below a stage of 400 points there is only room for the time itself.
-            let time = harness.query_by_label_contains(" of 15.00 s");
+            let time = timeline.query_by_label_contains(" of 15.00 s");
             assert_eq!(time.is_some(), width > 368.0, "{width}");
-            let time = time.unwrap_or_else(|| harness.get_by_label(" 0.00 s")).rect();
-            let reason = harness.query_by_label_contains("disqualified: ");
-            let shown = reason.or_else(|| harness.query_by_label("More readings"));
+            let time = time.unwrap_or_else(|| timeline.get_by_label(" 0.00 s")).rect();
+            let reason = timeline.query_by_label_contains("disqualified: ");
+            let shown = reason.or_else(|| timeline.query_by_label("More readings"));
             let shown = shown.expect("a reason or its button").rect();
             assert!(shown.left() >= time.right(), "{width}: {shown} covers {time}");
             assert!(shown.right() <= width, "{width}: {shown}");
@@ -368,23 +336,16 @@ mod tests {
 
     #[test]
     fn a_narrow_panel_lists_the_least_important_readings_behind_a_button() {
-        let is_shown = |width: f32, name: &str| {
-            let mut seen = false;
-            sent(width, |harness| seen = harness.query_by_label(name).is_some());
-            seen
-        };
+        let lane = climber_lane(0, "climber");
+        let is_shown =
+            |width: f32, name: &str| timeline(&lane, SPAN, width).query_by_label(name).is_some();
         assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
         assert!(!is_shown(900.0, "More readings"));
         assert!(is_shown(540.0, "fitness") && !is_shown(540.0, "energy"));
         for width in [400.0, 540.0] {
-            sent(width, |harness| {
-                harness.get_by_label("More readings").click();
-                harness.run();
-                assert!(
-                    harness.query_all_by_label_contains("energy 0").next().is_some(),
-                    "{width}"
-                );
-            });
+            let mut timeline = timeline(&lane, SPAN, width);
+            clicked(&mut timeline, "More readings");
+            assert!(shows(&timeline, "energy 0"), "{width}");
         }
     }
 }

@@ -9,6 +9,7 @@ use super::climb_events::{ClimbEvent, events};
 use super::strip_marks::{draw_events, event_at, legend};
 use super::timeline::TimelineSpan;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::plot_axes::{number, step};
 use crate::studio::ui::theme;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::{BodyPlan, JointTorque};
@@ -202,14 +203,14 @@ fn seconds(
     x_of: &dyn Fn(f64) -> f32,
     palette: &theme::Palette,
 ) {
-    let step_s = crate::studio::ui::plot_axes::step(end_s.max(0.1));
+    let step_s = step(end_s.max(0.1));
     let font = egui::FontId::proportional(theme::SMALL_SIZE - 1.0);
     let mut mark_s = step_s;
     while mark_s < end_s * 0.985 {
         let x = x_of(mark_s);
         let stroke = Stroke::new(1.0, palette.field_hovered);
         painter.line_segment([egui::pos2(x, rect.top()), egui::pos2(x, rect.bottom())], stroke);
-        let text = format!("{} s", crate::studio::ui::plot_axes::number(mark_s));
+        let text = format!("{} s", number(mark_s));
         let at = egui::pos2(x + 3.0, rect.bottom() - 1.0);
         painter.text(at, egui::Align2::LEFT_BOTTOM, text, font.clone(), palette.text_weak);
         mark_s += step_s;

@@ -9,8 +9,9 @@ use bevy_egui::egui;
 use super::settings::Sheet;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
+use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::number_field::NumberField;
-use crate::studio::ui::text_rows::{explain, row, title_and};
+use crate::studio::ui::text_rows::{explain, folded, problem, row, title_and, weak};
 use crate::studio::ui::theme;
 use snakes_core::evolve::{EvolutionSettings, RunPlan};
 use snakes_core::genome::GenomeSpace;
@@ -51,53 +52,41 @@ impl EvolutionPanel {
         let status = run.status();
         let is_finished = status == RunStatus::Finished;
         let (label, start) = match status {
-            RunStatus::Running => ("Pause", Command::Run(RunCommand::Pause)),
-            RunStatus::Finished => ("New run", Command::Run(RunCommand::Start)),
-            RunStatus::Ready => ("Start", Command::Run(RunCommand::Start)),
-            RunStatus::Paused => ("Resume", Command::Run(RunCommand::Start)),
+            RunStatus::Running => ("Pause", RunCommand::Pause),
+            RunStatus::Finished => ("New run", RunCommand::Start),
+            RunStatus::Ready => ("Start", RunCommand::Start),
+            RunStatus::Paused => ("Resume", RunCommand::Start),
         };
-        let palette = theme::of(ui);
-        let can_start = !(is_finished && is_wrong);
-        let text = egui::RichText::new(label).strong();
-        let first = if can_start {
-            egui::Button::new(text.color(palette.on_accent)).fill(palette.accent)
-        } else {
-            egui::Button::new(text)
+        let wrong = Some("Correct the invalid value below first").filter(|_| is_wrong);
+        let no_start = wrong.filter(|_| is_finished);
+        let first = match no_start {
+            None => accent_button(ui, label),
+            Some(_) => egui::Button::new(egui::RichText::new(label).strong()),
         };
         let first = first.min_size(egui::vec2(theme::GAP * 10.0, 0.0));
-        let single = if is_finished {
-            "The run is finished; \"New run\" starts another"
-        } else {
-            "Finish one generation, then pause (G)"
-        };
         let first_hint = match (is_finished, run.next_run_differs()) {
-            _ if !can_start => "Correct the invalid value below first",
-            (true, false) => "Start a run with the next seed (E)",
-            (true, true) => "Start a run with the changed settings (E)",
-            (false, _) => "Start or pause evolution in the background (E)",
+            (true, false) => "Start a run with the next seed",
+            (true, true) => "Start a run with the changed settings",
+            (false, _) => "Start or pause evolution in the background",
         };
-        let reset = if is_wrong {
-            "Correct the invalid value below first"
-        } else if run.next_run_differs() {
-            "Prepare a new run with the changed settings; the current run stays saved"
-        } else {
-            "Discard this run's generations and prepare it again (saved champions are kept)"
+        let over = Some("The run is finished; \"New run\" starts another").filter(|_| is_finished);
+        let single = "Finish one generation, then pause";
+        let reset = match run.next_run_differs() {
+            true => "Prepare a new run with the changed settings; the current run stays saved",
+            false => {
+                "Discard this run's generations and prepare it again (saved champions are kept)"
+            }
         };
         ui.horizontal(|ui| {
-            for (is_on, button, hint, command) in [
-                (can_start, first, first_hint, start),
-                (
-                    !is_finished,
-                    egui::Button::new("One generation"),
-                    single,
-                    Command::Run(RunCommand::SingleGeneration),
-                ),
-                (!is_wrong, egui::Button::new("Reset"), reset, Command::Run(RunCommand::Reset)),
+            CommandButton::of(first, first_hint, Command::Run(start))
+                .unless(no_start)
+                .show(ui, pressed);
+            for (label, hint, refusal, command) in [
+                ("One generation", single, over, RunCommand::SingleGeneration),
+                ("Reset", reset, wrong, RunCommand::Reset),
             ] {
-                let response = ui.add_enabled(is_on, button);
-                if response.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
-                    pressed.push(command);
-                }
+                let button = CommandButton::new(label, hint, Command::Run(command));
+                button.unless(refusal).show(ui, pressed);
             }
         });
     }
@@ -112,10 +101,11 @@ impl EvolutionPanel {
             let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
             commands.extend(threads.map(|threads| Command::Run(RunCommand::SetThreads(threads))));
         });
-        for problem in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
-            ui.colored_label(theme::of(ui).problem, problem);
+        for reason in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
+            problem(ui, reason);
         }
-        self.sheet.section(ui, run, EvolutionSettings::RUN, commands);
+        self.sheet.section(ui, EvolutionSettings::RUN);
+        self.sheet.send(commands);
         founder(ui, run, commands);
         changes(ui, run);
         if run.next_run_differs() {
@@ -126,41 +116,42 @@ impl EvolutionPanel {
             let hint = format!("These settings will be used by the next run. {next}");
             ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
         }
-        self.strategy(ui, run, commands);
-        self.controller(ui, run, commands);
+        self.strategy(ui);
+        self.controller(ui);
+        self.sheet.send(commands);
     }
 
     /// Strategy selection, with the settings of the selected and of all other strategies.
-    fn strategy(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-        self.sheet.section(ui, run, EvolutionSettings::STRATEGY, commands);
+    fn strategy(&mut self, ui: &mut egui::Ui) {
+        self.sheet.section(ui, EvolutionSettings::STRATEGY);
         let common = [EvolutionSettings::RUN, EvolutionSettings::STRATEGY];
         let sections = self.sheet.sections("evolution.").into_iter();
         let (used, others): (Vec<Section>, Vec<Section>) = sections
             .filter(|section| !common.contains(section))
             .partition(|section| self.is_used(*section));
-        let selected = format!("evolution.{}.", run.next_settings().evolution.strategy);
+        let selected = format!("evolution.{}.", self.sheet.settings().evolution.strategy);
         let own = self.sheet.sections(&selected);
         for section in &own {
-            self.folded(ui, run, *section, true, commands);
+            self.folded(ui, *section, true);
         }
         for section in used.into_iter().filter(|section| !own.contains(section)) {
-            self.folded(ui, run, section, false, commands);
+            self.folded(ui, section, false);
         }
         let header = egui::CollapsingHeader::new("Other strategies");
         let shown = header.show(ui, |ui| {
             for section in others {
-                self.folded(ui, run, section, false, commands);
+                self.folded(ui, section, false);
             }
         });
         shown.header_response.on_hover_text("Settings of the strategies that are not selected");
     }
 
     /// Controller selection, with the ranges of the genome.
-    fn controller(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-        self.sheet.section(ui, run, GenomeSpace::CONTROLLER, commands);
+    fn controller(&mut self, ui: &mut egui::Ui) {
+        self.sheet.section(ui, GenomeSpace::CONTROLLER);
         let sections = self.sheet.sections("genome.").into_iter();
         for section in sections.filter(|section| *section != GenomeSpace::CONTROLLER) {
-            self.folded(ui, run, section, false, commands);
+            self.folded(ui, section, false);
         }
     }
 
@@ -170,32 +161,26 @@ impl EvolutionPanel {
     }
 
     /// Section with a collapsible header.
-    fn folded(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        section: Section,
-        is_open: bool,
-        commands: &mut Vec<Command>,
-    ) {
+    fn folded(&mut self, ui: &mut egui::Ui, section: Section, is_open: bool) {
         // Sections of the genome that the selected controller does not use are dimmed.
         let is_of_genome =
             self.sheet.in_section(section).any(|listed| listed.path.starts_with("genome."));
         let is_unused = is_of_genome && !self.is_used(section);
-        let name = egui::RichText::new(section.title);
-        let name = if is_unused { name.color(theme::of(ui).text_weak) } else { name };
+        let name = match is_unused {
+            true => weak(ui, section.title),
+            false => egui::RichText::new(section.title),
+        };
         // The salt includes `is_open`, so that a newly selected section opens regardless of its state under the
         // others.
         let header = egui::CollapsingHeader::new(name)
             .id_salt((section.title, is_open))
             .default_open(is_open);
-        let shown = header.show_unindented(ui, |ui| {
+        folded(ui, header, section.about, |ui| {
             if is_unused {
                 explain(ui, "The selected controller does not use these settings.");
             }
-            self.sheet.section(ui, run, section, commands);
+            self.sheet.section(ui, section);
         });
-        shown.header_response.on_hover_text(section.about);
     }
 }
 
@@ -204,10 +189,9 @@ fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let Some(name) = run.next_founder() else { return };
     ui.horizontal(|ui| {
         ui.label(format!("Starts from \"{name}\""));
-        let button = ui.small_button("Start from scratch");
-        if button.on_hover_text("Create the first generation of the next run at random").clicked() {
-            commands.push(Command::Plan(PlanCommand::ForgetFounder));
-        }
+        let hint = "Create the first generation of the next run at random";
+        let forget = Command::Plan(PlanCommand::ForgetFounder);
+        CommandButton::small("Start from scratch", hint, forget).show(ui, commands);
     });
 }
 
@@ -229,6 +213,7 @@ fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
 
 /// Maximum number of changes in the hover text.
 const MAX_LISTED_CHANGES: usize = 12;
+
 /// Draws the button that switches between the original experiment and the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let (label, preset, hint) = if run.next_preset() == REPORT {
@@ -241,9 +226,8 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
              the next run",
         )
     };
-    if ui.small_button(label).on_hover_text(hint).clicked() {
-        commands.push(Command::Plan(PlanCommand::SetPreset(preset.to_owned())));
-    }
+    let set = Command::Plan(PlanCommand::SetPreset(preset.to_owned()));
+    CommandButton::small(label, hint, set).show(ui, commands);
 }
 
 /// Preset of the original experiment.

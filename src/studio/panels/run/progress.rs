@@ -3,6 +3,7 @@
 use bevy_egui::egui;
 
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{EvolutionSettings, Settings, StrategyKind};
 use snakes_lab::run::GenerationReport;
@@ -51,11 +52,8 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     if let Some(hash) = run.run_hash() {
         let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
                     on every computer with an x86-64 processor";
-        let text = egui::RichText::new(format!("Run hash {hash:016x}"));
-        ui.label(text.color(theme::of(ui).text_weak)).on_hover_text(hint);
+        ui.label(weak(ui, format!("Run hash {hash:016x}"))).on_hover_text(hint);
     }
-    let color = theme::of(ui).text_weak;
-    let weak = |text: String| egui::RichText::new(text).color(color);
     let evaluations_per_s = evaluations_per_s(run.reports());
     let evaluations_left = evaluations_left(run, done);
     // This line is always present, so that the layout stays still when the first generation finishes.
@@ -70,15 +68,12 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         None => "The time left appears after the first generation".to_owned(),
     };
     let hint = "Estimated from the latest generations, including those of earlier sessions";
-    ui.add(egui::Label::new(weak(text)).wrap()).on_hover_text(hint);
+    ui.add(egui::Label::new(weak(ui, text)).wrap()).on_hover_text(hint);
     if let Some(latest) = run.reports().last() {
-        let reasons_text = reasons_text(latest);
-        let disqualified = format!(
-            "Disqualified: {} of {}{reasons_text}",
-            latest.disqualified, latest.evaluations
-        );
+        let (out, all, reasons) = (latest.disqualified, latest.evaluations, reasons_text(latest));
+        let disqualified = weak(ui, format!("Disqualified: {out} of {all}{reasons}"));
         let hint = "In the latest finished generation. The limits are in the World panel";
-        ui.add(egui::Label::new(weak(disqualified)).wrap()).on_hover_text(hint);
+        ui.add(egui::Label::new(disqualified).wrap()).on_hover_text(hint);
     }
 }
 
@@ -154,19 +149,12 @@ fn duration_text(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::RunPlan;
+    use crate::studio::panels::testing::report_of;
     use snakes_core::world::Disqualification;
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     /// Report of a small generation with the given duration.
     fn report(elapsed_s: f64) -> GenerationReport {
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.2;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings));
-        let report =
-            experiment.run_generation(&LocalPool::new(1).expect("threads"), &RunControl::default());
-        GenerationReport { elapsed_s, ..report.expect("not cancelled") }
+        GenerationReport { elapsed_s, ..report_of(1) }
     }
 
     #[test]

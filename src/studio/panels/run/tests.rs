@@ -2,13 +2,14 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
+use crate::studio::panels::testing::{Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{HalvingSettings, StrategyKind};
 
 /// Commands sent after `act`.
-fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
     let mut panel = EvolutionPanel::default();
     let mut harness = Harness::builder()
         .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
@@ -57,12 +58,8 @@ fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
     let run = run();
     let type_seed = |text: &'static str| {
         sent(&run, move |harness| {
-            harness.get_by_label("Seed").focus();
-            harness.run();
-            harness.get_by_label("Seed").type_text(text);
-            harness.run();
-            harness.key_press(egui::Key::Enter);
-            harness.run();
+            type_into(harness, "Seed", text);
+            press(harness, egui::Key::Enter);
         })
     };
     assert_eq!(
@@ -77,11 +74,8 @@ fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
 fn reset_is_disabled_while_a_value_is_invalid() {
     let run = run();
     let sent = sent(&run, |harness| {
-        harness.get_by_label("Population").focus();
-        harness.run();
-        harness.get_by_label("Population").type_text("a");
-        harness.run();
-        assert!(harness.query_by_label_contains("Population is \"a\"; allowed: 1 to").is_some());
+        type_into(harness, "Population", "a");
+        assert!(shows(harness, "Population is \"a\"; allowed: 1 to"));
         harness.get_by_label("Reset").click();
         harness.run();
     });
@@ -92,10 +86,7 @@ fn reset_is_disabled_while_a_value_is_invalid() {
 fn a_typed_seed_is_sent_before_the_command_of_a_button() {
     let run = run();
     let sent = sent(&run, |harness| {
-        harness.get_by_label("Seed").focus();
-        harness.run();
-        harness.get_by_label("Seed").type_text("9");
-        harness.run();
+        type_into(harness, "Seed", "9");
         harness.get_by_label("Start").click();
         harness.run();
     });
@@ -116,10 +107,6 @@ fn clicked(run: &CurrentRun, labels: &[&str]) -> Vec<Command> {
             harness.run();
         }
     })
-}
-
-fn set(field: &str, text: &str) -> Command {
-    Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
 }
 
 #[test]
@@ -172,8 +159,7 @@ fn typed_population_and_threads_are_sent() {
             harness.run();
             harness.get_by_label(label).type_text("40");
             harness.run();
-            harness.key_press(egui::Key::Enter);
-            harness.run();
+            press(harness, egui::Key::Enter);
         });
         assert_eq!(sent, [commands]);
     }
@@ -204,7 +190,7 @@ fn an_invalid_value_of_a_hidden_section_is_ignored() {
             drop(context.run_ui(egui::RawInput::default(), |ui| {
                 sheet.begin(ui, run);
                 if is_drawn {
-                    sheet.section(ui, run, halving, &mut Vec::new());
+                    sheet.section(ui, halving);
                 }
             }));
         }

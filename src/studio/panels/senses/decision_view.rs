@@ -51,12 +51,17 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
         explain(ui, &format!("It knows nothing about this situation yet, and {then}."));
     }
     for (index, posture) in decision.postures.iter().enumerate() {
-        let (one, many) = if has_rules { ("rule", "rules") } else { ("visit", "visits") };
-        let note = match decision.barred == Some(index) {
-            true => "taken before".to_owned(),
-            false => format!("{} {}", posture.count, if posture.count == 1 { one } else { many }),
-        };
         let (is_chosen, is_barred) = (index == decision.chosen, decision.barred == Some(index));
+        let uses = match (has_rules, posture.count) {
+            (true, 1) => "rule",
+            (true, _) => "rules",
+            (false, 1) => "visit",
+            (false, _) => "visits",
+        };
+        let note = match is_barred {
+            true => "taken before".to_owned(),
+            false => format!("{} {uses}", posture.count),
+        };
         let row = ValueBar {
             name: posture.name,
             names_width: POSTURE_NAMES,
@@ -80,7 +85,7 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     }
 }
 
-/// What it decides about.
+/// Name of the things among which the controller decides.
 fn noun(decision: &DecisionActivity) -> &'static str {
     if decision.joint.is_some() { "bend" } else { "posture" }
 }
@@ -108,7 +113,7 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
     );
     let listed = decision.rules.iter().filter(|rule| *shows_all || rule.matches);
     let mut listed: Vec<&ActiveRule> = listed.collect();
-    // Those that decided come first, then those that match; among them, those that count most.
+    // Rules that decided come first, then others that match; within each group, the rules that count most.
     let rank = |rule: &ActiveRule| (rule.decides, rule.matches);
     let use_of = |rule: &ActiveRule| rule.fitness.unwrap_or(rule.worth);
     listed.sort_by(|a, b| rank(b).cmp(&rank(a)).then(use_of(b).total_cmp(&use_of(a))));

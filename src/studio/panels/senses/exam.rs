@@ -9,7 +9,8 @@ use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
-use crate::studio::ui::text_rows::{cancellable_progress, explain};
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{cancellable_progress, explain, folded, title_text};
 use crate::studio::ui::theme;
 use snakes_core::score::{ExamSuite, StairsGrid};
 
@@ -23,9 +24,10 @@ pub(super) fn exam(
     commands: &mut Vec<Command>,
 ) {
     ui.add_space(theme::GAP / 2.0);
-    let name = egui::RichText::new("Exam on unseen stairs").size(theme::TITLE_SIZE).strong();
+    let name = title_text("Exam on unseen stairs");
     let header = egui::CollapsingHeader::new(name).id_salt("exam").default_open(true);
-    let shown = header.show_unindented(ui, |ui| {
+    let hint = "How often the snake lands on 100 staircases, nearly all unlike its own";
+    folded(ui, header, hint, |ui| {
         let staged = lane.staged();
         match exams.of(staged.champion()) {
             Some(grids) => results(ui, staged, grids, commands),
@@ -33,8 +35,6 @@ pub(super) fn exam(
         }
         progress(ui, exams, commands);
     });
-    let hint = "How often the snake lands on 100 staircases, nearly all unlike its own";
-    shown.header_response.on_hover_text(hint);
 }
 
 /// Draws what the exam is, and the button that begins it.
@@ -52,16 +52,11 @@ fn invitation(
     }
     let senses = staged.champion().genome.controller.kind().senses_surroundings();
     let again = if senses { ", with its senses and without them" } else { "" };
-    explain(
-        ui,
-        &format!(
-            "Can it climb other stairs than its own? Five rises, four treads, five distances to the first step{again}."
-        ),
-    );
+    let stairs = "Five rises, four treads, five distances to the first step";
+    explain(ui, &format!("Can it climb other stairs than its own? {stairs}{again}."));
     let hint = "Simulates 30 s on each staircase, in the background: about half a minute";
-    if ui.button("Examine on 100 staircases").on_hover_text(hint).clicked() {
-        commands.push(Command::Exam(ExamCommand::Examine));
-    }
+    let examine = Command::Exam(ExamCommand::Examine);
+    CommandButton::new("Examine on 100 staircases", hint, examine).show(ui, commands);
 }
 
 /// Draws the progress of the exam that is under way, of whichever snake, and a button that cancels it.
@@ -98,7 +93,7 @@ fn results(
     }
 }
 
-/// What stands above a grid, in few words.
+/// Title of a grid, in few words.
 fn title_of(grid: &StairsGrid, grids: usize) -> &'static str {
     match grid.suite {
         ExamSuite::Lesion => "Without senses",

@@ -4,6 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Stroke};
 
 use super::network_graph::network_graph;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
@@ -85,9 +86,7 @@ fn table(ui: &mut egui::Ui, activity: &LimbActivity, selected: usize) {
                 row + 1,
                 neuron.kind.name()
             );
-            response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, &said));
-            response.on_hover_text(&said);
+            named(response, egui::WidgetType::Other, &said).on_hover_text(&said);
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::stairs_exams::StairsExams;
-use crate::studio::ui::check_box::check_box;
+use crate::studio::ui::buttons::command_box;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
@@ -92,20 +92,17 @@ impl SensesPanel {
     ) {
         title(ui, "Senses");
         let Some(view) = view else {
-            explain(ui, "What the snake on the stage senses will appear here.");
-            return;
+            return explain(ui, "What the snake on the stage senses will appear here.");
         };
         lane_choice(ui, view, commands);
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
             explain(ui, &sensing_controllers());
-            exam(ui, view.lane, exams, commands);
-            return;
+            return exam(ui, view.lane, exams, commands);
         }
         let Some(rollout) = view.lane.rollout() else {
             explain(ui, "A recording contains poses, but no senses.");
-            exam(ui, view.lane, exams, commands);
-            return;
+            return exam(ui, view.lane, exams, commands);
         };
         switches(ui, view, commands);
         exam(ui, view.lane, exams, commands);
@@ -156,7 +153,7 @@ fn sensing_controllers() -> String {
     )
 }
 
-/// What a snake feels whose controller does not sense its surroundings.
+/// Sentence about a snake whose controller does not sense its surroundings.
 fn unsensing(kind: ControllerKind) -> &'static str {
     match kind {
         ControllerKind::Signal | ControllerKind::Wave => {
@@ -190,27 +187,20 @@ fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>
 /// Draws the switches that take senses away from a copy.
 fn switches(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
     let organs = [
-        (
-            "Sight",
-            "sight",
-            SenseOrgan::Sight,
-            "the gap to the next riser, its height, the clearance",
-        ),
-        ("Touch", "touch", SenseOrgan::Touch, "touch, load, and resistance ahead"),
-        ("Balance", "balance", SenseOrgan::Balance, "pitch, roll, yaw, speed, distance aside"),
+        ("Sight", SenseOrgan::Sight, "the gap to the next riser, its height, the clearance"),
+        ("Touch", SenseOrgan::Touch, "touch, load, and resistance ahead"),
+        ("Balance", SenseOrgan::Balance, "pitch, roll, yaw, speed, distance aside"),
     ];
     ui.horizontal(|ui| {
-        for (name, field, organ, senses) in organs {
-            let mut works = view.switched.has(organ);
+        for (name, organ, senses) in organs {
+            let works = view.switched.has(organ);
             let hint = format!(
                 "Off: {senses} keep their last values in a copy of the snake, which walks beside it from this \
                  moment on. The next run gets the same setting; Ctrl Z undoes it"
             );
-            if check_box(ui, &mut works, name).on_hover_text(hint).changed() {
-                let field = format!("trial.agent.senses.{field}");
-                let text = works.to_string();
-                commands.push(Command::Plan(PlanCommand::SetField { field, text }));
-            }
+            let field = format!("trial.agent.senses.{}", name.to_lowercase());
+            let command = Command::Plan(PlanCommand::set(&field, &(!works).to_string()));
+            command_box(ui, works, (name, &hint), command, commands);
         }
     });
     let all = ActiveSenses::default();

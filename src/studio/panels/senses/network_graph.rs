@@ -3,11 +3,12 @@
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Color32, Pos2, Stroke};
 
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::decimals;
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{explain, weak};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
-use snakes_core::control::{NetworkActivity, NetworkNode, NodeColumn};
+use snakes_core::control::{NetworkActivity, NetworkLink, NetworkNode, NodeColumn};
 
 /// Height of an input with its name, in points.
 const NAMED_ROW: f32 = theme::GAP * 1.75;
@@ -30,10 +31,7 @@ pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
     let palette = theme::of(ui);
     let whose = network.joint.map_or_else(String::new, |joint| format!("Joint {}. ", joint + 1));
     let text = "Lines are weights, wider for larger ones; nodes show activity. Point at a node to see its links.";
-    let senses = match names_inputs(network) {
-        true => "",
-        false => " At the left are all its senses.",
-    };
+    let senses = if names_inputs(network) { "" } else { " At the left are all its senses." };
     explain(ui, &format!("{whose}{text}{senses}"));
     legend(ui, palette);
     let places = Places::of(ui, network);
@@ -42,7 +40,7 @@ pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
         let area = egui::Rect::from_center_size(places.at[index], places.target(node.column));
         let response = ui.interact(area, ui.id().with(("node", index)), egui::Sense::hover());
         let said = format!("{} {}", node.name, decimals(node.value, 2));
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, &said));
+        let response = named(response, egui::WidgetType::Other, &said);
         if response.hovered() {
             hovered = Some(index);
         }
@@ -62,7 +60,7 @@ fn legend(ui: &mut egui::Ui, palette: &Palette) {
             let size = egui::vec2(theme::SAMPLE_WIDTH, theme::GAP);
             let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
             ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(STRONGEST, color));
-            ui.label(egui::RichText::new(text).small().color(palette.text_weak));
+            ui.label(weak(ui, text).small());
         }
     });
 }
@@ -203,7 +201,7 @@ const MOST_LISTED: usize = 6;
 /// Describes a node with its strongest links.
 fn strongest(ui: &mut egui::Ui, network: &NetworkActivity, index: usize, said: &str) {
     ui.label(egui::RichText::new(said).strong());
-    let is_of = |link: &&snakes_core::control::NetworkLink| link.from == index || link.to == index;
+    let is_of = |link: &&NetworkLink| link.from == index || link.to == index;
     let mut links: Vec<_> = network.links.iter().filter(is_of).collect();
     links.sort_by(|a, b| b.weight.abs().total_cmp(&a.weight.abs()));
     for link in links.iter().take(MOST_LISTED) {

@@ -4,9 +4,9 @@ use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
 use super::SensesView;
-use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
+use super::value_bar::ValueBar;
 use crate::studio::ui::decimals::decimals;
-use crate::studio::ui::text_rows::title;
+use crate::studio::ui::text_rows::{title, weak};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveSenses, Perception, SenseKind};
 use snakes_core::score::Rollout;
@@ -49,8 +49,7 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
     };
     OF_LIMB.into_iter().for_each(|kind| read.row(ui, kind, view.limb, limb_color));
     if !view.is_selected {
-        let text = egui::RichText::new("Click a limb on the stage to read its senses.").small();
-        ui.label(text.color(palette.text_weak));
+        ui.label(weak(ui, "Click a limb on the stage to read its senses.").small());
     }
     title(ui, "Whole snake");
     OF_SNAKE.into_iter().for_each(|kind| read.row(ui, kind, 0, palette.accent));
@@ -101,11 +100,8 @@ impl ReadSenses<'_> {
             }
             _ => {
                 let text = format!("{} {}", decimals(value, 2), info.unit);
-                let note = match least < 0.0 {
-                    true => format!("±{most:.0} {}", info.unit),
-                    false => format!("0 to {most:.0} {}", info.unit),
-                };
-                (text, note, value, [least, most])
+                let from = if least < 0.0 { "±" } else { "0 to " };
+                (text, format!("{from}{most:.0} {}", info.unit), value, [least, most])
             }
         };
         let is_frozen = !self.active.has(info.organ);
@@ -115,16 +111,14 @@ impl ReadSenses<'_> {
         };
         let row = ValueBar {
             name: &name,
-            names_width: SENSE_NAMES,
-            numbers_width: SENSE_NUMBERS,
             text,
             value,
             range,
             note: if is_frozen { "frozen" } else { &note },
             color,
             is_frozen,
-            is_chosen: false,
             hint: format!("{}. The controller receives {}", hint(kind), decimals(sensed, 2)),
+            ..ValueBar::of_sense()
         };
         row.ui(ui);
     }
@@ -141,7 +135,7 @@ fn capitalized(name: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// What a sense is.
+/// Meaning of a sense.
 fn hint(kind: SenseKind) -> &'static str {
     match kind {
         SenseKind::Bend => "Angle of the joint's bend",

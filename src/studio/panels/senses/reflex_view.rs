@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::value_bar::{SENSE_NAMES, SENSE_NUMBERS, ValueBar};
+use super::value_bar::ValueBar;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -18,31 +18,25 @@ pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
         let color = if push.push < 0.0 { palette.torque_minus } else { palette.torque_plus };
         let row = ValueBar {
             name: push.name,
-            names_width: SENSE_NAMES,
-            numbers_width: SENSE_NUMBERS,
             text: decimals(push.push, 2),
             value: push.push,
             range: [-most, most],
-            note: "",
             color,
-            is_frozen: false,
-            is_chosen: false,
             hint: format!("Weight times sense, which is {}", decimals(push.value, 2)),
+            ..ValueBar::of_sense()
         };
         row.ui(ui);
     }
     let row = ValueBar {
         name: "Target moved",
-        names_width: SENSE_NAMES,
-        numbers_width: SENSE_NUMBERS,
         text: format!("{}°", decimals(moved_deg, 1)),
         value: moved_deg,
         range: [-reach_deg, reach_deg],
         note: &format!("±{reach_deg:.0}°"),
         color: palette.bend,
-        is_frozen: false,
         is_chosen: true,
         hint: "The sum of all, limited to the reach of the reflexes".to_owned(),
+        ..ValueBar::of_sense()
     };
     row.ui(ui);
     let turns = reflex.shift_rad / std::f32::consts::TAU;

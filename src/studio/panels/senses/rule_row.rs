@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 
 /// Height of a rule in the list, in points: two lines for its condition, one for what it does.
@@ -64,7 +65,6 @@ impl RuleRow {
         let bottom = inside.left_bottom() - egui::vec2(0.0, action.size().y);
         ui.painter().galley(bottom, action, palette.text);
         let said = format!("{}: {}. {}", self.condition, self.action, self.state);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
-        response.on_hover_text(&said);
+        named(response, egui::WidgetType::Label, &said).on_hover_text(&said);
     }
 }

@@ -2,15 +2,12 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
-use crate::studio::stage::staged_champion::StagedChampion;
-use egui_kittest::Harness;
+use crate::studio::panels::testing::{self, Sent, random_snake, set, shows};
 use egui_kittest::kittest::{NodeT, Queryable};
-use snakes_core::evolve::with_fields;
 use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
 use snakes_core::genome::{ControllerGenes, Genome};
 use snakes_core::learn::classifiers::{Zcs, ZcsSettings};
 use snakes_core::rng::{Purpose, stream};
-use snakes_core::save::{LoadedChampion, load_preset, shipped_champion};
 use std::sync::Arc;
 
 /// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.
@@ -19,49 +16,31 @@ fn lane_of(
     fields: &[(&str, &str)],
     change: impl FnOnce(&mut Genome),
 ) -> Lane {
-    let settings = load_preset("climb").expect("shipped").settings;
-    let mut settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
-    settings.genome.controller = kind;
-    let mut rng = stream(1, 1, 3, Purpose::Birth);
-    let mut genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
-    change(&mut genome);
-    let LoadedChampion { mut champion, .. } = shipped_champion().expect("well formed");
-    (champion.genome, champion.trial) = (genome, settings.trial);
-    let loaded = LoadedChampion { champion, ..shipped_champion().expect("well formed") };
-    let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "a snake"), 0);
+    let mut lane = Lane::new(random_snake(kind, fields, change), 0);
     lane.show(0.5, None, 3000).expect("healthy");
     lane
 }
 
 /// The panel for a limb of a lane.
-fn panel(lane: &Lane, limb: usize) -> Harness<'_, Vec<Command>> {
+fn panel(lane: &Lane, limb: usize) -> Sent<'_> {
     panel_in_window(lane, limb, 1600.0)
 }
 
 /// The panel in a window of this height, in which it scrolls.
-fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Harness<'_, Vec<Command>> {
+fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
     let mut panel = SensesPanel::default();
-    let mut harness = Harness::builder().with_size(egui::vec2(320.0, height)).build_ui_state(
-        move |ui, commands| {
-            theme::apply(ui.ctx());
-            let view = SensesView {
-                lane,
-                limb,
-                is_selected: limb > 0,
-                others: Vec::new(),
-                switched: lane.trial().agent.senses,
-            };
-            let area = egui::ScrollArea::vertical().auto_shrink(false);
-            area.show(ui, |ui| panel.ui(ui, Some(&view), &StairsExams::default(), commands));
-        },
-        Vec::new(),
-    );
-    harness.run();
-    harness
-}
-
-fn shows(panel: &Harness<'_, Vec<Command>>, label: &str) -> bool {
-    panel.query_all_by_label_contains(label).next().is_some()
+    testing::panel([320.0, height], move |ui, commands| {
+        theme::apply(ui.ctx());
+        let view = SensesView {
+            lane,
+            limb,
+            is_selected: limb > 0,
+            others: Vec::new(),
+            switched: lane.trial().agent.senses,
+        };
+        let area = egui::ScrollArea::vertical().auto_shrink(false);
+        area.show(ui, |ui| panel.ui(ui, Some(&view), &StairsExams::default(), commands));
+    })
 }
 
 #[test]
@@ -89,9 +68,7 @@ fn a_click_on_a_switch_tries_the_snake_without_that_sense() {
         let mut panel = panel(&lane, 0);
         panel.get_by_role_and_label(egui::accesskit::Role::CheckBox, name).click();
         panel.run();
-        let field = format!("trial.agent.senses.{field}");
-        let text = "false".to_owned();
-        assert_eq!(*panel.state(), [Command::Plan(PlanCommand::SetField { field, text })]);
+        assert_eq!(*panel.state(), [set(&format!("trial.agent.senses.{field}"), "false")]);
     }
 }
 

@@ -3,9 +3,11 @@
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 
 /// A row of the panel.
+#[derive(Default)]
 pub(super) struct ValueBar<'b> {
     pub name: &'b str,
     /// Width of the names of the list, in points.
@@ -28,17 +30,22 @@ pub(super) struct ValueBar<'b> {
 }
 
 /// Height of a row, in points.
-pub(super) const ROW_HEIGHT: f32 = theme::GAP * 2.25;
+const ROW_HEIGHT: f32 = theme::GAP * 2.25;
 /// Width of the names of senses, in points.
-pub(super) const SENSE_NAMES: f32 = theme::GAP * 12.5;
+const SENSE_NAMES: f32 = theme::GAP * 12.5;
 /// Width of the numbers of senses with their units, in points.
-pub(super) const SENSE_NUMBERS: f32 = theme::GAP * 9.5;
+const SENSE_NUMBERS: f32 = theme::GAP * 9.5;
 /// Width of the notes, in points.
 const NOTES: f32 = theme::GAP * 9.5;
 /// Height of a bar, in points.
 const BAR: f32 = theme::GAP * 0.75;
 
 impl ValueBar<'_> {
+    /// An empty row of a list of senses.
+    pub fn of_sense() -> Self {
+        Self { names_width: SENSE_NAMES, numbers_width: SENSE_NUMBERS, ..Self::default() }
+    }
+
     /// Draws the row over the whole width.
     pub fn ui(&self, ui: &mut egui::Ui) {
         let palette = theme::of(ui);
@@ -78,7 +85,7 @@ impl ValueBar<'_> {
         }
         let said = format!("{}: {} {}", self.name, self.text, self.note);
         let said = if self.is_chosen { format!("{said}, chosen") } else { said };
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
+        let response = named(response, egui::WidgetType::Label, &said);
         if !self.hint.is_empty() {
             response.on_hover_text(&self.hint);
         }

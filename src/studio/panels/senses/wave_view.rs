@@ -4,7 +4,8 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Align2, FontId, Rect, Stroke};
 
 use super::rule_row::{RuleRow, rule_list};
-use crate::studio::ui::decimals::decimals;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::decimals::{decimals, in_percent};
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
@@ -71,8 +72,7 @@ fn joints(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
         let half = if is_rear { "rear" } else { "front" };
         let said = format!("Joint {}, in the {half} half, follows wave {}", joint + 1, wave + 1);
         let response = ui.interact(cell, ui.id().with(("wave of", joint)), egui::Sense::hover());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
-        response.on_hover_text(&said);
+        named(response, egui::WidgetType::Label, &said).on_hover_text(&said);
     }
 }
 
@@ -115,7 +115,7 @@ fn wave_row(
         small,
         palette.text_weak,
     );
-    let share = format!("{:.0} %", wave.share * 100.0);
+    let share = in_percent(wave.share);
     let right = egui::pos2(area.right(), area.center().y - 2.0);
     painter.text(right, Align2::RIGHT_CENTER, &share, body, palette.text);
     let plot = Rect::from_min_max(
@@ -145,8 +145,7 @@ fn wave_row(
         many => format!("{many} joints follow it now"),
     };
     let said = format!("{name}: {frequency}, {share} of decisions, {now}");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, &said));
-    response.on_hover_text(&said);
+    named(response, egui::WidgetType::Label, &said).on_hover_text(&said);
 }
 
 /// Draws the rules, the strongest first, so that the first of those that hold decides.

@@ -2,7 +2,8 @@
 
 /// Time without movement after which a slider takes effect, in seconds.
 const REST_S: f64 = 0.35;
-/// The same for a setting of the world, whose effect is seen on the stage.
+/// Time without movement after which a setting of the world takes effect, in seconds: shorter, because its effect is seen
+/// on the stage.
 const SETTLED_S: f64 = 0.12;
 /// Time after which a setting of the world takes effect even while its slider moves, in seconds: long enough to see
 /// the snake react.

@@ -4,6 +4,7 @@ use bevy_egui::egui;
 
 use super::form::{Sheet, Shown};
 use super::number::Control;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::theme;
 use snakes_core::schema::Choice;
@@ -34,12 +35,10 @@ impl Sheet {
                         }
                     }
                 });
-            let is_on = ui.is_enabled();
-            let said = shown.setting.label;
-            list.response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, said));
+            let kind = egui::WidgetType::ComboBox;
             let sentence = chosen.map_or("", |choice| &choice.sentence);
-            list.response.on_hover_text(format!("{}\n\nSelected: {sentence}", shown.hint));
+            named(list.response, kind, shown.setting.label)
+                .on_hover_text(format!("{}\n\nSelected: {sentence}", shown.hint));
             requested
         })
     }

@@ -8,8 +8,8 @@ use bevy_egui::egui;
 
 use super::form::Sheet;
 use crate::studio::commands::{Command, WindowCommand};
-use crate::studio::state::current_run::CurrentRun;
-use crate::studio::ui::theme;
+use crate::studio::ui::accessible::named_selected;
+use crate::studio::ui::text_rows::weak;
 use snakes_core::schema::{ListedSetting, Section};
 
 /// Which advanced settings are in sight.
@@ -36,13 +36,7 @@ impl Sheet {
     }
 
     /// Draws a section's settings, the advanced ones below a fold, and its reset button.
-    pub fn section(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        section: Section,
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn section(&mut self, ui: &mut egui::Ui, section: Section) {
         let values = Arc::clone(&self.values);
         let is_open = self.folds.open.contains(section.title);
         let listed = values.listed().iter().filter(|listed| listed.section == section);
@@ -53,37 +47,29 @@ impl Sheet {
         let is_below = |listed: &ListedSetting| {
             listed.setting.is_advanced && (is_open || !kept.contains(&listed.path))
         };
-        self.entries(ui, run, section, |listed| !is_below(listed), commands);
+        self.entries(ui, section, |listed| !is_below(listed));
         if self.in_section(section).any(is_below) {
-            self.advanced(ui, run, section, is_below, commands);
+            self.advanced(ui, section, is_below);
         }
-        self.reset_section(ui, section, commands);
+        self.reset_section(ui, section);
     }
 
     /// Draws the fold, and below it the settings for which `is_below` holds.
     fn advanced(
         &mut self,
         ui: &mut egui::Ui,
-        run: &CurrentRun,
         section: Section,
         is_below: impl Fn(&ListedSetting) -> bool,
-        commands: &mut Vec<Command>,
     ) {
         let is_open = self.folds.open.contains(section.title);
         let count = self.in_section(section).filter(|listed| is_below(listed)).count();
-        let name = egui::RichText::new(format!("Advanced ({count})"));
-        let header = egui::CollapsingHeader::new(name.color(theme::of(ui).text_weak))
+        let header = egui::CollapsingHeader::new(weak(ui, format!("Advanced ({count})")))
             .id_salt(("advanced", section.title))
             .open(Some(is_open));
-        let shown =
-            header.show_unindented(ui, |ui| self.entries(ui, run, section, is_below, commands));
-        let response = shown.header_response;
-        let is_on = ui.is_enabled();
+        let shown = header.show_unindented(ui, |ui| self.entries(ui, section, is_below));
+        let (kind, header) = (egui::WidgetType::CollapsingHeader, shown.header_response);
         let said = format!("Advanced settings of {}", section.title);
-        response.widget_info(|| {
-            egui::WidgetInfo::selected(egui::WidgetType::CollapsingHeader, is_on, is_open, &said)
-        });
-        if response.clicked() {
+        if named_selected(header, kind, is_open, &said).clicked() {
             self.folds.forget_kept();
             if is_open {
                 self.folds.open.remove(section.title);
@@ -91,7 +77,7 @@ impl Sheet {
                 self.folds.open.insert(section.title.to_owned());
             }
             let (section, is_open) = (section.title, !is_open);
-            commands.push(Command::Window(WindowCommand::FoldAdvanced { section, is_open }));
+            self.sent.push(Command::Window(WindowCommand::FoldAdvanced { section, is_open }));
         }
     }
 }
@@ -99,7 +85,8 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::prepared_run;
+    use crate::studio::panels::testing::shows;
+    use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use snakes_core::score::Trial;
@@ -113,16 +100,13 @@ mod tests {
         let mut panel = Harness::builder().with_size(egui::vec2(400.0, 900.0)).build_ui_state(
             |ui, (sheet, commands): &mut (Sheet, Vec<Command>)| {
                 sheet.begin(ui, run);
-                sheet.section(ui, run, Trial::SURFACE, commands);
+                sheet.section(ui, Trial::SURFACE);
+                sheet.send(commands);
             },
             (sheet, Vec::new()),
         );
         panel.run();
         panel
-    }
-
-    fn shows(panel: &Panel, label: &str) -> bool {
-        panel.query_all_by_label_contains(label).next().is_some()
     }
 
     #[test]

@@ -17,8 +17,11 @@ use super::validation::Check;
 use super::values::Values;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::icons::{Icon, small_icon_button};
+use crate::studio::ui::text_rows::problem;
 use crate::studio::ui::theme;
+use snakes_core::evolve::Settings;
 use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind};
 
 /// Values being dragged or typed in a panel's controls.
@@ -32,8 +35,10 @@ pub struct Sheet {
     /// Last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
     pub(super) folds: Folds,
-    /// The setting whose sweep was asked for in this frame.
-    pub(super) swept: Option<String>,
+    /// Whether the run under way takes changes, with the reason if not; `None` before and after a run.
+    takes_changes: Option<Result<(), &'static str>>,
+    /// The user's commands: see [`Sheet::send`].
+    pub(super) sent: Vec<Command>,
 }
 
 /// Text that has not taken effect.
@@ -57,12 +62,23 @@ impl Sheet {
             self.changing = None;
         }
         self.drawn_in = frame;
+        self.takes_changes = run.is_under_way().then(|| run.takes_changes());
         if !self.values.are_of(run) {
             if self.values.preset_name() != run.next_preset() {
                 self.folds.forget_kept();
             }
             self.values = Arc::new(Values::of(run));
         }
+    }
+
+    /// Moves the user's commands; call after everything is drawn.
+    pub fn send(&mut self, commands: &mut Vec<Command>) {
+        commands.append(&mut self.sent);
+    }
+
+    /// The settings of the next run.
+    pub fn settings(&self) -> &Settings {
+        self.values.settings()
     }
 
     /// Whether a visible field contains invalid text.
@@ -98,25 +114,18 @@ impl Sheet {
     pub fn entries(
         &mut self,
         ui: &mut egui::Ui,
-        run: &CurrentRun,
         section: Section,
         is_wanted: impl Fn(&ListedSetting) -> bool,
-        commands: &mut Vec<Command>,
     ) {
         let values = Arc::clone(&self.values);
         let listed = values.listed().iter().filter(|listed| listed.section == section);
         for listed in listed.filter(|listed| is_wanted(listed)) {
-            self.entry(ui, run, listed, commands);
+            self.entry(ui, listed);
         }
     }
 
     /// Draws the button that resets a section, if a setting differs from the preset's.
-    pub(super) fn reset_section(
-        &self,
-        ui: &mut egui::Ui,
-        section: Section,
-        commands: &mut Vec<Command>,
-    ) {
+    pub(super) fn reset_section(&mut self, ui: &mut egui::Ui, section: Section) {
         let fields = self.in_section(section).map(|listed| listed.path.as_str());
         let back = self.values.back(fields);
         if back.is_empty() {
@@ -124,28 +133,21 @@ impl Sheet {
         }
         let name = self.values.preset_name();
         let hint = format!("Reset all settings of \"{}\" to the preset {name}", section.title);
-        if ui.small_button("Reset section").on_hover_text(hint).clicked() {
-            commands.push(Command::Plan(PlanCommand::SetFields(back)));
-        }
+        let back = Command::Plan(PlanCommand::SetFields(back));
+        CommandButton::small("Reset section", hint, back).show(ui, &mut self.sent);
     }
 
     /// Draws one setting, if it exists at present.
-    pub fn entry(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        listed: &ListedSetting,
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn entry(&mut self, ui: &mut egui::Ui, listed: &ListedSetting) {
         let values = Arc::clone(&self.values);
         let (field, setting) = (listed.path.as_str(), &listed.setting);
         let Some(value) = values.now(field) else { return };
-        let answer = run.is_under_way().then(|| run.takes_changes().and(values.live(field)));
+        let answer = self.takes_changes.map(|answer| answer.and(values.live(field)));
         let is_from_next_generation = answer == Some(Ok(()));
         let shown = Shown {
             setting,
             hint: hint(setting, answer),
-            check: Check { settings: run.next_settings(), field, setting, all: values.listed() },
+            check: Check { settings: values.settings(), field, setting, all: values.listed() },
             field,
             value,
             text: setting.shown_text(value),
@@ -158,12 +160,7 @@ impl Sheet {
             SettingKind::Switch => self.on_off(ui, &shown),
             SettingKind::Absent(_) => None,
         };
-        if let Some(text) = new {
-            commands.push(set(field, &text));
-        }
-        if let Some(field) = self.swept.take() {
-            commands.push(Command::Stage(StageCommand::Sweep(field)));
-        }
+        self.sent.extend(new.map(|text| set(field, &text)));
     }
 
     /// Draws the button of a sweep beside a number of the world, and the reset button if the value differs from the
@@ -177,7 +174,7 @@ impl Sheet {
                 shown.setting.label
             );
             if small_icon_button(ui, Icon::Sweep, &label, &hint).clicked() {
-                self.swept = Some(shown.field.to_owned());
+                self.sent.push(Command::Stage(StageCommand::Sweep(shown.field.to_owned())));
             }
         }
         self.reset(ui, shown)
@@ -196,9 +193,8 @@ impl Sheet {
 
     /// Draws the reason why a control's text is invalid.
     pub(super) fn problem(&self, ui: &mut egui::Ui, id: &str) {
-        if let Some(problem) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
-            let text = egui::RichText::new(problem).color(theme::of(ui).problem);
-            ui.add(egui::Label::new(text).wrap());
+        if let Some(reason) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
+            problem(ui, reason);
         }
     }
 
@@ -245,8 +241,7 @@ impl Shown<'_> {
         if self.is_from_next_generation {
             next_generation_mark(ui);
         }
-        let text = egui::RichText::new(self.setting.title());
-        ui.add(egui::Label::new(text).wrap()).on_hover_text(&self.hint)
+        ui.add(egui::Label::new(self.setting.title()).wrap()).on_hover_text(&self.hint)
     }
 }
 
@@ -276,14 +271,10 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
 
 /// The command that sets a new value.
 fn set(field: &str, text: &str) -> Command {
-    match text.parse() {
-        Ok(population) if field == "evolution.population" => {
-            Command::Plan(PlanCommand::SetPopulation(population))
-        }
-        _ => {
-            Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
-        }
-    }
+    Command::Plan(match text.parse() {
+        Ok(population) if field == "evolution.population" => PlanCommand::SetPopulation(population),
+        _ => PlanCommand::set(field, text),
+    })
 }
 
 /// Sentence that says when a change takes effect.

@@ -8,8 +8,10 @@ use super::columns::{Columns, Part, VALUE_WIDTH};
 use super::form::{Sheet, Shown};
 use super::scale::{NUMBERS_HEIGHT, Scale};
 use super::values::{list_of, numbers, rounded};
+use crate::studio::ui::accessible::{named, named_selected};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::number_field::select_all_on_focus;
+use crate::studio::ui::text_rows::{text_field, weak};
 use crate::studio::ui::theme;
 use snakes_core::schema::NumberRange;
 
@@ -68,11 +70,11 @@ impl Sheet {
                     requested
                 }
                 Part::Control if !is_given => {
-                    weak(ui, "off: each snake has its own");
+                    instead(ui, "off: each snake has its own");
                     None
                 }
                 Part::Control if each.is_some() => {
-                    weak(ui, &format!("{part_word} by {part_word}"));
+                    instead(ui, &format!("{part_word} by {part_word}"));
                     None
                 }
                 Part::Control => {
@@ -123,7 +125,7 @@ impl Sheet {
         Columns::of(ui, false).row(ui, |ui, place, width| match place {
             Part::Label => {
                 ui.add_space(theme::GAP * 2.0);
-                name = ui.label(egui::RichText::new(&part).color(theme::of(ui).text_weak)).id;
+                name = ui.label(weak(ui, &part)).id;
             }
             Part::Control => {
                 let said = Some(format!("{} of {}", shown.setting.label, part.to_lowercase()));
@@ -192,18 +194,14 @@ impl Sheet {
             typed.text.clone()
         });
         let mut text = typed.unwrap_or_else(|| value.to_owned());
-        let field = egui::TextEdit::singleline(&mut text)
-            .id_salt(control.id)
-            .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2));
         let size = egui::vec2(width, ui.spacing().interact_size.y);
-        let response = ui.add_sized(size, field).labelled_by(control.name);
-        let response = response.on_hover_text(control.hint);
-        select_all_on_focus(ui, &response, &text);
-        if let Some(said) = &control.said {
-            let is_on = ui.is_enabled();
-            response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, is_on, said));
-        }
+        let response = ui.add_sized(size, text_field(&mut text).id_salt(control.id));
+        let response = response.labelled_by(control.name).on_hover_text(control.hint);
+        select_all_on_focus(&response, &text);
+        let response = match &control.said {
+            Some(said) => named(response, egui::WidgetType::TextEdit, said),
+            None => response,
+        };
         if response.changed() {
             let problem = (control.check)(&text).err();
             self.keep(control.id, text, problem, control.value);
@@ -260,12 +258,9 @@ fn number_name(
             format!("Set each {of_what} separately")
         };
         let switch = ui.selectable_label(is_each, "each").on_hover_text(hint);
-        let (is_on, said) =
-            (ui.is_enabled(), format!("{}: {of_what} by {of_what}", shown.setting.label));
-        switch.widget_info(|| {
-            egui::WidgetInfo::selected(egui::WidgetType::SelectableLabel, is_on, is_each, &said)
-        });
-        if switch.clicked() {
+        let said = format!("{}: {of_what} by {of_what}", shown.setting.label);
+        let kind = egui::WidgetType::SelectableLabel;
+        if named_selected(switch, kind, is_each, &said).clicked() {
             let count = range.parts.count();
             requested = Some(match each {
                 Some(each) => each.first().copied().unwrap_or_default().to_string(),
@@ -283,7 +278,7 @@ fn make_room_for_numbers(ui: &mut egui::Ui, range: &NumberRange) {
     }
 }
 
-fn weak(ui: &mut egui::Ui, text: &str) {
-    let text = egui::RichText::new(text).color(theme::of(ui).text_weak);
-    ui.add(egui::Label::new(text).wrap());
+/// Explains what stands in place of a number.
+fn instead(ui: &mut egui::Ui, text: &str) {
+    ui.add(egui::Label::new(weak(ui, text)).wrap());
 }

@@ -87,12 +87,11 @@ mod tests {
         let mut sheet = Sheet::default();
         let ui = move |ui: &mut egui::Ui, (run, taken): &mut State| {
             sheet.begin(ui, run);
-            let mut commands = Vec::new();
             let listed = sheet.values.listed().iter().filter(|listed| listed.path == field);
             for section in sections_of(listed) {
-                sheet.entries(ui, run, section, |listed| listed.path == field, &mut commands);
+                sheet.entries(ui, section, |listed| listed.path == field);
             }
-            for command in commands {
+            for command in std::mem::take(&mut sheet.sent) {
                 let Command::Plan(PlanCommand::SetField { field, text }) = command else {
                     panic!("{command:?}")
                 };

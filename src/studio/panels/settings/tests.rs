@@ -9,6 +9,7 @@ use egui_kittest::kittest::Queryable;
 use super::values::list_of;
 use super::*;
 use crate::studio::commands::{Command, PlanCommand};
+use crate::studio::panels::testing::{self, Sent, set};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 use snakes_core::evolve::{Settings, fields, with_field, with_fields};
 use snakes_core::schema::{NumberRange, Parts, SettingKind, list};
@@ -67,13 +68,14 @@ fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) ->
 }
 
 /// A panel with one setting.
-fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Harness<'a, Vec<Command>> {
+fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
     let listed = setting(run, field);
     let mut sheet = Sheet::default();
     Harness::builder().with_size(egui::vec2(320.0, 400.0)).with_step_dt(1.0 / 60.0).build_ui_state(
         move |ui, commands| {
             sheet.begin(ui, run);
-            sheet.entry(ui, run, &listed, commands);
+            sheet.entry(ui, &listed);
+            sheet.send(commands);
         },
         Vec::new(),
     )
@@ -240,23 +242,12 @@ fn invalid_text_stays_with_its_reason_and_nothing_is_sent() {
     let field = panel.get_by_role(egui::accesskit::Role::TextInput);
     assert_eq!(field.value().as_deref(), Some("9"), "to be corrected");
     type_into(&mut panel, "4");
-    let set = |field: &str, text: &str| {
-        Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
-    };
     assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
 }
 
 /// The commands that a click on a label sends.
 fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
-    let mut panel = panel_of(run, field);
-    panel.run();
-    panel.get_by_label(label).click();
-    panel.run();
-    panel.state().clone()
-}
-
-fn set(field: &str, text: &str) -> Command {
-    Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
+    testing::clicked(&mut panel_of(run, field), label)
 }
 
 #[test]

@@ -53,6 +53,11 @@ impl Values {
             && !self.now.is_empty()
     }
 
+    /// The settings of the next run.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
     /// Rows of the next run's settings, in the order of their sections.
     pub fn listed(&self) -> &[ListedSetting] {
         &self.listed

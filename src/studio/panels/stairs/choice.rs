@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::known_files;
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{Settings, fields};
 use snakes_core::save::NamedStairs;
@@ -31,15 +32,12 @@ pub(in crate::studio::panels) fn stairs_choice(
             let known = run.known_stairs();
             chosen = known_files(ui, known, "Your stairs", present, |named| &named.about);
         });
-    let is_on = ui.is_enabled();
-    list.response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Known stairs")
-    });
-    if list.response.clicked() {
+    let list = named(list.response, egui::WidgetType::ComboBox, "Known stairs");
+    if list.clicked() {
         // The folder may have new files.
         commands.push(Command::Plan(PlanCommand::ListStairs));
     }
-    list.response.on_hover_text("Replaces all settings of the stairs");
+    list.on_hover_text("Replaces all settings of the stairs");
     if let Some(named) = chosen {
         commands.extend(replacement(settings, &named.stairs));
     }
@@ -70,8 +68,8 @@ fn changes(settings: &Settings, stairs: &Stairs) -> Vec<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::{clicked, panel};
     use crate::studio::state::current_run::prepared_run;
-    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     #[test]
@@ -88,17 +86,12 @@ mod tests {
             assert_eq!(name_of(&run, stairs), Some(name.as_str()));
             assert_eq!(replacement(run.next_settings(), stairs), None);
         }
-        let draw = move |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
+        let mut panel = panel([theme::PANEL_WIDTH, 400.0], move |ui, commands| {
             stairs_choice(ui, &run, commands);
-        };
-        let mut panel = Harness::builder()
-            .with_size(egui::vec2(theme::PANEL_WIDTH, 400.0))
-            .build_ui_state(draw, Vec::new());
-        panel.run();
+        });
         panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Known stairs").click();
         panel.run();
-        panel.get_by_label("ramps").click();
-        panel.run();
+        clicked(&mut panel, "ramps");
         let [Command::Plan(PlanCommand::ListStairs), Command::Plan(PlanCommand::SetFields(sent))] =
             panel.state().as_slice()
         else {

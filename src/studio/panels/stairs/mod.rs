@@ -15,8 +15,8 @@ use crate::studio::commands::{Command, PlanCommand, WindowCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
-use crate::studio::ui::text_rows::{explain, title_and};
-use crate::studio::ui::theme;
+use crate::studio::ui::buttons::CommandButton;
+use crate::studio::ui::text_rows::{explain, problem, title_and};
 use snakes_core::schema::check;
 use snakes_core::world::Stairs;
 
@@ -77,12 +77,9 @@ impl StairsPanel {
         let strategy = run.next_settings().evolution.strategy.info();
         if strategy.evolves_stairs {
             let title = strategy.title;
-            explain(
-                ui,
-                &format!(
-                    "{title} makes its own stairs. It begins with the number of steps, the mean tread and the width of these."
-                ),
-            );
+            let begins =
+                "It begins with the number of steps, the mean tread and the width of these.";
+            explain(ui, &format!("{title} makes its own stairs. {begins}"));
         } else {
             explain(
                 ui,
@@ -101,8 +98,8 @@ impl StairsPanel {
         let mut pointed = drawn.pointed;
         let mut edit = drawn.edit;
         codes(ui, &stairs);
-        if let Some(problem) = &self.problem {
-            ui.label(egui::RichText::new(problem).color(theme::of(ui).problem));
+        if let Some(reason) = &self.problem {
+            problem(ui, reason);
         }
         if let Some(genome) = self.random.ui(ui) {
             let (first_riser_y_m, landing_m) = (stairs.first_riser_y_m, stairs.landing_m);
@@ -111,9 +108,8 @@ impl StairsPanel {
         }
         let hint =
             "Width, landing, nosing and the other settings of the stairs, in the World panel";
-        if ui.button("More settings").on_hover_text(hint).clicked() {
-            commands.push(Command::Window(WindowCommand::FindSetting("Stairs")));
-        }
+        let find = Command::Window(WindowCommand::FindSetting("Stairs"));
+        CommandButton::new("More settings", hint, find).show(ui, commands);
         let listed = table(ui, &stairs, self.pointed);
         pointed = pointed.or(listed.pointed);
         edit = listed.edit.or(edit);
@@ -145,18 +141,14 @@ impl StairsPanel {
             };
             self.name.button(ui, ("Save as…", hint), suggestion);
             let folder = run.stairs_folder();
+            let refusal = Some("Save stairs first").filter(|_| !folder.is_dir());
             let hint = "Show the files of your stairs. File > Import adds the stairs of others";
-            let refusal = "Save stairs first";
-            let button = ui.add_enabled(folder.is_dir(), egui::Button::new("Show files"));
-            if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
-                commands.push(Command::File(FileCommand::OpenFolder(folder)));
-            }
-            let staged = lane.map(|lane| &lane.trial().stairs).filter(|staged| *staged != stairs);
-            if let Some(staged) = staged {
+            let show = Command::File(FileCommand::OpenFolder(folder));
+            CommandButton::new("Show files", hint, show).unless(refusal).show(ui, commands);
+            let staged = lane.map(|lane| &lane.trial().stairs);
+            if let Some(use_it) = staged.and_then(|of| replacement(run.next_settings(), of)) {
                 let hint = "The next run gets the stairs of the selected snake on the stage";
-                if ui.button("Use those on the stage").on_hover_text(hint).clicked() {
-                    commands.extend(replacement(run.next_settings(), staged));
-                }
+                CommandButton::new("Use those on the stage", hint, use_it).show(ui, commands);
             }
         });
         if let Some(name) = self.name.field(ui, run.known_stairs()) {

@@ -3,6 +3,7 @@
 use bevy_egui::egui;
 
 use super::StairsEdit;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::score::AgentSettings;
 use snakes_core::world::{BUILDING_CODES, BuildingCode, Stairs};
@@ -188,10 +189,8 @@ impl Profile<'_> {
             let reach = egui::Rect::from_center_size(at, egui::Vec2::splat(2.0 * REACH));
             let id = ui.id().with(("edge of step", step));
             let response = ui.interact(reach, id, egui::Sense::drag());
-            let is_on = ui.is_enabled();
             let name = format!("Edge of step {}", step + 1);
-            response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, is_on, &name));
+            let response = named(response, egui::WidgetType::Other, &name);
             let is_taken = response.dragged() || response.drag_stopped();
             if response.hovered() || is_taken {
                 drawn.pointed = Some(step);

@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::genome::{StairsClass, StairsGenome};
 use snakes_core::schema::{Choice, Choices};
@@ -41,10 +42,7 @@ impl RandomStairs {
                         }
                     }
                 });
-            let is_on = ui.is_enabled();
-            list.response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Class of stairs")
-            });
+            named(list.response, egui::WidgetType::ComboBox, "Class of stairs");
             let field = egui::DragValue::new(&mut self.seed)
                 .range(0..=MOST)
                 .prefix("seed ")

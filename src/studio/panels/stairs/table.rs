@@ -3,6 +3,8 @@
 use bevy_egui::egui;
 
 use super::StairsEdit;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::decimals::short;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::world::Stairs;
@@ -45,14 +47,9 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
             let (rise_m, tread_m) = (stairs.step_rise_m(step), stairs.step_tread_m(step));
             let rise = length(ui, rise_m, &format!("Rise of step {number}"), -5.0..=5.0);
             let tread = length(ui, tread_m, &format!("Tread of step {number}"), 0.1..=20.0);
-            let edit = |changed: Changed, of: fn(&Stairs, u32, f32) -> Stairs| {
-                let stairs = of(stairs, step, changed.length_m);
-                StairsEdit { stairs, is_complete: changed.is_complete }
-            };
-            let changed = rise.map(|rise| edit(rise, Stairs::with_step_rise));
-            let changed =
-                changed.or_else(|| tread.map(|tread| edit(tread, Stairs::with_step_tread)));
-            listed.edit = changed.or(listed.edit.take());
+            let tread = tread.map(|to| to.edit(|length_m| stairs.with_step_tread(step, length_m)));
+            let rise = rise.map(|to| to.edit(|length_m| stairs.with_step_rise(step, length_m)));
+            listed.edit = rise.or(tread).or(listed.edit.take());
             explain(ui, &format!("{:.2} m", stairs.height_m(number)));
             let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
             if copied {
@@ -74,9 +71,7 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
 /// The buttons of a row. Returns whether the step is to be copied, and whether it is to be removed.
 fn buttons(ui: &mut egui::Ui, number: u32) -> [bool; 2] {
     let mut is_clicked = |sign: &str, name: String, hint: &str| {
-        let button = ui.small_button(sign);
-        let is_on = ui.is_enabled();
-        button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, is_on, &name));
+        let button = named(ui.small_button(sign), egui::WidgetType::Button, &name);
         button.on_hover_text(hint).clicked()
     };
     let copied =
@@ -91,6 +86,13 @@ struct Changed {
     is_complete: bool,
 }
 
+impl Changed {
+    /// The change of the stairs.
+    fn edit(self, stairs: impl FnOnce(f32) -> Stairs) -> StairsEdit {
+        StairsEdit { stairs: stairs(self.length_m), is_complete: self.is_complete }
+    }
+}
+
 /// Draws a length that can be dragged or typed.
 fn length(
     ui: &mut egui::Ui,
@@ -102,19 +104,11 @@ fn length(
     let field = egui::DragValue::new(&mut changed_m)
         .speed(SPEED_M)
         .range(range)
-        .custom_formatter(|length_m, _| short(length_m))
+        .custom_formatter(|length_m, _| short(length_m, 3))
         .suffix(" m")
         .update_while_editing(false);
-    let response = ui.add(field);
-    let is_on = ui.is_enabled();
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, is_on, name));
+    let response = named(ui.add(field), egui::WidgetType::DragValue, name);
     let is_complete = !response.dragged();
     let is_new = response.changed() || response.drag_stopped();
     is_new.then_some(Changed { length_m: changed_m, is_complete })
-}
-
-/// A length in metres, without zeros at its end.
-fn short(length_m: f64) -> String {
-    let text = format!("{length_m:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -4,7 +4,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
+use crate::studio::panels::testing::{press, shows};
 use crate::studio::state::current_run::prepared_run;
+use crate::studio::ui::theme;
 use snakes_core::genome::StairsClass;
 
 /// A next run, the panel, and the commands that it sent.
@@ -64,6 +66,11 @@ fn house() -> Stairs {
 
 fn centre(window: &Window, name: &str) -> egui::Pos2 {
     window.get_by_label(name).rect().center()
+}
+
+fn click(window: &mut Window, name: &str) {
+    window.get_by_label(name).click();
+    window.run();
 }
 
 /// Drags a thing by some points, in many small steps.
@@ -149,27 +156,22 @@ fn an_edge_stays_where_a_further_move_is_not_allowed_and_the_panel_says_why() {
     drag(&mut window, "Edge of step 3", egui::vec2((next - from).x * 1.5, 0.0));
     let tread_m = stairs(&window).step_tread_m(2);
     assert!((0.1..0.3).contains(&tread_m), "{tread_m}");
-    assert!(window.query_by_label_contains("Not possible: tread_m").is_some());
+    assert!(shows(&window, "Not possible: tread_m"));
     drag(&mut window, "Edge of step 3", egui::vec2(-10.0, 0.0));
-    assert!(window.query_by_label_contains("Not possible").is_none());
+    assert!(!shows(&window, "Not possible"));
 }
 
 #[test]
 fn the_table_changes_copies_and_removes_steps() {
     let mut window = editing(&house(), theme::PANEL_WIDTH);
-    window.get_by_label("Copy step 2").click();
-    window.run();
+    click(&mut window, "Copy step 2");
     assert_eq!(stairs(&window), Stairs { steps: 11, ..house() });
-    window.get_by_label("Remove step 11").click();
-    window.run();
+    click(&mut window, "Remove step 11");
     assert_eq!(stairs(&window), house());
-    let field = "Rise of step 2";
-    window.get_by_label(field).click();
-    window.run();
+    click(&mut window, "Rise of step 2");
     window.event(egui::Event::Text("0.7".to_owned()));
     window.run();
-    window.key_press(egui::Key::Enter);
-    window.run();
+    press(&mut window, egui::Key::Enter);
     assert_eq!(stairs(&window), house().with_step_rise(1, 0.7));
 }
 
@@ -177,11 +179,9 @@ fn the_table_changes_copies_and_removes_steps() {
 fn the_last_step_can_be_removed_and_put_back() {
     let one = Stairs { steps: 1, ..house() };
     let mut window = editing(&one, theme::PANEL_WIDTH);
-    window.get_by_label("Remove step 1").click();
-    window.run();
+    click(&mut window, "Remove step 1");
     assert_eq!(stairs(&window).steps, 0);
-    window.get_by_label("Add a step").click();
-    window.run();
+    click(&mut window, "Add a step");
     assert_eq!(stairs(&window), one);
 }
 
@@ -190,8 +190,7 @@ fn random_stairs_are_those_of_the_next_seed_where_the_others_were() {
     let before = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..house() };
     let mut window = editing(&before, theme::PANEL_WIDTH);
     for seed in [1, 2] {
-        window.get_by_label("Next").click();
-        window.run();
+        click(&mut window, "Next");
         let drawn = StairsClass::Irregular.of_seed(seed).stairs();
         let expected = Stairs { first_riser_y_m: 4.0, landing_m: 30.0, ..drawn };
         assert_eq!(stairs(&window), expected);
@@ -201,10 +200,8 @@ fn random_stairs_are_those_of_the_next_seed_where_the_others_were() {
 #[test]
 fn stairs_are_saved_under_a_suggested_name() {
     let mut window = editing(&house(), theme::PANEL_WIDTH);
-    window.get_by_label("Save as…").click();
-    window.run();
-    window.key_press(egui::Key::Enter);
-    window.run();
+    click(&mut window, "Save as…");
+    press(&mut window, egui::Key::Enter);
     let saved = Command::Plan(PlanCommand::StoreStairs("my-stairs".to_owned()));
     assert_eq!(window.state().commands, [saved]);
 }
@@ -212,11 +209,11 @@ fn stairs_are_saved_under_a_suggested_name() {
 #[test]
 fn building_codes_are_compared_in_words() {
     let window = editing(&house(), theme::PANEL_WIDTH);
-    assert!(window.query_by_label_contains("32°, 175 × 280 mm").is_some());
+    assert!(shows(&window, "32°, 175 × 280 mm"));
     assert_eq!(window.query_all_by_label("rises and treads allowed").count(), 3);
     let steep = Stairs { rise_m: 0.7.into(), ..house() };
     let window = editing(&steep, theme::PANEL_WIDTH);
-    assert!(window.query_all_by_label_contains("rise 1 is 245 mm, over 196").count() > 0);
+    assert!(shows(&window, "rise 1 is 245 mm, over 196"));
 }
 
 #[test]

@@ -14,8 +14,9 @@ use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::undo::UndoHistory;
-use crate::studio::ui::check_box::check_box;
-use crate::studio::ui::text_rows::{explain, title_and};
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::text_rows::{explain, folded, text_field, title_and, title_text};
 use crate::studio::ui::theme;
 use snakes_core::schema::{ListedSetting, Section, SettingKind};
 use snakes_core::score::{AgentSettings, Trial};
@@ -51,8 +52,9 @@ impl WorldPanel {
         if self.search.trim().is_empty() {
             self.sections(ui, run, on_stage, commands);
         } else {
-            self.search_results(ui, run, commands);
+            self.search_results(ui);
         }
+        self.sheet.send(commands);
     }
 
     /// Unfolds the advanced settings of the sections with these titles.
@@ -70,16 +72,11 @@ impl WorldPanel {
         ui.horizontal(|ui| {
             let is_searching = !self.search.is_empty();
             let clear = if is_searching { theme::GAP * 8.0 } else { 0.0 };
-            let field = egui::TextEdit::singleline(&mut self.search)
+            let field = text_field(&mut self.search)
                 .hint_text("Find a setting")
-                .margin(egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2))
                 .desired_width(ui.available_width() - clear - theme::GAP);
-            let response = ui.add(field);
-            let is_on = ui.is_enabled();
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, is_on, "Find a setting")
-            });
-            response.on_hover_text(
+            let field = named(ui.add(field), egui::WidgetType::TextEdit, "Find a setting");
+            field.on_hover_text(
                 "Searches the settings of all sections, including those of the Run panel",
             );
             if is_searching && ui.small_button("Clear").clicked() {
@@ -97,10 +94,9 @@ impl WorldPanel {
     ) {
         for section in self.sheet.sections("trial.") {
             ui.add_space(theme::GAP / 2.0);
-            let name = egui::RichText::new(section.title).size(theme::TITLE_SIZE).strong();
-            let header =
-                egui::CollapsingHeader::new(name).default_open(OPEN_AT_FIRST.contains(&section));
-            let shown = header.show_unindented(ui, |ui| {
+            let header = egui::CollapsingHeader::new(title_text(section.title))
+                .default_open(OPEN_AT_FIRST.contains(&section));
+            folded(ui, header, section.about, |ui| {
                 if section == Trial::GROUND {
                     ground_switch(ui, run, commands);
                 }
@@ -110,14 +106,13 @@ impl WorldPanel {
                 if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
                     on_stage.ui(ui, *surface);
                 }
-                self.sheet.section(ui, run, section, commands);
+                self.sheet.section(ui, section);
             });
-            shown.header_response.on_hover_text(section.about);
         }
     }
 
     /// Draws the settings that match the search, by section.
-    fn search_results(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    fn search_results(&mut self, ui: &mut egui::Ui) {
         let search = self.search.clone();
         let mut is_anything = false;
         for section in self.sheet.sections("") {
@@ -131,7 +126,7 @@ impl WorldPanel {
                 is_anything = true;
                 ui.add_space(theme::GAP / 2.0);
                 explain(ui, section.title);
-                self.sheet.entries(ui, run, section, is_wanted, commands);
+                self.sheet.entries(ui, section, is_wanted);
             }
         }
         if !is_anything {
@@ -155,32 +150,27 @@ fn stairs_row(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) 
     ui.horizontal_wrapped(|ui| {
         stairs_choice(ui, run, commands);
         let hint = "Drag the edges of the steps, change each step in a table, and save the stairs";
-        if ui.button("Edit…").on_hover_text(hint).clicked() {
-            commands.push(Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs)));
-        }
+        let edit = Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs));
+        CommandButton::new("Edit…", hint, edit).show(ui, commands);
     });
 }
 
 /// Draws the switch for a separate ground surface.
 fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let trial = &run.next_settings().trial;
-    let mut differs = trial.ground.is_some();
+    let differs = trial.ground.is_some();
     let hint = "On: the ground gets its own settings, copied from the stairs. Off: ground and stairs share one surface";
-    let name = "The ground has its own surface";
-    if check_box(ui, &mut differs, name).on_hover_text(hint).changed() {
-        let (field, text) = if differs {
-            ("ground.friction", trial.surface.friction.to_string())
-        } else {
-            ("trial.ground", "none".to_owned())
-        };
-        commands.push(Command::Plan(PlanCommand::SetField { field: field.to_owned(), text }));
-    }
+    let change = match differs {
+        true => PlanCommand::set("trial.ground", "none"),
+        false => PlanCommand::set("ground.friction", &trial.surface.friction.to_string()),
+    };
+    let words = ("The ground has its own surface", hint);
+    command_box(ui, differs, words, Command::Plan(change), commands);
 }
 
 /// Tells which settings the current run uses, with a button that starts the next run.
 fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     // The row is always present, so that the layout stays still when a slider is released.
-    let differs = run.next_run_differs();
     let palette = theme::of(ui);
     let (text, color) = if !run.is_under_way() {
         ("These settings will be used by the next run.", palette.text_weak)
@@ -190,7 +180,8 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ("The current run uses these settings.", palette.text_weak)
     };
     ui.label(egui::RichText::new(text).color(color));
-    let button = ui.add_enabled(differs, egui::Button::new("New run in this world"));
+    let button = egui::Button::new("New run in this world");
+    let button = ui.add_enabled(run.next_run_differs(), button);
     let hint = "Prepares and starts a run with the changed settings; the current run stays saved";
     let refusal = match run.status() {
         RunStatus::Running | RunStatus::Paused => {
@@ -208,13 +199,14 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
 mod tests {
     use super::*;
     use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
+    use crate::studio::panels::testing::{Sent, set, shows, type_into};
     use crate::studio::state::current_run::prepared_run;
     use crate::studio::state::undo::UndoDirection;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     /// Commands sent after `act`.
-    fn sent(run: &CurrentRun, act: impl FnOnce(&mut Harness<'_, Vec<Command>>)) -> Vec<Command> {
+    fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
         sent_at(run, theme::PANEL_WIDTH, &UndoHistory::default(), act)
     }
 
@@ -223,7 +215,7 @@ mod tests {
         run: &CurrentRun,
         width: f32,
         history: &UndoHistory,
-        act: impl FnOnce(&mut Harness<'_, Vec<Command>>),
+        act: impl FnOnce(&mut Sent<'_>),
     ) -> Vec<Command> {
         let mut panel = WorldPanel::default();
         panel.unfold(&every_section());
@@ -241,10 +233,6 @@ mod tests {
         act(&mut harness);
         harness.run();
         harness.state().clone()
-    }
-
-    fn set(field: &str, text: &str) -> Command {
-        Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
     }
 
     #[test]
@@ -299,7 +287,7 @@ mod tests {
             let commands = sent(&run, |harness| {
                 harness.get_by_label("New run in this world").hover();
                 harness.run_steps(60);
-                assert!(harness.query_by_label_contains(reason).is_some(), "{reason}");
+                assert!(shows(harness, reason), "{reason}");
             });
             assert_eq!(commands, []);
             run.single_generation().expect("started");
@@ -331,14 +319,8 @@ mod tests {
         let run = prepared_run();
         let assert_finds = |word: &'static str, found: &'static str| {
             sent(&run, move |harness| {
-                harness.get_by_label("Find a setting").focus();
-                harness.run();
-                harness.get_by_label("Find a setting").type_text(word);
-                harness.run();
-                assert!(
-                    harness.query_all_by_label_contains(found).next().is_some(),
-                    "{word}: {found}"
-                );
+                type_into(harness, "Find a setting", word);
+                assert!(shows(harness, found), "{word}: {found}");
             })
         };
         assert_finds("moon", "Gravity, m/s²");

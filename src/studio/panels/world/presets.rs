@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::{OwnName, known_files};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, Preset};
 
@@ -25,15 +26,12 @@ impl PresetChoice {
                 .width(theme::COMBO_WIDTH)
                 .height(theme::list_height(ui))
                 .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
-            let is_on = ui.is_enabled();
-            list.response.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, is_on, "Preset")
-            });
-            if list.response.clicked() {
+            let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
+            if list.clicked() {
                 // The folder may have new files.
                 commands.push(Command::Plan(PlanCommand::ListPresets));
             }
-            list.response.on_hover_text("Replaces all settings of the next run");
+            list.on_hover_text("Replaces all settings of the next run");
             let hint = "Save the settings of the next run under a name, to use them again later";
             let suggestion = || run.presets().name_for_copy(run.next_preset());
             self.name.button(ui, ("Save as preset…", hint), suggestion);
@@ -62,29 +60,22 @@ fn presets(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::{self, Sent, clicked, press, shows};
     use crate::studio::state::current_run::prepared_run;
-    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    type Panel<'a> = Harness<'a, Vec<Command>>;
-
-    fn panel(run: &CurrentRun) -> Panel<'_> {
+    fn panel(run: &CurrentRun) -> Sent<'_> {
         let mut choice = PresetChoice::default();
         // The height of the smallest usual window.
-        let size = egui::vec2(theme::PANEL_WIDTH, 720.0);
-        let draw = move |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
+        testing::panel([theme::PANEL_WIDTH, 720.0], move |ui, commands| {
             theme::apply(ui.ctx());
             choice.ui(ui, run, commands);
-        };
-        let mut panel = Harness::builder().with_size(size).build_ui_state(draw, Vec::new());
-        panel.run();
-        panel
+        })
     }
 
     /// Opens the field and types a name.
-    fn type_name(panel: &mut Panel, name: &str) {
-        panel.get_by_label("Save as preset…").click();
-        panel.run();
+    fn type_name(panel: &mut Sent<'_>, name: &str) {
+        clicked(panel, "Save as preset…");
         // The field has the focus, and its suggestion is selected.
         panel.event(egui::Event::Text(name.to_owned()));
         panel.run();
@@ -95,40 +86,25 @@ mod tests {
         let run = prepared_run();
         let mut panel = panel(&run);
         type_name(&mut panel, "My ice: 1/2");
-        panel.get_by_label("Use the name my-ice-1-2").click();
-        panel.run();
-        panel.get_by_label("Save").click();
-        panel.run();
+        clicked(&mut panel, "Use the name my-ice-1-2");
+        let sent = clicked(&mut panel, "Save");
         let stored = Command::Plan(PlanCommand::StorePreset("my-ice-1-2".to_owned()));
-        assert!(panel.state().contains(&stored), "{:?}", panel.state());
+        assert!(sent.contains(&stored), "{sent:?}");
     }
 
     #[test]
-    fn a_shipped_preset_is_selected_from_the_list() {
+    fn the_open_list_shows_all_presets_of_the_program_and_a_click_selects_one() {
         let run = prepared_run();
-        let mut panel = panel(&run);
-        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
-        panel.run();
-        panel.get_by_label("ice").click();
-        panel.run();
-        let commands = [
-            Command::Plan(PlanCommand::ListPresets),
-            Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
-        ];
-        assert_eq!(*panel.state(), commands);
-    }
-
-    #[test]
-    fn the_open_list_shows_all_presets_of_the_program() {
-        let run = prepared_run();
-        let mut panel = panel(&run);
-        panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
-        panel.run();
         let last = run.presets().built_in().last().expect("shipped").name.clone();
         // Entries out of sight are clipped, and a click on them reaches none.
-        panel.get_by_label(&last).click();
-        panel.run();
-        assert!(panel.state().contains(&Command::Plan(PlanCommand::SetPreset(last))));
+        for name in ["ice".to_owned(), last] {
+            let mut panel = panel(&run);
+            panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
+            panel.run();
+            let sent = clicked(&mut panel, &name);
+            let commands = [PlanCommand::ListPresets, PlanCommand::SetPreset(name)];
+            assert_eq!(sent, commands.map(Command::Plan));
+        }
     }
 
     #[test]
@@ -136,12 +112,8 @@ mod tests {
         let run = prepared_run();
         let mut panel = panel(&run);
         type_name(&mut panel, "my-slope-2");
-        panel.get_by_label("Save").click();
-        panel.run();
-        assert_eq!(
-            *panel.state(),
-            [Command::Plan(PlanCommand::StorePreset("my-slope-2".to_owned()))]
-        );
+        let stored = Command::Plan(PlanCommand::StorePreset("my-slope-2".to_owned()));
+        assert_eq!(clicked(&mut panel, "Save"), [stored]);
         assert!(panel.query_by_label("Name").is_none(), "done");
     }
 
@@ -150,14 +122,12 @@ mod tests {
         let run = prepared_run();
         for (key, saved) in [(egui::Key::Enter, true), (egui::Key::Escape, false)] {
             let mut panel = panel(&run);
-            panel.get_by_label("Save as preset…").click();
-            panel.run();
+            clicked(&mut panel, "Save as preset…");
             assert!(panel.get_by_label("Name").is_focused());
             let suggestion = run.presets().name_for_copy(run.next_preset());
             assert!(suggestion.starts_with("my-"), "{suggestion}");
             assert_eq!(panel.get_by_label("Name").value(), Some(suggestion.clone()));
-            panel.key_press(key);
-            panel.run();
+            press(&mut panel, key);
             let commands = [Command::Plan(PlanCommand::StorePreset(suggestion))];
             assert_eq!(*panel.state(), commands[..usize::from(saved)]);
             assert!(panel.query_by_label("Name").is_none(), "closed");
@@ -175,10 +145,8 @@ mod tests {
             let run = prepared_run();
             let mut panel = panel(&run);
             type_name(&mut panel, name);
-            assert!(panel.query_by_label_contains(said).is_some(), "{name}");
-            panel.get_by_label("Save").click();
-            panel.run();
-            assert_eq!(*panel.state(), []);
+            assert!(shows(&panel, said), "{name}");
+            assert_eq!(clicked(&mut panel, "Save"), []);
         }
     }
 }

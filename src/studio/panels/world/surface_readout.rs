@@ -8,11 +8,11 @@ use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::lane_dot::lane_dot;
+use crate::studio::ui::text_rows::{explain, folded, weak};
 use crate::studio::ui::theme;
 use snakes_core::world::TouchedSurface;
 
-use lane_column::LaneColumn;
-pub(crate) use lane_column::in_percent;
+use lane_column::{LaneColumn, in_m_s, in_mm, in_watts};
 
 /// The lanes whose contacts are read.
 #[derive(Clone, Default)]
@@ -36,50 +36,92 @@ pub(super) enum ReadSurface {
     Skin,
 }
 
+impl ReadSurface {
+    /// Whether a surface that a limb touches is meant. The ground belongs to the stairs unless it has a surface of its own.
+    fn is_meant(self, has_own_ground: bool, touched: TouchedSurface) -> bool {
+        match (self, touched) {
+            (Self::Stairs, TouchedSurface::Stairs)
+            | (Self::Ground, TouchedSurface::Ground)
+            | (Self::Skin, TouchedSurface::Limb(_)) => true,
+            (Self::Stairs, TouchedSurface::Ground) => !has_own_ground,
+            _ => false,
+        }
+    }
+}
+
 /// A line of the read-out.
 struct ReadoutLine {
     name: &'static str,
     /// The term of the field.
     term: &'static str,
     hint: &'static str,
+    draw: fn(&LaneColumn, &mut egui::Ui),
+    /// Contents of the tooltip of a value.
+    detail: ReadoutDetail,
 }
 
-const CONTACT: ReadoutLine = ReadoutLine {
-    name: "Contact",
-    term: "",
-    hint: "Number of limbs that touched it in the last 0.25 s",
-};
-const SLIP: ReadoutLine = ReadoutLine {
-    name: "Slip speed",
-    term: "",
-    hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed limbs count most. Near 0 \
-           the limbs hold",
-};
-const GRIP: ReadoutLine = ReadoutLine {
-    name: "Grip used",
-    term: "friction cone",
-    hint: "Share of the friction that is used: sideways force divided by friction times the force pressing down. Mean of \
-           all contacts in the last 0.25 s. At 100 % everything that touches slides",
-};
-const DENT: ReadoutLine = ReadoutLine {
-    name: "Dent",
-    term: "penetration",
-    hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. In a \
-           soft one, a limb that stands on its end can sink in by more than a metre",
-};
-const POWER: ReadoutLine = ReadoutLine {
-    name: "Lost here",
-    term: "dissipation",
-    hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's damping \
-           takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
-};
-const LOST: ReadoutLine = ReadoutLine {
-    name: "Lost so far",
-    term: "contacts, stops",
-    hint: "Energy lost since the start in all contacts (friction, impacts, dents) and at the stops of the joints: work of the \
-           joints, minus the gain in motion and height, minus what the damping of joints and rotation took. A dent \
-           holds a part of it, which may come back. Below 0, the engine has added energy",
-};
+/// Contents of the tooltip of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ReadoutDetail {
+    /// Slip, grip and depth of each limb.
+    Limbs,
+    /// The speed of the fastest point, and those of each limb.
+    LimbsAndFastest,
+    /// Where the energy went.
+    Energy,
+}
+
+/// The lines; the last is about the whole snake, and stands with the stairs only.
+const LINES: [ReadoutLine; 6] = [
+    ReadoutLine {
+        name: "Contact",
+        term: "",
+        hint: "Number of limbs that touched it in the last 0.25 s",
+        draw: |column, ui| column.contact(ui),
+        detail: ReadoutDetail::Limbs,
+    },
+    ReadoutLine {
+        name: "Slip speed",
+        term: "",
+        hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed limbs count most. \
+               Near 0 the limbs hold",
+        draw: |column, ui| column.value(ui, |reading| in_m_s(reading.slip_m_s)),
+        detail: ReadoutDetail::LimbsAndFastest,
+    },
+    ReadoutLine {
+        name: "Grip used",
+        term: "friction cone",
+        hint: "Share of the friction that is used: sideways force divided by friction times the force pressing down. Mean \
+               of all contacts in the last 0.25 s. At 100 % everything that touches slides",
+        draw: |column, ui| column.grip(ui),
+        detail: ReadoutDetail::Limbs,
+    },
+    ReadoutLine {
+        name: "Dent",
+        term: "penetration",
+        hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. \
+               In a soft one, a limb that stands on its end can sink in by more than a metre",
+        draw: |column, ui| column.value(ui, |reading| in_mm(reading.depth_m)),
+        detail: ReadoutDetail::Limbs,
+    },
+    ReadoutLine {
+        name: "Lost here",
+        term: "dissipation",
+        hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's \
+               damping takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
+        draw: |column, ui| column.value(ui, |reading| in_watts(reading.lost_w)),
+        detail: ReadoutDetail::Limbs,
+    },
+    ReadoutLine {
+        name: "Lost so far",
+        term: "contacts, stops",
+        hint: "Energy lost since the start in all contacts (friction, impacts, dents) and at the stops of the joints: work \
+               of the joints, minus the gain in motion and height, minus what the damping of joints and rotation took. A \
+               dent holds a part of it, which may come back. Below 0, the engine has added energy",
+        draw: |column, ui| column.lost(ui),
+        detail: ReadoutDetail::Energy,
+    },
+];
 
 /// Width of the names, in points.
 const NAME_WIDTH: f32 = theme::GAP * 11.0;
@@ -116,30 +158,21 @@ impl<'l> ReadLanes<'l> {
             (ReadSurface::Ground, _) => "On the ground now",
             (ReadSurface::Skin, _) => "Between limbs now",
         };
-        let palette = theme::of(ui);
-        let header = egui::RichText::new(title).color(palette.text_weak);
-        let fold = egui::CollapsingHeader::new(header)
+        let header = egui::CollapsingHeader::new(weak(ui, title))
             .id_salt(("read-out", title))
             .default_open(surface != ReadSurface::Skin);
-        let is_meant = |touched: TouchedSurface| match (surface, touched) {
-            (ReadSurface::Stairs, TouchedSurface::Stairs)
-            | (ReadSurface::Ground, TouchedSurface::Ground)
-            | (ReadSurface::Skin, TouchedSurface::Limb(_)) => true,
-            (ReadSurface::Stairs, TouchedSurface::Ground) => !has_own_ground,
-            _ => false,
-        };
-        let shown = fold.show_unindented(ui, |ui| self.table(ui, surface, is_meant));
         let hint = "What the snake on the stage does there at the shown moment";
-        shown.header_response.on_hover_text(hint);
+        folded(ui, header, hint, |ui| {
+            self.table(ui, surface, &|touched| surface.is_meant(has_own_ground, touched));
+        });
     }
 
     fn table(
         &self,
         ui: &mut egui::Ui,
         surface: ReadSurface,
-        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
+        is_meant: &dyn Fn(TouchedSurface) -> bool,
     ) {
-        let palette = theme::of(ui);
         let missing = if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
             Some("Not available in a recording")
         } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
@@ -148,8 +181,7 @@ impl<'l> ReadLanes<'l> {
             None
         };
         if let Some(missing) = missing {
-            ui.label(egui::RichText::new(missing).color(palette.text_weak));
-            return;
+            return explain(ui, missing);
         }
         let columns: Vec<LaneColumn> =
             self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
@@ -161,8 +193,8 @@ impl<'l> ReadLanes<'l> {
         let beside = columns.len().div_ceil(columns.len().div_ceil(most));
         let room = all_room / beside as f32 - theme::GAP;
         for (index, columns) in columns.chunks(beside).enumerate() {
-            let table = ReadoutTable { columns, has_terms, names_width, room };
-            self.grid(ui, (surface, index), &table, is_meant);
+            let table = ReadoutTable { columns, is_meant, has_terms, names_width, room };
+            self.grid(ui, (surface, index), &table);
         }
     }
 
@@ -172,9 +204,8 @@ impl<'l> ReadLanes<'l> {
         ui: &mut egui::Ui,
         (surface, index): (ReadSurface, usize),
         table: &ReadoutTable,
-        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
     ) {
-        let (palette, gap) = (theme::of(ui), theme::GAP);
+        let gap = theme::GAP;
         let grid = egui::Grid::new(("read-out", surface as u8, index))
             .min_col_width(0.0)
             .min_row_height(gap * 2.25)
@@ -186,21 +217,17 @@ impl<'l> ReadLanes<'l> {
                     table.cell(ui, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
-                        let name = egui::RichText::new(head_of(ui, label)).color(palette.text_weak);
+                        let name = weak(ui, head_of(ui, label));
                         ui.add(egui::Label::new(name).truncate()).on_hover_text(label);
                         dot.on_hover_text(label);
                     });
                 }
                 ui.end_row();
             }
-            table.line(ui, &CONTACT, is_meant, |ui, column| column.contact(ui));
-            table.line(ui, &SLIP, is_meant, |ui, column| column.slip(ui));
-            table.line(ui, &GRIP, is_meant, |ui, column| column.grip(ui));
-            table.line(ui, &DENT, is_meant, |ui, column| column.dent(ui));
-            table.line(ui, &POWER, is_meant, |ui, column| column.power(ui));
-            if surface == ReadSurface::Stairs {
-                table.line(ui, &LOST, is_meant, |ui, column| column.lost(ui));
-            }
+            let lines = LINES.iter().filter(|line| {
+                surface == ReadSurface::Stairs || line.detail != ReadoutDetail::Energy
+            });
+            lines.for_each(|line| table.line(ui, line));
         });
     }
 }
@@ -220,6 +247,8 @@ fn head_of(ui: &egui::Ui, label: &str) -> String {
 /// The lines of a read-out with a column for each lane.
 struct ReadoutTable<'c, 'l> {
     columns: &'c [LaneColumn<'l>],
+    /// Whether a surface that a limb touches is meant.
+    is_meant: &'c dyn Fn(TouchedSurface) -> bool,
     has_terms: bool,
     /// Widths of the names and of a column, in points.
     names_width: f32,
@@ -227,14 +256,7 @@ struct ReadoutTable<'c, 'l> {
 }
 
 impl ReadoutTable<'_, '_> {
-    fn line(
-        &self,
-        ui: &mut egui::Ui,
-        line: &ReadoutLine,
-        is_meant: impl Fn(TouchedSurface) -> bool + Copy,
-        value: impl Fn(&mut egui::Ui, &LaneColumn),
-    ) {
-        let palette = theme::of(ui);
+    fn line(&self, ui: &mut egui::Ui, line: &ReadoutLine) {
         let name = match line.term {
             term if self.has_terms && !term.is_empty() => format!("{} ({term})", line.name),
             _ => line.name.to_owned(),
@@ -242,14 +264,14 @@ impl ReadoutTable<'_, '_> {
         let size = egui::vec2(self.names_width, theme::GAP * 2.25);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_width(self.names_width);
-            ui.label(egui::RichText::new(name).color(palette.text_weak)).on_hover_text(line.hint);
+            ui.label(weak(ui, name)).on_hover_text(line.hint);
         });
         for column in self.columns {
-            let cell = self.cell(ui, |ui| value(ui, column));
+            let cell = self.cell(ui, |ui| (line.draw)(column, ui));
             // Above the number, which would keep the pointer from the cell.
             let id = ui.id().with((line.name, column.lane.number()));
             ui.interact(cell.rect, id, egui::Sense::hover())
-                .on_hover_ui(|ui| column.explain(ui, line, is_meant));
+                .on_hover_ui(|ui| column.explain(ui, line, self.is_meant));
         }
         ui.end_row();
     }

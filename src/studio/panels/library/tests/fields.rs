@@ -69,7 +69,7 @@ fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
     for name in ["Ice: 1/2", ""] {
         let mut harness = harness(&library, [420.0, 900.0]);
         select(&mut harness, "climb-seed8-0123abcd");
-        click(&mut harness, "Rename");
+        clicked(&mut harness, "Rename");
         press(&mut harness, Modifiers::NONE, Press::Backspace);
         if !name.is_empty() {
             type_text(&mut harness, name);
@@ -87,9 +87,7 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
         [("alpha", file("alpha")), ("climb-seed8-0123abcd", SavePlace::Run(run_folder()))]
     {
         select(&mut harness, row);
-        harness.get_by_label("Notes").focus();
-        harness.run();
-        type_text(&mut harness, "slips");
+        type_into(&mut harness, "Notes", "slips");
         assert_eq!(taken(&mut harness), []);
         harness.get_by_label("Search the library").focus();
         harness.run();
@@ -123,9 +121,9 @@ fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
 fn import_and_export_ask_with_the_systems_dialog() {
     let library = library();
     let mut harness = harness(&library, [420.0, 800.0]);
-    click(&mut harness, "Import");
+    clicked(&mut harness, "Import");
     select(&mut harness, "alpha");
-    click(&mut harness, "Export");
+    clicked(&mut harness, "Export");
     let questions = [FileQuestion::Import, FileQuestion::Export(vec![file("alpha")])];
     assert_eq!(taken(&mut harness), questions.map(|of| Command::File(FileCommand::Ask(of))));
 }
@@ -162,16 +160,14 @@ fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
     // The helper forgets what was sent at first.
     assert_eq!(taken(&mut harness), []);
     let mut panel = LibraryPanel::default();
-    let mut commands = Vec::new();
     panel.selection.only(&file("alpha"));
-    panel.take_requests(&library, &mut commands);
-    panel.take_requests(&library, &mut commands);
+    panel.take_requests(&library);
+    panel.take_requests(&library);
     let question = FileQuestion::Export(vec![file("alpha")]);
-    assert_eq!(commands, [Command::File(FileCommand::Ask(question))]);
+    assert_eq!(panel.sent, [Command::File(FileCommand::Ask(question))]);
     let mut empty = LibraryPanel::default();
-    commands.clear();
-    empty.take_requests(&library, &mut commands);
+    empty.take_requests(&library);
     assert!(
-        matches!(&commands[..], [Command::Notify(text)] if text.contains("Select what to export"))
+        matches!(&empty.sent[..], [Command::Notify(text)] if text.contains("Select what to export"))
     );
 }

@@ -1,6 +1,7 @@
 //! The strip under the pointer.
 
 use super::*;
+use crate::studio::panels::testing::{climber_lane, shows};
 use crate::studio::stage::staged_champion::StagedChampion;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -10,8 +11,7 @@ const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
 
 #[test]
 fn a_click_or_a_drag_seeks_to_the_time_under_the_pointer() {
-    let loaded = shipped_champion().expect("well formed");
-    let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let lane = climber_lane(0, "climber");
     let mut strip_panel = TorqueStrip::default();
     let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
         |ui, commands: &mut Vec<f64>| commands.extend(strip_panel.ui(ui, &lane, 1.0, SPAN, 60.0)),
@@ -36,8 +36,7 @@ fn a_click_or_a_drag_seeks_to_the_time_under_the_pointer() {
 
 #[test]
 fn a_strip_that_grows_while_it_is_pressed_keeps_its_scale_until_the_release() {
-    let loaded = shipped_champion().expect("well formed");
-    let lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let lane = climber_lane(0, "climber");
     let mut strip_panel = TorqueStrip::default();
     let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
         |ui, moments: &mut Vec<f64>| {
@@ -67,8 +66,7 @@ fn a_strip_that_grows_while_it_is_pressed_keeps_its_scale_until_the_release() {
 
 #[test]
 fn the_legend_names_unit_and_marks_and_a_mark_has_a_hover_text() {
-    let loaded = shipped_champion().expect("well formed");
-    let mut lane = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);
+    let mut lane = climber_lane(0, "climber");
     lane.finish_lookahead();
     let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
     for width in [900.0, 420.0] {
@@ -79,9 +77,8 @@ fn the_legend_names_unit_and_marks_and_a_mark_has_a_hover_text() {
         harness.run();
         let legend = harness.get_by_label_contains("Legend: ").rect();
         assert!(legend.right() <= width, "{legend:?}");
-        assert!(harness.query_by_label_contains("N·m, bend, twist").is_some(), "{width}");
-        let marks = harness.query_by_label_contains("step climbed, step lost");
-        assert!(marks.is_some() || width < 500.0, "{width}");
+        assert!(shows(&harness, "N·m, bend, twist"), "{width}");
+        assert!(shows(&harness, "step climbed, step lost") || width < 500.0, "{width}");
         let strip = harness.get_by_label("Time, in simulated seconds").rect();
         let share = (landed_s / 15.0) as f32;
         harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
@@ -109,9 +106,8 @@ fn with_a_hidden_future_marks_and_torques_appear_only_once_they_have_happened() 
         let share = (landed_s / 15.0) as f32;
         harness.hover_at(strip.lerp_inside(egui::vec2(share, 0.05)));
         harness.run();
-        let hover = harness.query_by_label_contains("Top of the stairs reached");
-        assert_eq!(hover.is_some(), is_seen, "at {now_s} s");
-        let torques = harness.query_by_label_contains("Joint 4 (tail): bend");
-        assert_eq!(torques.is_some(), is_seen, "at {now_s} s");
+        for text in ["Top of the stairs reached", "Joint 4 (tail): bend"] {
+            assert_eq!(shows(&harness, text), is_seen, "{text} at {now_s} s");
+        }
     }
 }

@@ -5,6 +5,8 @@ use bevy_egui::egui::Color32;
 
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::end_in_words;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::palette::{ramp, text_on};
 use snakes_core::score::{ExamSuite, StairsCell, StairsGrid, Trial};
@@ -12,7 +14,7 @@ use snakes_core::score::{ExamSuite, StairsCell, StairsGrid, Trial};
 /// A map and where it is drawn.
 pub(super) struct StairsMap<'m> {
     pub grid: &'m StairsGrid,
-    /// What stands above it.
+    /// Title above the map.
     pub title: &'m str,
     /// The examined snake, as the stage shows it.
     pub staged: &'m StagedChampion,
@@ -97,8 +99,7 @@ impl StairsMap<'_> {
                 outlines.push((rect, palette.text_weak));
             }
             let said = format!("{}. {}", self.title, said(cell));
-            response
-                .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &said));
+            let response = named(response, egui::WidgetType::Button, &said);
             if response.clicked() {
                 clicked = Some(index);
             }
@@ -160,7 +161,7 @@ impl StairsMap<'_> {
         }
     }
 
-    /// What the pointer reads on a cell.
+    /// Hover text of a cell.
     fn hover_text(&self, cell: &StairsCell) -> String {
         let frozen = match self.grid.suite {
             ExamSuite::Lesion => "Sight, touch and balance keep the values of the snake at rest.\n",
@@ -209,11 +210,9 @@ fn is_own(cell: &StairsCell, own: &Trial) -> bool {
 /// Draws what the colours and the dot mean.
 pub(super) fn legend(ui: &mut egui::Ui, grid: &StairsGrid, own: &Trial) {
     let trials = grid.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
-    let color = theme::of(ui).text_weak;
-    let small = |text: String| egui::RichText::new(text).small().color(color);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme::GAP / 2.0, theme::GAP / 2.0);
-        ui.label(small("Landed".to_owned()));
+        ui.label(weak(ui, "Landed").small());
         let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         for landed in 0..=trials {
@@ -225,13 +224,14 @@ pub(super) fn legend(ui: &mut egui::Ui, grid: &StairsGrid, own: &Trial) {
         }
         ui.spacing_mut().item_spacing.x = gap;
         ui.add_space(gap);
-        ui.label(small(format!("of {trials}")));
+        ui.label(weak(ui, format!("of {trials}")).small());
         if grid.cells.iter().any(|cell| is_own(cell, own)) {
             ui.add_space(theme::GAP);
             let size = egui::vec2(DOT * 2.0, SAMPLE.y);
             let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-            ui.painter().circle_filled(rect.center(), DOT, color);
-            ui.add(egui::Label::new(small("its own rise and tread".to_owned())).extend());
+            ui.painter().circle_filled(rect.center(), DOT, theme::of(ui).text_weak);
+            let words = weak(ui, "its own rise and tread").small();
+            ui.add(egui::Label::new(words).extend());
         }
     });
 }

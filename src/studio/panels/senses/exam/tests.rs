@@ -2,30 +2,19 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
-use egui_kittest::Harness;
+use crate::studio::panels::testing::{Sent, clicked, climber, panel, random_snake, shows};
 use egui_kittest::kittest::Queryable;
-use snakes_core::evolve::with_fields;
-use snakes_core::rng::{Purpose, stream};
-use snakes_core::save::{LoadedChampion, load_preset, shipped_champion};
+use snakes_core::genome::ControllerKind;
 use snakes_core::score::ExamEnd;
-
-type Section<'a> = Harness<'a, Vec<Command>>;
 
 /// The built-in champion, a gait.
 fn gait() -> StagedChampion {
-    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
+    climber(0, "climber")
 }
 
 /// A snake with senses.
 fn sensing() -> StagedChampion {
-    let settings = load_preset("climb").expect("shipped").settings;
-    let settings = with_fields(&settings, [("genome.controller", "reflex")]).expect("allowed");
-    let mut rng = stream(1, 1, 3, Purpose::Birth);
-    let LoadedChampion { mut champion, .. } = shipped_champion().expect("well formed");
-    champion.genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
-    champion.trial = settings.trial;
-    let loaded = LoadedChampion { champion, ..shipped_champion().expect("well formed") };
-    StagedChampion::from_file(&loaded, 0, "reflex")
+    random_snake(ControllerKind::Reflex, &[], |_| ())
 }
 
 /// Made-up results: on the lowest stairs all land, on the highest none.
@@ -43,21 +32,12 @@ fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
 }
 
 /// The section `width` points wide.
-fn section<'a>(staged: StagedChampion, exams: &'a StairsExams, width: f32) -> Section<'a> {
+fn section(staged: StagedChampion, exams: &StairsExams, width: f32) -> Sent<'_> {
     let lane = Lane::new(staged, 0);
-    let mut section = Harness::builder().with_size(egui::vec2(width, 500.0)).build_ui_state(
-        move |ui, commands| {
-            theme::apply(ui.ctx());
-            exam(ui, &lane, exams, commands);
-        },
-        Vec::new(),
-    );
-    section.run();
-    section
-}
-
-fn shows(section: &Section, label: &str) -> bool {
-    section.query_all_by_label_contains(label).next().is_some()
+    panel([width, 500.0], move |ui, commands| {
+        theme::apply(ui.ctx());
+        exam(ui, &lane, exams, commands);
+    })
 }
 
 #[test]
@@ -67,9 +47,8 @@ fn before_the_exam_a_button_begins_it_for_every_controller() {
         let mut section = section(staged, &exams, theme::PANEL_WIDTH);
         assert_eq!(shows(&section, "with its senses and without them"), is_sensing);
         assert_nothing_is_wider_than(&section, theme::PANEL_WIDTH);
-        section.get_by_label("Examine on 100 staircases").click();
-        section.run();
-        assert_eq!(*section.state(), [Command::Exam(ExamCommand::Examine)]);
+        let sent = clicked(&mut section, "Examine on 100 staircases");
+        assert_eq!(sent, [Command::Exam(ExamCommand::Examine)]);
     }
 }
 
@@ -82,9 +61,7 @@ fn during_the_exam_its_progress_is_shown_and_a_button_cancels_it() {
         let mut section = section(staged, &exams, theme::PANEL_WIDTH);
         assert!(shows(&section, "Examining climber"));
         assert!(!shows(&section, "Examine on"));
-        section.get_by_label("Cancel").click();
-        section.run();
-        assert_eq!(*section.state(), [Command::Exam(ExamCommand::Cancel)]);
+        assert_eq!(clicked(&mut section, "Cancel"), [Command::Exam(ExamCommand::Cancel)]);
     }
 }
 
@@ -141,7 +118,6 @@ fn on_stairs_of_the_exam_a_button_leads_back() {
     assert!(!shows(&section(staged, &exams, theme::PANEL_WIDTH), "Back to its own stairs"));
     let mut section = section(there, &exams, theme::PANEL_WIDTH);
     assert!(shows(&section, "Rise 0.7 m, tread 3 m"), "the results stay");
-    section.get_by_label("Back to its own stairs").click();
-    section.run();
-    assert_eq!(*section.state(), [Command::Exam(ExamCommand::BackToOwnStairs)]);
+    let sent = clicked(&mut section, "Back to its own stairs");
+    assert_eq!(sent, [Command::Exam(ExamCommand::BackToOwnStairs)]);
 }

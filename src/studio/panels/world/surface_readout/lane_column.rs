@@ -2,9 +2,11 @@
 
 use bevy_egui::egui;
 
-use super::{LOST, ReadoutLine, SLIP};
+use super::{ReadoutDetail, ReadoutLine};
 use crate::studio::stage::contact_meter::SurfaceReading;
 use crate::studio::stage::lane::Lane;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::theme;
 use snakes_core::world::TouchedSurface;
 
@@ -34,21 +36,6 @@ impl<'l> LaneColumn<'l> {
         Self { lane, reading, is_playing }
     }
 
-    /// Draws the slip speed.
-    pub fn slip(&self, ui: &mut egui::Ui) {
-        self.value(ui, |reading| in_m_s(reading.slip_m_s));
-    }
-
-    /// Draws the depth of the dents.
-    pub fn dent(&self, ui: &mut egui::Ui) {
-        self.value(ui, |reading| in_mm(reading.depth_m));
-    }
-
-    /// Draws the power of friction and damping.
-    pub fn power(&self, ui: &mut egui::Ui) {
-        self.value(ui, |reading| in_watts(reading.lost_w));
-    }
-
     /// Draws the energy lost so far in contacts and at the stops of the joints.
     pub fn lost(&self, ui: &mut egui::Ui) {
         let lost = self.lane.readings().energy_lost;
@@ -69,7 +56,8 @@ impl<'l> LaneColumn<'l> {
         number(ui, &text);
     }
 
-    fn value(&self, ui: &mut egui::Ui, text: impl Fn(&SurfaceReading) -> String) {
+    /// Draws a value of the reading.
+    pub fn value(&self, ui: &mut egui::Ui, text: impl Fn(&SurfaceReading) -> String) {
         number(ui, self.reading.as_ref().map(text).as_deref().unwrap_or(UNKNOWN));
     }
 
@@ -85,10 +73,8 @@ impl<'l> LaneColumn<'l> {
         let (bar, response) =
             ui.allocate_exact_size(egui::vec2(width, BAR_HEIGHT), egui::Sense::hover());
         let percent = in_percent(share);
-        response.widget_info(|| {
-            let said = format!("Grip used: {percent}");
-            egui::WidgetInfo::labeled(egui::WidgetType::ProgressIndicator, true, said)
-        });
+        let said = format!("Grip used: {percent}");
+        named(response, egui::WidgetType::ProgressIndicator, &said);
         let full = egui::Rect::from_min_size(bar.min, bar.size() * egui::vec2(share, 1.0));
         let color = if share >= SLIDES_FROM { palette.second } else { palette.accent };
         let corner = BAR_HEIGHT / 2.0;
@@ -106,12 +92,11 @@ impl<'l> LaneColumn<'l> {
     ) {
         ui.set_max_width(theme::NOTICE_WIDTH);
         ui.label(line.hint);
-        if line.name == LOST.name {
-            self.explain_energy(ui);
-            return;
+        if line.detail == ReadoutDetail::Energy {
+            return self.explain_energy(ui);
         }
         let Some(reading) = self.reading else { return };
-        if line.name == SLIP.name {
+        if line.detail == ReadoutDetail::LimbsAndFastest {
             ui.label(format!("Fastest point: {:.2} m/s", reading.top_slip_m_s));
         }
         let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
@@ -162,11 +147,6 @@ const UNKNOWN: &str = "-";
 fn number(ui: &mut egui::Ui, text: &str) {
     let text = egui::RichText::new(text).monospace();
     ui.add(egui::Label::new(text).truncate());
-}
-
-/// A share as whole percents.
-pub(crate) fn in_percent(share: f32) -> String {
-    format!("{:.0} %", share * 100.0)
 }
 
 /// A speed in at most four digits.

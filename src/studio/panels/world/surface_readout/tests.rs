@@ -1,22 +1,20 @@
 //! The read-out of surfaces, drawn in panels of several widths.
 
-use super::lane_column::{in_joules, in_m_s, in_mm, in_watts};
+use super::lane_column::in_joules;
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::testing::{climber, climber_lane, shows};
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::decimals::in_percent;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use snakes_core::save::{LoadedChampion, shipped_champion};
+use snakes_core::save::shipped_champion;
 use snakes_core::score::Recording;
 use snakes_core::world::Surface;
 
-fn shipped() -> LoadedChampion {
-    shipped_champion().expect("well formed")
-}
-
 /// A lane of a snake at a time at which it touches the ground, and that lane on ice.
 fn on_stone_and_ice() -> [Lane; 2] {
-    let stone = StagedChampion::from_file(&shipped(), 0, "climber");
+    let stone = climber(0, "climber");
     let mut trial = stone.trial().clone();
     trial.surface.friction = 0.03;
     let ice = stone.in_world(&trial, "a long name of a changed world".to_owned());
@@ -38,10 +36,6 @@ fn panel<'a>(lanes: Vec<&'a Lane>, surface: ReadSurface, width: f32) -> Harness<
     });
     harness.run();
     harness
-}
-
-fn shows(panel: &Harness<'_>, label: &str) -> bool {
-    panel.query_all_by_label_contains(label).next().is_some()
 }
 
 #[test]
@@ -105,10 +99,10 @@ fn terms_of_the_field_are_shown_where_there_is_room() {
 
 #[test]
 fn without_contact_it_says_none_and_a_recording_has_no_readings() {
-    let start = Lane::new(StagedChampion::from_file(&shipped(), 0, "climber"), 0);
+    let start = climber_lane(0, "climber");
     let at_start = panel(vec![&start], ReadSurface::Stairs, 320.0);
     assert!(shows(&at_start, "none") && shows(&at_start, "Slip speed"));
-    let mut loaded = shipped();
+    let mut loaded = shipped_champion().expect("well formed");
     loaded.recording = Some(Recording::of(&loaded.champion.genome, &loaded.champion.trial));
     loaded.engine.version = 1;
     let recorded = Lane::new(StagedChampion::from_file(&loaded, 0, "climber"), 0);

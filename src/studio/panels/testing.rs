@@ -1,0 +1,97 @@
+//! Tools for tests of panels: panels without a window, champions, reports.
+
+use bevy_egui::egui;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::studio::commands::{Command, PlanCommand};
+use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::StagedChampion;
+use snakes_core::evolve::{RunPlan, Settings, with_fields};
+use snakes_core::genome::{ControllerKind, Genome};
+use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::{load_preset, shipped_champion};
+use snakes_lab::run::{Experiment, GenerationReport, LocalPool, RunControl};
+
+/// A panel, and the commands that it sent.
+pub(super) type Sent<'a> = Harness<'a, Vec<Command>>;
+
+/// A panel of this size, in points, after its first frames.
+pub(super) fn panel<'a>(
+    size: [f32; 2],
+    mut draw: impl FnMut(&mut egui::Ui, &mut Vec<Command>) + 'a,
+) -> Sent<'a> {
+    let builder = Harness::builder().with_size(egui::Vec2::from(size));
+    let mut panel = builder.build_ui_state(move |ui, commands| draw(ui, commands), Vec::new());
+    panel.run();
+    panel
+}
+
+/// Clicks on what has this label. Returns all commands that the panel has sent.
+pub(super) fn clicked(panel: &mut Sent<'_>, label: &str) -> Vec<Command> {
+    panel.get_by_label(label).click();
+    panel.run();
+    panel.state().clone()
+}
+
+/// Whether a panel shows a label that contains this text.
+pub(super) fn shows<S>(panel: &Harness<'_, S>, text: &str) -> bool {
+    panel.query_all_by_label_contains(text).next().is_some()
+}
+
+/// Gives a field the focus and types into it.
+pub(super) fn type_into<S>(panel: &mut Harness<'_, S>, label: &str, text: &str) {
+    panel.get_by_label(label).focus();
+    panel.run();
+    panel.get_by_label(label).type_text(text);
+    panel.run();
+}
+
+/// Presses a key.
+pub(super) fn press<S>(panel: &mut Harness<'_, S>, key: egui::Key) {
+    panel.key_press(key);
+    panel.run();
+}
+
+/// The command that sets a field of the next run.
+pub(super) fn set(field: &str, text: &str) -> Command {
+    Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
+}
+
+/// The built-in climber, under another name.
+pub(super) fn climber(number: usize, name: &str) -> StagedChampion {
+    StagedChampion::from_file(&shipped_champion().expect("well formed"), number, name)
+}
+
+/// A lane of the built-in climber, under another name; the first is 0.
+pub(super) fn climber_lane(number: usize, name: &str) -> Lane {
+    Lane::new(climber(number, name), number)
+}
+
+/// A random snake with a controller, in a world with other settings than those of the preset `climb`.
+pub(super) fn random_snake(
+    kind: ControllerKind,
+    fields: &[(&str, &str)],
+    change: impl FnOnce(&mut Genome),
+) -> StagedChampion {
+    let settings = load_preset("climb").expect("shipped").settings;
+    let mut settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
+    settings.genome.controller = kind;
+    let mut rng = stream(1, 1, 3, Purpose::Birth);
+    let mut loaded = shipped_champion().expect("well formed");
+    let champion = &mut loaded.champion;
+    champion.genome = settings.genome.random_genome(settings.trial.genome_shape(), &mut rng);
+    change(&mut champion.genome);
+    champion.trial = settings.trial;
+    StagedChampion::from_file(&loaded, 0, "a snake")
+}
+
+/// The report of the first generation of a run of four snakes and half a second.
+pub(super) fn report_of(seed: u64) -> GenerationReport {
+    let mut settings = Settings::default();
+    settings.evolution.population = 4;
+    settings.trial.duration_s = 0.5;
+    let mut experiment = Experiment::new(RunPlan::new("test", seed, settings));
+    let pool = LocalPool::new(1).expect("threads");
+    experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled")
+}

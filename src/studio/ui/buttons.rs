@@ -1,0 +1,121 @@
+//! Buttons and check boxes that send a command. Their hints name the shortcut of that command.
+
+use std::borrow::Cow;
+
+use bevy_egui::egui;
+
+use super::check_box::check_box;
+use super::theme;
+use crate::studio::commands::Command;
+use crate::studio::commands::actions::hint_with_key;
+
+/// A button that sends a command.
+pub(crate) struct CommandButton<'a> {
+    button: egui::Button<'a>,
+    hint: Cow<'a, str>,
+    refusal: Option<&'a str>,
+    command: Command,
+}
+
+impl<'a> CommandButton<'a> {
+    /// A button with this label. An empty hint is not shown.
+    pub fn new(
+        label: impl egui::IntoAtoms<'a>,
+        hint: impl Into<Cow<'a, str>>,
+        command: Command,
+    ) -> Self {
+        Self::of(egui::Button::new(label), hint, command)
+    }
+
+    /// A low button with this label.
+    pub fn small(
+        label: impl egui::IntoAtoms<'a>,
+        hint: impl Into<Cow<'a, str>>,
+        command: Command,
+    ) -> Self {
+        Self::of(egui::Button::new(label).small(), hint, command)
+    }
+
+    /// A button with a look of its own.
+    pub fn of(button: egui::Button<'a>, hint: impl Into<Cow<'a, str>>, command: Command) -> Self {
+        Self { button, hint: hint.into(), refusal: None, command }
+    }
+
+    /// Disables the button if there is a reason, which it shows in place of the hint unless it is empty.
+    pub fn unless(self, refusal: Option<&'a str>) -> Self {
+        Self { refusal, ..self }
+    }
+
+    /// Disables the button unless this holds.
+    pub fn only_if(self, is_possible: bool) -> Self {
+        self.unless((!is_possible).then_some(""))
+    }
+
+    /// Draws the button. A click sends the command. Returns whether it was clicked.
+    pub fn show(self, ui: &mut egui::Ui, commands: &mut Vec<Command>) -> bool {
+        let Self { button, hint, refusal, command } = self;
+        let mut response = ui.add_enabled(refusal.is_none(), button);
+        if !hint.is_empty() {
+            response = hint_of_command(response, &hint, &command);
+        }
+        if let Some(refusal) = refusal.filter(|refusal| !refusal.is_empty()) {
+            response = response.on_disabled_hover_text(refusal);
+        }
+        let is_clicked = response.clicked();
+        commands.extend(is_clicked.then_some(command));
+        is_clicked
+    }
+}
+
+/// Draws a check box for something that a command switches on and off. A click sends the command.
+pub(crate) fn command_box(
+    ui: &mut egui::Ui,
+    mut is_on: bool,
+    (label, hint): (&str, &str),
+    command: Command,
+    commands: &mut Vec<Command>,
+) {
+    let response = check_box(ui, &mut is_on, label);
+    if hint_of_command(response, hint, &command).clicked() {
+        commands.push(command);
+    }
+}
+
+/// Adds the hint of a command. The shortcut is looked up only while the hint is shown.
+pub(crate) fn hint_of_command(
+    response: egui::Response,
+    hint: &str,
+    command: &Command,
+) -> egui::Response {
+    response.on_hover_ui(|ui| {
+        // Hover texts of egui have this width, too.
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(hint_with_key(hint, command));
+    })
+}
+
+/// A button in the accent's colour, for what is most likely wanted.
+pub(crate) fn accent_button(ui: &egui::Ui, label: &str) -> egui::Button<'static> {
+    let palette = theme::of(ui);
+    let text = egui::RichText::new(label).strong().color(palette.on_accent);
+    egui::Button::new(text).fill(palette.accent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::studio::commands::{PlanCommand, RunCommand, StageCommand};
+
+    #[test]
+    fn a_hint_names_the_shortcut_of_its_command_in_any_situation() {
+        for (command, hint) in [
+            (Command::Run(RunCommand::Start), "Go (E)"),
+            (Command::Run(RunCommand::Pause), "Go (E)"),
+            (Command::Plan(PlanCommand::DropChange), "Go (Esc)"),
+            (Command::Stage(StageCommand::Single), "Go (Esc)"),
+            (Command::Run(RunCommand::Reset), "Go"),
+        ] {
+            assert_eq!(hint_with_key("Go", &command), hint);
+        }
+    }
+}
