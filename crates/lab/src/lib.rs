@@ -12,5 +12,8 @@ pub mod plot;
 /// Studies: runs of several arms over several seeds, compared and held against demands.
 pub mod study;
 
+/// Meshes of limbs, stairs and their fittings.
+pub mod mesh;
+
 /// Champions in the formats of other programs.
 pub mod export;

@@ -3,7 +3,7 @@
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::{BALL_SIDES, to_mesh};
 use super::props::recolor;
 use super::text::{TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
@@ -12,6 +12,7 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Stairs;
+use snakes_lab::mesh::MeshBuilder;
 
 /// Greatest y that a middle limb reached in the current run, in metres; `None` without a champion.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
@@ -108,12 +109,12 @@ fn plant(
                 .spawn((
                     Flag,
                     Transform::from_translation(foot(&lane.trial().stairs, y_m)),
-                    Mesh3d(meshes.add(post().into_mesh())),
+                    Mesh3d(meshes.add(to_mesh(post()))),
                     MeshMaterial3d(cloth.post.clone()),
                 ))
                 .with_children(|post| {
                     post.spawn((
-                        Mesh3d(meshes.add(sheet(middle, width_m).into_mesh())),
+                        Mesh3d(meshes.add(to_mesh(sheet(middle, width_m)))),
                         MeshMaterial3d(cloth.cloth.clone()),
                     ));
                     post.spawn((
@@ -135,7 +136,7 @@ fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
 fn post() -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     solid.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
-    solid.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0);
+    solid.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0, BALL_SIDES);
     solid
 }
 

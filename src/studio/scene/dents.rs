@@ -2,17 +2,17 @@
 //!
 //! The physics lets limbs sink into a soft surface, but the drawn surface is flat, so a sunken limb would look cut off.
 
-use bevy::asset::RenderAssetUsages;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
-use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
+use super::meshes::to_mesh;
 use super::props::recolor;
 use super::surface_look::SurfaceLook;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::{Pose, Stairs};
+use snakes_lab::mesh::MeshBuilder;
 
 /// The patch of a limb; the head is 0.
 #[derive(Component, Debug)]
@@ -74,32 +74,23 @@ fn dress(theme: Res<Theme>, patch: Res<Patch>, mut materials: ResMut<Assets<Stan
 /// A square of one metre that fades out towards its edges.
 fn patch() -> Mesh {
     /// Cells along a side.
-    const CELLS: u32 = 8;
-    let corners = (0..=CELLS).flat_map(|row| (0..=CELLS).map(move |column| (column, row)));
-    let places = corners.map(|(column, row)| {
-        Vec2::new(column as f32, row as f32) / CELLS as f32 - Vec2::splat(0.5)
+    const CELLS: usize = 8;
+    let mut solid = MeshBuilder::default();
+    solid.patch(CELLS, CELLS, |column, row| {
+        let at = Vec2::new(column as f32, row as f32) / CELLS as f32 - Vec2::splat(0.5);
+        [at.extend(0.0), Vec3::Z]
     });
-    let (mut positions, mut colors) = (Vec::new(), Vec::new());
-    for at in places {
+    let color = |at: &Vec3| {
         // Round at the corners, dark up to half of the way.
         let out = libm::powf(
             libm::powf((at.x * 2.0).abs(), 4.0) + libm::powf((at.y * 2.0).abs(), 4.0),
             0.25,
         );
         let opacity = ((1.0 - out) / 0.5).clamp(0.0, 1.0);
-        positions.push([at.x, at.y, 0.0]);
-        colors.push([1.0, 1.0, 1.0, opacity * opacity * (3.0 - 2.0 * opacity)]);
-    }
-    let normals = vec![[0.0, 0.0, 1.0]; positions.len()];
-    let across = CELLS + 1;
-    let cells = (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| row * across + column));
-    let indices =
-        cells.flat_map(|low| [low, low + 1, low + across + 1, low, low + across + 1, low + across]);
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_indices(Indices::U32(indices.collect()))
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+        [1.0, 1.0, 1.0, opacity * opacity * (3.0 - 2.0 * opacity)]
+    };
+    let colors: Vec<[f32; 4]> = solid.positions.iter().map(color).collect();
+    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
 /// Spawns the hidden patches of a new lane with a soft surface.

@@ -7,13 +7,14 @@
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::{BALL_SIDES, to_mesh};
 use super::props::recolor;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::schema::PerPart;
 use snakes_core::world::Stairs;
+use snakes_lab::mesh::MeshBuilder;
 
 /// Height of the railing above tread and landing, in metres.
 const RAIL_M: f32 = 1.0;
@@ -102,7 +103,7 @@ fn build(
         let [wood, wall, cheques] = match &last.0 {
             Some((of, meshes)) if of == stairs => meshes.clone(),
             _ => [railing(stairs), wall(stairs), cheques(stairs)]
-                .map(|solid| meshes.add(solid.into_mesh())),
+                .map(|solid| meshes.add(to_mesh(solid))),
         };
         last.0 = Some((stairs.clone(), [wood.clone(), wall.clone(), cheques.clone()]));
         commands.entity(entity).with_children(|parent| {
@@ -149,7 +150,7 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
             let on_bar = from.lerp(to, part as f32 / parts as f32);
             let foot = on_bar.with_z(stairs.surface_z_m(x_m, on_bar.y.min(end_m)).min(on_bar.z));
             solid.cylinder(foot, on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M);
-            solid.ball(on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M * 1.4);
+            solid.ball(on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M * 1.4, BALL_SIDES);
         }
     }
     let [door_width_m, door_height_m] = door_m(stairs);
@@ -214,7 +215,7 @@ fn cheques(stairs: &Stairs) -> MeshBuilder {
     let lintel = Vec3::new(0.0, front_m, top_m + door_height_m + 0.06);
     solid.rounded_box(lintel, Vec3::new(door_width_m + 0.24, 0.08, 0.12), 0.01, 1);
     let handle = Vec3::new(door_width_m * 0.36, front_m - 0.04, top_m + door_height_m * 0.48);
-    solid.ball(handle, 0.05);
+    solid.ball(handle, 0.05, BALL_SIDES);
     solid
 }
 

@@ -3,13 +3,14 @@
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::to_mesh;
 use super::props::recolor;
 use super::stairs::{STRIP_ASIDE_M, strip_y_m};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Stairs;
+use snakes_lab::mesh::MeshBuilder;
 
 /// Materials in the colours of the lanes, in their order.
 #[derive(Resource, Debug)]
@@ -71,7 +72,7 @@ fn build(
         let start_m = lane.trial().start_y_m - lane.body().length_m() / 2.0;
         commands.entity(entity).with_child((
             LaneMark,
-            Mesh3d(meshes.add(stripes(&lane.trial().stairs, start_m).into_mesh())),
+            Mesh3d(meshes.add(to_mesh(stripes(&lane.trial().stairs, start_m)))),
             MeshMaterial3d(colors.of(lane.number())),
             NotShadowCaster,
             Visibility::Hidden,

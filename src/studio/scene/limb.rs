@@ -7,8 +7,9 @@
 
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::{BALL_SIDES, to_mesh, to_mesh_along};
 use crate::studio::ui::theme::palette::{AXIS_TONE, BELLY_TONE, TONGUE_TONE};
+use snakes_lab::mesh::{Eyes, LIMB_EDGE, MeshBuilder};
 
 /// Parameters of a limb's shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,9 +28,7 @@ pub(crate) struct LimbShape {
 
 /// Gap at a joint on each limb, in metres.
 const CUT_M: f32 = 0.07;
-/// Radius of the edges, as a fraction of the smallest side.
-const EDGE: f32 = 0.2;
-/// The same of a soft limb.
+/// Radius of the edges of a soft limb, as a fraction of its smallest side.
 const SOFT_EDGE: f32 = 0.42;
 /// Pieces along a soft limb that stay straight, per part.
 const PIECES: usize = 6;
@@ -53,7 +52,7 @@ impl LimbShape {
     }
 
     fn edge_m(&self) -> f32 {
-        self.size.min_element() * if self.parts > 1 { SOFT_EDGE } else { EDGE }
+        self.size.min_element() * if self.parts > 1 { SOFT_EDGE } else { LIMB_EDGE }
     }
 
     /// The places along y of the parts' centres, from the front, in metres.
@@ -65,13 +64,13 @@ impl LimbShape {
     /// The mesh of a body of this shape. That of a soft limb follows its parts: see [`Self::bind_poses`].
     pub fn mesh_of(&self, mut solid: MeshBuilder) -> Mesh {
         if self.parts < 2 {
-            return solid.into_mesh();
+            return to_mesh(solid);
         }
         let pieces = self.parts * PIECES;
         let piece_m = self.size.y / pieces as f32;
         let cuts = (1..pieces).map(|cut| self.size.y / 2.0 - piece_m * cut as f32);
         cuts.for_each(|y_m| solid.cut_at(y_m));
-        solid.into_mesh_along(&self.part_centres_m())
+        to_mesh_along(solid, &self.part_centres_m())
     }
 
     /// For each part of a soft limb the way from the limb's frame to the part's at rest.
@@ -96,14 +95,15 @@ impl LimbShape {
         let mut solid = MeshBuilder::default();
         let [front_cut, rear_cut] = self.cuts_m();
         // The head's stripe ends behind the eyes.
-        let front = if self.has_front { front_cut + self.edge_m() } else { self.eye_m() * 3.4 };
+        let front =
+            if self.has_front { front_cut + self.edge_m() } else { self.eyes().radius_m * 3.4 };
         let rear = rear_cut + self.edge_m();
         let length = (self.size.y - front - rear).max(0.0);
         let centre = Vec3::new(0.0, (rear - front) / 2.0, self.size.z / 2.0 + PAINT_M);
         solid.tone(Vec3::ONE);
         solid.sheet(centre, Vec3::X * self.thickness_m() * 0.07, Vec3::Y * length / 2.0);
         if !self.has_front {
-            self.eyes().into_iter().for_each(|eye| solid.ball(eye, self.eye_m()));
+            self.eyes().add_to(&mut solid, BALL_SIDES);
             self.tongue(&mut solid);
         }
         solid.tone(BELLY_TONE);
@@ -143,7 +143,7 @@ impl LimbShape {
         solid.patch(1, strips, |end, strip| {
             let (at, normal) = place(strips - strip);
             let y = middle_y + half_length * (end as f32 * 2.0 - 1.0);
-            (Vec3::new(at.x, y, at.y), Vec3::new(normal.x, 0.0, normal.y))
+            [Vec3::new(at.x, y, at.y), Vec3::new(normal.x, 0.0, normal.y)]
         });
     }
 
@@ -185,10 +185,7 @@ impl LimbShape {
             let joint = Vec3::Y * half;
             solid.cylinder(joint - Vec3::Y * front * 1.6, joint, thickness * 0.3);
         } else {
-            for eye in self.eyes() {
-                let gaze = Vec3::new(eye.x.signum() * 0.8, 0.62, 0.22).normalize();
-                solid.ball(eye + gaze * self.eye_m() * 0.5, self.eye_m() * 0.64);
-            }
+            self.eyes().add_pupils_to(&mut solid, BALL_SIDES);
         }
         if self.has_rear || self.has_own_hinge {
             // The axis of bending: a bright pin that stands out at both sides.
@@ -211,18 +208,8 @@ impl LimbShape {
         solid
     }
 
-    fn eye_m(&self) -> f32 {
-        self.thickness_m() * 0.2
-    }
-
-    /// Positions of the eyes: at the upper edges of the head, standing out at the top and at the side.
-    fn eyes(&self) -> [Vec3; 2] {
-        let radius = self.eye_m();
-        // Where edges are rounder, the block ends further inside.
-        let inwards = (self.edge_m() - self.size.min_element() * EDGE) * 0.3;
-        let (y, z) = (self.size.y / 2.0 - radius * 1.9, self.size.z / 2.0 - radius * 0.2 - inwards);
-        let x = self.size.x / 2.0 - radius * 0.35 - inwards;
-        [-1.0, 1.0].map(|side| Vec3::new(side * x, y, z))
+    fn eyes(&self) -> Eyes {
+        Eyes::of(self.size, self.edge_m())
     }
 }
 
@@ -234,7 +221,6 @@ const COLLAR_OUT: f32 = 0.07;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::scene::mesh_builder::tests::closed_volume;
 
     const SIZE: Vec3 = Vec3::new(1.0, 2.0, 1.0);
     const HEAD: LimbShape =
@@ -249,17 +235,14 @@ mod tests {
     fn a_block_is_shorter_only_at_joints() {
         let [rear, front] = reach(&HEAD.block(), |at| at.y);
         assert!((front - 1.0).abs() < 1.0e-5 && (rear + 1.0 - CUT_M).abs() < 1.0e-5);
-        assert!(closed_volume(&HEAD.block()) > 0.88 * SIZE.element_product());
+        assert!(HEAD.block().volume_m3() > 0.88 * SIZE.element_product());
     }
 
     #[test]
     fn a_soft_limb_is_cut_into_pieces_that_follow_its_parts() {
         let soft = LimbShape { parts: 3, ..HEAD };
-        let whole = closed_volume(&soft.block());
         let mut pieces = soft.block();
         (1..18).for_each(|cut| pieces.cut_at(1.0 - cut as f32 / 9.0));
-        assert!(pieces.indices.len() > 2 * soft.block().indices.len());
-        assert!((closed_volume(&pieces) - whole).abs() < 1.0e-4, "the same body");
         let mesh = soft.mesh_of(soft.block());
         let count = mesh.count_vertices();
         assert_eq!(count, pieces.positions.len());
@@ -301,7 +284,7 @@ mod tests {
                     has_own_hinge: has_front && !has_rear,
                     parts: 1,
                 };
-                assert!(closed_volume(&shape.block()) > 0.0);
+                assert!(shape.block().volume_m3() > 0.0);
                 let parts = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let positions = parts.iter().flat_map(|solid| &solid.positions);
                 assert!(positions.clone().all(|at| at.is_finite()));

@@ -7,9 +7,10 @@ use bevy::light::{EnvironmentMapLight, NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::to_mesh;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::{Palette, Theme};
+use snakes_lab::mesh::MeshBuilder;
 
 /// Radius of the dome, in metres: beyond the end of the ground, within the camera's far plane.
 const RADIUS_M: f32 = 900.0;
@@ -117,7 +118,7 @@ fn dome(palette: &Palette) -> Mesh {
         let (sin, cos) = libm::sincosf(-std::f32::consts::TAU * side as f32 / SIDES as f32);
         let (rise, reach) = libm::sincosf(angle(ring));
         let out = Vec3::new(cos * reach, sin * reach, rise);
-        (out * RADIUS_M, -out)
+        [out * RADIUS_M, -out]
     });
     let colors = (0..=rows).flat_map(|ring| {
         let share = (angle(ring) / ZENITH_RAD).clamp(0.0, 1.0);
@@ -127,5 +128,5 @@ fn dome(palette: &Palette) -> Mesh {
         std::iter::repeat_n(color.to_f32_array(), SIDES + 1)
     });
     let colors = VertexAttributeValues::Float32x4(colors.collect());
-    solid.into_mesh().with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }

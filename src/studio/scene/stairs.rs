@@ -4,13 +4,14 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 use bevy::render::render_resource::Face;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::to_tiled_mesh;
 use super::surface_material::SurfaceMaterials;
 use super::surface_texture::TILE_M;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::{StairBox, Stairs};
+use snakes_lab::mesh::MeshBuilder;
 
 /// How far the strip of ground reaches beyond the stairs on both sides, in metres.
 pub(crate) const STRIP_ASIDE_M: f32 = 0.4;
@@ -61,7 +62,7 @@ fn build(
         let mut of = |surface| surfaces.of(surface, *theme, &mut materials, &mut images);
         let (on_stairs, on_ground) = (of(&trial.surface), of(trial.ground()));
         let start_m = trial.start_y_m - lane.body().length_m() / 2.0;
-        let strip = meshes.add(strip(&trial.stairs, start_m).into_tiled_mesh(TILE_M));
+        let strip = meshes.add(to_tiled_mesh(strip(&trial.stairs, start_m), TILE_M));
         commands.entity(entity).with_child((
             Mesh3d(strip),
             MeshMaterial3d(on_ground),
@@ -72,7 +73,7 @@ fn build(
         }
         let mesh = match &last.0 {
             Some((stairs, mesh)) if *stairs == trial.stairs => mesh.clone(),
-            _ => meshes.add(solid(&trial.stairs).into_tiled_mesh(TILE_M)),
+            _ => meshes.add(to_tiled_mesh(solid(&trial.stairs), TILE_M)),
         };
         last.0 = Some((trial.stairs.clone(), mesh.clone()));
         commands.entity(entity).with_children(|parent| {
@@ -89,7 +90,7 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
     let outline = stairs.outline_m();
     let mut corner = 0;
     for step in 0..stairs.steps {
-        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        solid.tone(tone_of(step));
         // Riser or slope, with the two faces of a nosing between, and tread.
         let faces = if stairs.step_nosing_m(step) > 0.0 { 4 } else { 2 };
         for ends in outline[corner..=corner + faces].windows(2) {
@@ -113,6 +114,11 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
+/// Brightness of a step.
+fn tone_of(step: u32) -> Vec3 {
+    Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP })
+}
+
 /// Where the stairs stand on the ground: the ends along y of their boxes, and of slopes from or to the ground, in metres.
 fn raised_m(stairs: &Stairs) -> Vec<[f32; 2]> {
     let boxes = stairs.boxes().into_iter().filter(|of| of.min_m[2] == 0.0);
@@ -129,7 +135,7 @@ fn raised_m(stairs: &Stairs) -> Vec<[f32; 2]> {
 fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
     let half_m = stairs.width_m / 2.0;
     for StairBox { step, min_m, max_m } in stairs.boxes() {
-        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        solid.tone(tone_of(step));
         let (middle, half) =
             ((Vec3::from(min_m) + Vec3::from(max_m)) / 2.0, Vec3::from(max_m) - Vec3::from(min_m));
         let (along, up) = (Vec3::Y * half.y / 2.0, Vec3::Z * half.z / 2.0);
@@ -138,7 +144,7 @@ fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
         }
     }
     for step in (0..stairs.steps).filter(|&step| stairs.step_slope_m(step) > 0.0) {
-        solid.tone(Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP }));
+        solid.tone(tone_of(step));
         let foot = [stairs.riser_y_m(step), stairs.height_m(step)];
         let top = [stairs.tread_y_m(step), stairs.height_m(step + 1)];
         // The triangle over the lower of both levels; on a slope down it lies below the upper end.
@@ -200,13 +206,7 @@ mod tests {
     fn the_stairs_have_the_volume_below_their_outline_and_face_outward() {
         for stairs in samples() {
             let solid = solid(&stairs);
-            let corners = solid.indices.chunks(3);
-            let volume: f32 = corners
-                .map(|corners| {
-                    let [a, b, c] = [0, 1, 2].map(|at| solid.positions[corners[at] as usize]);
-                    a.dot(b.cross(c)) / 6.0
-                })
-                .sum();
+            let volume = solid.volume_m3();
             // The area between the outline and the ground, by trapezia.
             let outline = stairs.outline_m();
             let area: f32 = outline

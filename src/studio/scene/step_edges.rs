@@ -5,12 +5,13 @@ use std::f32::consts::PI;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::mesh_builder::MeshBuilder;
+use super::meshes::to_mesh;
 use super::props::{Props, box_transform, recolor};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Stairs;
+use snakes_lab::mesh::MeshBuilder;
 
 /// Step index of a strip; the lowest is 0.
 #[derive(Component, Debug)]
@@ -131,7 +132,7 @@ fn glow(stairs: &Stairs) -> Mesh {
     let opacity = |at: &Vec3| if at.y > out_m || at.z < -out_m { 0.0 } else { GLOW_OPACITY };
     let colors: Vec<[f32; 4]> =
         solid.positions.iter().map(|at| [1.0, 1.0, 1.0, opacity(at)]).collect();
-    solid.into_mesh().with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
 /// Opacity of the glow at the edge.

@@ -5,13 +5,13 @@
 
 mod atlas;
 
-use bevy::asset::RenderAssetUsages;
-use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
+use super::meshes::to_mesh;
 use super::props::recolor;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
+use snakes_lab::mesh::MeshBuilder;
 
 use atlas::{Atlas, BASELINE, CELL, MARGIN};
 
@@ -62,11 +62,9 @@ fn dress(
 /// Builds one mesh from several texts.
 pub(crate) struct TextMeshBuilder<'a> {
     atlas: &'a Atlas,
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
+    solid: MeshBuilder,
     uvs: Vec<[f32; 2]>,
     colors: Vec<[f32; 4]>,
-    indices: Vec<u32>,
     opacity: f32,
 }
 
@@ -84,16 +82,8 @@ pub(crate) struct TextPlacement {
 impl TextMeshes {
     /// A builder without text.
     pub fn begin(&self) -> TextMeshBuilder<'_> {
-        let (positions, normals, uvs, colors, indices) = default();
-        TextMeshBuilder {
-            atlas: &self.atlas,
-            positions,
-            normals,
-            uvs,
-            colors,
-            indices,
-            opacity: 1.0,
-        }
+        let (solid, uvs, colors) = default();
+        TextMeshBuilder { atlas: &self.atlas, solid, uvs, colors, opacity: 1.0 }
     }
 
     /// Width of a text with digits of a given height, in metres.
@@ -130,30 +120,20 @@ impl TextMeshBuilder<'_> {
 
     /// Adds a rectangle in the plane of a place, with a part of the atlas, whose y runs downwards.
     fn rectangle(&mut self, on_plane: Rect, part: Rect, place: TextPlacement) {
-        let first = self.positions.len() as u32;
         let TextPlacement { middle, right, up } = place;
-        let (min, max) = (on_plane.min, on_plane.max);
-        for (x, y, u, v) in [
-            (min.x, min.y, part.min.x, part.max.y),
-            (max.x, min.y, part.max.x, part.max.y),
-            (max.x, max.y, part.max.x, part.min.y),
-            (min.x, max.y, part.min.x, part.min.y),
-        ] {
-            self.positions.push((middle + right * x + up * y).to_array());
-            self.normals.push(right.cross(*up).to_array());
-            self.uvs.push([u, v]);
-            self.colors.push([1.0, 1.0, 1.0, self.opacity]);
-        }
-        self.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
+        let (x, y) = ([on_plane.min.x, on_plane.max.x], [on_plane.min.y, on_plane.max.y]);
+        self.solid.patch(1, 1, |column, row| {
+            [middle + right * x[column] + up * y[row], right.cross(*up)]
+        });
+        let (u, v) = ([part.min.x, part.max.x], [part.max.y, part.min.y]);
+        self.uvs.extend(v.into_iter().flat_map(|v| u.map(|u| [u, v])));
+        self.colors.extend([[1.0, 1.0, 1.0, self.opacity]; 4]);
     }
 
     /// The finished mesh.
     pub fn into_mesh(self) -> Mesh {
-        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+        to_mesh(self.solid)
             .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)
             .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
-            .with_inserted_indices(Indices::U32(self.indices))
     }
 }

@@ -1,6 +1,6 @@
 //! Champions in the formats of other programs.
 //!
-//! Each format stands in a file of its own and is written through an [`snakes_core::save::UnfinishedFile`], so that a file
+//! Each format stands in a file of its own and is written atomically, so that a file
 //! appears under its name only when it is complete. Nothing here reads a clock or depends on the order of threads: the
 //! same champion gives the same bytes.
 
@@ -14,7 +14,6 @@ mod motion;
 mod order;
 mod page;
 mod progress;
-mod rounded_box;
 mod source;
 mod table_file;
 mod urdf;
@@ -26,5 +25,4 @@ pub use format::{ExportFormat, FormatInfo};
 pub use mjcf::mjcf;
 pub use order::ExportOrder;
 pub use progress::ExportProgress;
-pub use rounded_box::{BoxFace, RoundedBox};
 pub use source::{ExportSource, ExportedChampion, ExportedRun};

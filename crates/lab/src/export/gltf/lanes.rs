@@ -10,10 +10,14 @@ use super::super::mjcf::{LIMB_COLORS, STEP_COLORS, part_name};
 use super::super::motion::follow;
 use super::super::{ExportError, ExportProgress, ExportedChampion};
 use super::pieces::{Look, SceneParts};
-use super::shapes::TriangleSet;
+use crate::mesh::{Eyes, LIMB_EDGE, MeshBuilder};
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::{BodyPlan, Pose, Rotation, StairSolid, Vector};
 
+/// Cells of a limb's rounded edge.
+const EDGE_CELLS: usize = 3;
+/// Sides of an eye.
+const EYE_SIDES: usize = 16;
 /// Samples of an animation per second, at most.
 const SAMPLES_PER_S: u32 = 60;
 /// Room between lanes, in m, as on the studio's stage.
@@ -160,10 +164,16 @@ fn limbs(
         let mesh = match known {
             Some((_, _, mesh)) => *mesh,
             None => {
-                let block = TriangleSet::rounded_box(Vector::from(size_m));
+                let size = Vector::from(size_m);
+                let edge_m = size.min_element() * LIMB_EDGE;
+                let mut block = MeshBuilder::default();
+                block.rounded_box(Vector::ZERO, size, edge_m, EDGE_CELLS);
                 let mut shapes = vec![(block, looks.limbs[color])];
                 if index == 0 {
-                    let [eyes, pupils] = eyes(Vector::from(size_m));
+                    let (of_head, [mut eyes, mut pupils]) =
+                        (Eyes::of(size, edge_m), <[MeshBuilder; 2]>::default());
+                    of_head.add_to(&mut eyes, EYE_SIDES);
+                    of_head.add_pupils_to(&mut pupils, EYE_SIDES);
                     shapes.extend([(eyes, looks.eye), (pupils, looks.pupil)]);
                 }
                 let mesh = pieces.mesh(if index == 0 { "head" } else { "limb" }, &shapes);
@@ -183,20 +193,6 @@ fn limbs(
         }));
     }
     nodes
-}
-
-/// The eyes of a head, and their pupils.
-fn eyes(size: Vector) -> [TriangleSet; 2] {
-    let radius = size.x.min(size.z) * 0.2;
-    let (mut eyes, mut pupils) = (TriangleSet::default(), TriangleSet::default());
-    for side in [-1.0, 1.0] {
-        let across = side * (size.x / 2.0 - radius * 0.35);
-        let eye = Vector::new(across, size.y / 2.0 - radius * 1.9, size.z / 2.0 - radius * 0.2);
-        eyes.ball(eye, radius);
-        let gaze = Vector::new(side * 0.8, 0.62, 0.22).normalize();
-        pupils.ball(eye + gaze * radius * 0.5, radius * 0.64);
-    }
-    [eyes, pupils]
 }
 
 /// Adds the movement of a limb.
@@ -251,6 +247,17 @@ fn cut_off(solid: StairSolid, end_y_m: f32) -> StairSolid {
     StairSolid { pose, half_m: solid.half_m - ahead, ..solid }
 }
 
+/// Adds a box with sharp edges, without the face on which it stands.
+fn add_step(shape: &mut MeshBuilder, solid: &StairSolid) {
+    let (centre, turn) = (solid.pose.translation, solid.pose.rotation);
+    let half = solid.half_m;
+    let [x, y, z] =
+        [Vector::X * half.x, Vector::Y * half.y, Vector::Z * half.z].map(|to| turn * to);
+    for (out, right, up) in [(x, y, z), (-x, -y, z), (y, -x, z), (-y, x, z), (z, x, y)] {
+        shape.sheet(centre + out, right, up);
+    }
+}
+
 /// The node of the stairs, if there are any: steps of two tones in turn. Of a long landing only the part up to `end_y_m`.
 fn stairs(
     pieces: &mut SceneParts,
@@ -259,9 +266,9 @@ fn stairs(
     end_y_m: f32,
     looks: &Looks,
 ) -> Option<Index<Node>> {
-    let mut tones = [TriangleSet::default(), TriangleSet::default()];
+    let mut tones = <[MeshBuilder; 2]>::default();
     for solid in trial.stairs.solids() {
-        tones[solid.step as usize % 2].step(&cut_off(solid, end_y_m));
+        add_step(&mut tones[solid.step as usize % 2], &cut_off(solid, end_y_m));
     }
     let shapes = tones.into_iter().zip(looks.steps);
     let shapes: Vec<_> = shapes.filter(|(shape, _)| !shape.indices.is_empty()).collect();
@@ -271,4 +278,24 @@ fn stairs(
     let mesh = pieces.mesh("stairs", &shapes);
     let name = Some(format!("{name}, stairs"));
     Some(pieces.root.push(Node { name, mesh: Some(mesh), ..Node::default() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_has_five_faces_that_look_outward() {
+        let mut shape = MeshBuilder::default();
+        let centre = Vector::new(0.0, 1.0, 0.25);
+        let pose = Pose::from_translation(centre);
+        add_step(&mut shape, &StairSolid { step: 0, pose, half_m: Vector::new(1.0, 1.0, 0.25) });
+        assert_eq!(shape.indices.len(), 5 * 6);
+        for corners in shape.indices.as_chunks::<3>().0 {
+            let [a, b, c] = corners.map(|corner| shape.positions[corner as usize]);
+            let facing = (b - a).cross(c - a);
+            assert!(facing.dot(a - centre) > 0.0);
+            assert!(facing.normalize().distance(shape.normals[corners[0] as usize]) < 1e-6);
+        }
+    }
 }

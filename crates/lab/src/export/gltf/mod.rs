@@ -5,7 +5,6 @@
 
 mod lanes;
 mod pieces;
-mod shapes;
 
 use std::f32::consts::FRAC_1_SQRT_2;
 use std::io::Write;
@@ -20,6 +19,7 @@ use serde_json::json;
 
 use super::facts::{facts_as_json, generator};
 use super::{ExportError, ExportProgress, ExportedChampion};
+use crate::mesh::MeshBuilder;
 use lanes::{Bounds, add_lanes};
 use pieces::{Look, SceneParts};
 use snakes_core::save::UnfinishedFile;
@@ -84,8 +84,8 @@ fn asset(champions: &[ExportedChampion]) -> Asset {
 
 fn ground(pieces: &mut SceneParts, bounds: &Bounds) -> Index<Node> {
     let size = bounds.max - bounds.min + Vector::new(2.0, 2.0, 0.0) * GROUND_BEYOND_M;
-    let mut shape = shapes::TriangleSet::default();
-    shape.rectangle(Vector::ZERO, Vector::X * size.x / 2.0, Vector::Y * size.y / 2.0);
+    let mut shape = MeshBuilder::default();
+    shape.sheet(Vector::ZERO, Vector::X * size.x / 2.0, Vector::Y * size.y / 2.0);
     let material = pieces.material(GROUND);
     let mesh = pieces.mesh("ground", &[(shape, material)]);
     let middle = (bounds.min + bounds.max) / 2.0;

@@ -10,7 +10,8 @@ use gltf_json::mesh::{Mode, Primitive, Semantic};
 use gltf_json::validation::{Checked, USize64};
 use gltf_json::{Accessor, Asset, Buffer, Index, Material, Mesh, Root, Value};
 
-use super::shapes::TriangleSet;
+use crate::mesh::MeshBuilder;
+use snakes_core::world::Vector;
 
 /// A glTF file in progress.
 pub(super) struct SceneParts {
@@ -57,7 +58,7 @@ impl SceneParts {
     }
 
     /// Adds a mesh of shapes, each with a material.
-    pub fn mesh(&mut self, name: &str, shapes: &[(TriangleSet, Index<Material>)]) -> Index<Mesh> {
+    pub fn mesh(&mut self, name: &str, shapes: &[(MeshBuilder, Index<Material>)]) -> Index<Mesh> {
         let primitives = shapes.iter().map(|(shape, material)| {
             let positions = self.vectors(&shape.positions, true);
             let normals = self.vectors(&shape.normals, false);
@@ -85,9 +86,9 @@ impl SceneParts {
         })
     }
 
-    fn vectors(&mut self, vectors: &[[f32; 3]], with_bounds: bool) -> Index<Accessor> {
-        let target = Some(Target::ArrayBuffer);
-        let accessor = self.floats(vectors.as_flattened(), Type::Vec3, target);
+    fn vectors(&mut self, vectors: &[Vector], with_bounds: bool) -> Index<Accessor> {
+        let numbers: Vec<f32> = vectors.iter().flat_map(|vector| vector.to_array()).collect();
+        let accessor = self.floats(&numbers, Type::Vec3, Some(Target::ArrayBuffer));
         if with_bounds {
             let bound = |least: fn(f32, f32) -> f32, start: f32| -> Value {
                 let of = |axis: usize| vectors.iter().map(|at| at[axis]).fold(start, least);

@@ -7,7 +7,7 @@ use snakes_core::world::Vector;
 
 /// A box with rounded edges around the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RoundedBox {
+pub(super) struct RoundedBox {
     half: Vector,
     radius: f32,
     /// Cells across each rounded edge.
@@ -15,12 +15,12 @@ pub struct RoundedBox {
 }
 
 /// A face of a box: the axis that it looks along, 0 to 2, and whether it looks towards the axis' positive end.
-pub type BoxFace = (usize, bool);
+pub(super) type BoxFace = (usize, bool);
 
 impl RoundedBox {
     /// A box of a size, edges included, in metres. A box that is too thin gets a smaller radius.
-    pub fn new(size_m: [f32; 3], radius_m: f32, edge_cells: usize) -> Self {
-        let half = Vector::from(size_m) / 2.0;
+    pub fn new(size_m: Vector, radius_m: f32, edge_cells: usize) -> Self {
+        let half = size_m / 2.0;
         let radius = radius_m.min(half.min_element() * 0.999);
         Self { half, radius, edge_cells: edge_cells.max(1) }
     }
@@ -37,7 +37,7 @@ impl RoundedBox {
 
     /// Position, in metres, and normal of a corner of a face's cells; both indices go from 0 to [`Self::cells`]. Seen from
     /// outside, rows go up if columns go to the right.
-    pub fn corner(&self, (axis, is_positive): BoxFace, column: usize, row: usize) -> [[f32; 3]; 2] {
+    pub fn corner(&self, (axis, is_positive): BoxFace, column: usize, row: usize) -> [Vector; 2] {
         let (mut right, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
         if !is_positive {
             std::mem::swap(&mut right, &mut up);
@@ -49,7 +49,7 @@ impl RoundedBox {
         let inner = self.half - Vector::splat(self.radius);
         let within = on_box.clamp(-inner, inner);
         let normal = (on_box - within).normalize_or_zero();
-        [(within + normal * self.radius).to_array(), normal.to_array()]
+        [within + normal * self.radius, normal]
     }
 
     /// Position of a cell's corner along one axis before bending: equal angles within each rounded edge.
@@ -73,11 +73,11 @@ mod tests {
     #[test]
     fn every_corner_lies_on_the_rounded_box_and_faces_outward() {
         let (size, radius) = (Vector::new(1.0, 2.0, 0.8), 0.1);
-        let shape = RoundedBox::new(size.to_array(), radius, 3);
+        let shape = RoundedBox::new(size, radius, 3);
         let inner = size / 2.0 - Vector::splat(radius);
         for face in RoundedBox::faces() {
             for (column, row) in (0..=7).flat_map(|column| (0..=7).map(move |row| (column, row))) {
-                let [position, normal] = shape.corner(face, column, row).map(Vector::from);
+                let [position, normal] = shape.corner(face, column, row);
                 let from_inner = position - position.clamp(-inner, inner);
                 assert!((from_inner.length() - radius).abs() < 1.0e-5, "{position}");
                 assert!((from_inner / radius - normal).length() < 1.0e-4, "{normal}");
