@@ -1,7 +1,7 @@
 //! The columns of the table of motion: one row for each limb at each step.
 
 use snakes_core::score::Rollout;
-use snakes_core::world::{LimbReading, SnakeReading};
+use snakes_core::world::{LimbReading, SnakeReading, Vector};
 
 /// A column of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,79 +12,57 @@ pub struct Column {
     pub meaning: &'static str,
 }
 
+/// A column by its name and meaning.
+const fn column(name: &'static str, meaning: &'static str) -> Column {
+    Column { name, meaning }
+}
+
 /// The columns that say which row this is: whole numbers, but for the champion's name, which is text, and the time.
 pub(super) const KEYS: [Column; 4] = [
-    Column { name: "champion", meaning: "name of the champion" },
-    Column { name: "step", meaning: "number of the physics step; 0 is the start" },
-    Column { name: "time_s", meaning: "simulated time" },
-    Column { name: "limb", meaning: "number of the limb; the head is 1" },
+    column("champion", "name of the champion"),
+    column("step", "number of the physics step; 0 is the start"),
+    column("time_s", "simulated time"),
+    column("limb", "number of the limb; the head is 1"),
 ];
 
 /// The columns of values.
 pub(super) const VALUES: [Column; 33] = [
-    Column { name: "x_m", meaning: "position of the limb's centre across the stairs" },
-    Column { name: "y_m", meaning: "position towards and up the stairs" },
-    Column { name: "z_m", meaning: "position upwards" },
-    Column { name: "rotation_x", meaning: "rotation of the limb in the world, a unit quaternion" },
-    Column { name: "rotation_y", meaning: "the same" },
-    Column { name: "rotation_z", meaning: "the same" },
-    Column { name: "rotation_w", meaning: "the same, real part" },
-    Column { name: "velocity_x_m_s", meaning: "velocity of the limb's centre" },
-    Column { name: "velocity_y_m_s", meaning: "the same along y" },
-    Column { name: "velocity_z_m_s", meaning: "the same along z" },
-    Column {
-        name: "angular_velocity_x_rad_s",
-        meaning: "angular velocity of the limb in the world",
-    },
-    Column { name: "angular_velocity_y_rad_s", meaning: "the same about y" },
-    Column { name: "angular_velocity_z_rad_s", meaning: "the same about z" },
-    Column {
-        name: "joint_bend_rad",
-        meaning: "bend of the joint in front of the limb; the head has none",
-    },
-    Column { name: "joint_twist_rad", meaning: "twist of that joint" },
-    Column { name: "joint_bend_rate_rad_s", meaning: "rate of its bend" },
-    Column { name: "joint_twist_rate_rad_s", meaning: "rate of its twist" },
-    Column {
-        name: "joint_bend_torque_nm",
-        meaning: "torque about its bend axis in the step that led here",
-    },
-    Column { name: "joint_twist_torque_nm", meaning: "torque about its twist axis in that step" },
-    Column {
-        name: "contact_points",
-        meaning: "points in which ground or stairs press on the limb",
-    },
-    Column {
-        name: "contact_force_x_n",
-        meaning: "force of ground and stairs on the limb in the last substep",
-    },
-    Column { name: "contact_force_y_n", meaning: "the same along y" },
-    Column { name: "contact_force_z_n", meaning: "the same along z" },
-    Column { name: "touches", meaning: "1 if the limb touches ground or stairs, else 0" },
-    Column { name: "pitch_rad", meaning: "angle of the limb's axis over the horizontal" },
-    Column { name: "roll_rad", meaning: "angle of the limb's sideways axis over the horizontal" },
-    Column {
-        name: "gap_m",
-        meaning: "way along y from the front face to the next riser; none behind the last one",
-    },
-    Column { name: "step_up_m", meaning: "height of the next tread over the limb's lowest corner" },
-    Column {
-        name: "clearance_m",
-        meaning: "height of the lowest corner over the surface below the limb",
-    },
-    Column { name: "blocked_n", meaning: "force of the contacts against the limb's forward axis" },
-    Column {
-        name: "head_yaw_rad",
-        meaning: "sideways angle of the head; the same in the rows of all limbs",
-    },
-    Column {
-        name: "speed_ahead_m_s",
-        meaning: "velocity of the middle limb along y, as the snake senses it",
-    },
-    Column {
-        name: "aside_half_widths",
-        meaning: "distance of the middle limb from the middle of the stairs, as a share of half their width",
-    },
+    column("x_m", "position of the limb's centre across the stairs"),
+    column("y_m", "position towards and up the stairs"),
+    column("z_m", "position upwards"),
+    column("rotation_x", "rotation of the limb in the world, a unit quaternion"),
+    column("rotation_y", "the same"),
+    column("rotation_z", "the same"),
+    column("rotation_w", "the same, real part"),
+    column("velocity_x_m_s", "velocity of the limb's centre"),
+    column("velocity_y_m_s", "the same along y"),
+    column("velocity_z_m_s", "the same along z"),
+    column("angular_velocity_x_rad_s", "angular velocity of the limb in the world"),
+    column("angular_velocity_y_rad_s", "the same about y"),
+    column("angular_velocity_z_rad_s", "the same about z"),
+    column("joint_bend_rad", "bend of the joint in front of the limb; the head has none"),
+    column("joint_twist_rad", "twist of that joint"),
+    column("joint_bend_rate_rad_s", "rate of its bend"),
+    column("joint_twist_rate_rad_s", "rate of its twist"),
+    column("joint_bend_torque_nm", "torque about its bend axis in the step that led here"),
+    column("joint_twist_torque_nm", "torque about its twist axis in that step"),
+    column("contact_points", "points in which ground or stairs press on the limb"),
+    column("contact_force_x_n", "force of ground and stairs on the limb in the last substep"),
+    column("contact_force_y_n", "the same along y"),
+    column("contact_force_z_n", "the same along z"),
+    column("touches", "1 if the limb touches ground or stairs, else 0"),
+    column("pitch_rad", "angle of the limb's axis over the horizontal"),
+    column("roll_rad", "angle of the limb's sideways axis over the horizontal"),
+    column("gap_m", "way along y from the front face to the next riser; none behind the last one"),
+    column("step_up_m", "height of the next tread over the limb's lowest corner"),
+    column("clearance_m", "height of the lowest corner over the surface below the limb"),
+    column("blocked_n", "force of the contacts against the limb's forward axis"),
+    column("head_yaw_rad", "sideways angle of the head; the same in the rows of all limbs"),
+    column("speed_ahead_m_s", "velocity of the middle limb along y, as the snake senses it"),
+    column(
+        "aside_half_widths",
+        "distance of the middle limb from the middle of the stairs, as a share of half their width",
+    ),
 ];
 
 /// All columns, in their order.
@@ -114,33 +92,22 @@ impl RowReader {
         limbs
             .map(|(limb, ((pose, [velocity, spin]), reading))| {
                 let joint = limb.checked_sub(1).and_then(|joint| joints.get(joint));
-                let of_joint = joint.map(|(state, torque)| {
+                let of_joint = joint.map_or([[None; 2]; 3], |(state, torque)| {
+                    let angles = [state.bend_rad, state.twist_rad];
                     let rates = [state.bend_rad_s, state.twist_rad_s];
-                    [
-                        state.bend_rad,
-                        state.twist_rad,
-                        rates[0],
-                        rates[1],
-                        torque.bend_nm,
-                        torque.twist_nm,
-                    ]
+                    [angles, rates, [torque.bend_nm, torque.twist_nm]].map(|pair| pair.map(Some))
                 });
-                let of_joint = of_joint.map_or([None; 6], |values| values.map(Some));
                 let on_it = forces.iter().filter(|contact| contact.limb == limb);
-                let (mut points, mut force) = (0.0, [0.0; 3]);
-                for contact in on_it {
-                    points += 1.0;
-                    let parts = contact.force_n.to_array();
-                    force = std::array::from_fn(|axis| force[axis] + parts[axis]);
-                }
+                let points = on_it.clone().count() as f32;
+                let force: Vector = on_it.map(|contact| contact.force_n).sum();
                 let turn = pose.rotation;
                 let mut row = pose.translation.to_array().map(Some).to_vec();
                 row.extend([turn.x, turn.y, turn.z, turn.w].map(Some));
                 row.extend(velocity.to_array().map(Some));
                 row.extend(spin.to_array().map(Some));
-                row.extend(of_joint);
+                row.extend(of_joint.as_flattened());
                 row.push(Some(points));
-                row.extend(force.map(Some));
+                row.extend(force.to_array().map(Some));
                 row.extend(sensed(reading, &snake));
                 std::array::from_fn(|index| row.get(index).copied().flatten())
             })

@@ -143,10 +143,7 @@ impl ExportFormat {
             1 => format!("a single champion in .{ending}; name one file"),
             _ => format!("1 to {most} champions in .{ending}; name fewer files"),
         };
-        let is_allowed = (1..=most).contains(&found);
-        is_allowed
-            .then_some(())
-            .ok_or_else(|| Invalid::new("FILES", format!("{found} champions"), allowed))
+        check_files((1..=most).contains(&found), format!("{found} champions"), allowed)
     }
 
     /// Checks a number of a run's generations, each with its champion, that one file has to hold.
@@ -161,9 +158,8 @@ impl ExportFormat {
             ),
             _ => format!("a run of 1 to {most} generations in .{ending}"),
         };
-        let value = || format!("a run of {found} generations");
-        let is_allowed = (1..=most).contains(&found);
-        is_allowed.then_some(()).ok_or_else(|| Invalid::new("FILES", value(), allowed))
+        let value = format!("a run of {found} generations");
+        check_files((1..=most).contains(&found), value, allowed)
     }
 
     /// The format of a file, by the ending of its name.
@@ -179,6 +175,11 @@ impl ExportFormat {
             Invalid::new(field, quoted(&path.display().to_string()), allowed)
         })
     }
+}
+
+/// The error that the files have this value, unless it is allowed.
+fn check_files(is_allowed: bool, value: String, allowed: String) -> Result<(), Invalid> {
+    if is_allowed { Ok(()) } else { Err(Invalid::new("FILES", value, allowed)) }
 }
 
 #[cfg(test)]

@@ -24,6 +24,19 @@ const OTHER_FRICTION: [f32; 2] = [0.005, 0.0001];
 pub(super) const LIMB_COLORS: [[f32; 3]; 2] = [[0.86, 0.13, 0.12], [0.10, 0.27, 0.84]];
 pub(super) const STEP_COLORS: [[f32; 3]; 2] = [[0.72, 0.70, 0.66], [0.62, 0.60, 0.57]];
 
+/// Light, sky and the material of the ground. Two squares in each direction have two metres.
+const LOOKS: &str = r#"
+  <visual>
+    <global offwidth="1920" offheight="1080"/>
+    <headlight ambient="0.35 0.35 0.35" diffuse="0.25 0.25 0.25"/>
+  </visual>
+  <asset>
+    <texture type="skybox" builtin="gradient" rgb1="0.75 0.83 0.9" rgb2="0.95 0.96 0.97" width="64" height="384"/>
+    <texture name="squares" type="2d" builtin="checker" rgb1="0.80 0.80 0.78" rgb2="0.75 0.75 0.73" width="256" height="256"/>
+    <material name="ground" texture="squares" texrepeat="0.5 0.5" texuniform="true"/>
+  </asset>
+"#;
+
 /// The model of a world: ground, stairs and snake, with facts about the champion.
 ///
 /// # Errors
@@ -109,48 +122,8 @@ fn settings(xml: &mut XmlText, plan: &WorldPlan, facts: &[Fact]) -> io::Result<(
             xml.leaf("text", &[("name", (*name).into()), ("data", value.clone())])
         })
     })?;
-    xml.element("visual", &[], |xml| {
-        xml.leaf("global", &[("offwidth", "1920".into()), ("offheight", "1080".into())])?;
-        xml.leaf(
-            "headlight",
-            &[("ambient", "0.35 0.35 0.35".into()), ("diffuse", "0.25 0.25 0.25".into())],
-        )
-    })?;
-    xml.element("asset", &[], |xml| {
-        xml.leaf(
-            "texture",
-            &[
-                ("type", "skybox".into()),
-                ("builtin", "gradient".into()),
-                ("rgb1", "0.75 0.83 0.9".into()),
-                ("rgb2", "0.95 0.96 0.97".into()),
-                ("width", "64".into()),
-                ("height", "384".into()),
-            ],
-        )?;
-        xml.leaf(
-            "texture",
-            &[
-                ("name", "squares".into()),
-                ("type", "2d".into()),
-                ("builtin", "checker".into()),
-                ("rgb1", "0.80 0.80 0.78".into()),
-                ("rgb2", "0.75 0.75 0.73".into()),
-                ("width", "256".into()),
-                ("height", "256".into()),
-            ],
-        )?;
-        // Two squares in each direction have two metres.
-        xml.leaf(
-            "material",
-            &[
-                ("name", "ground".into()),
-                ("texture", "squares".into()),
-                ("texrepeat", "0.5 0.5".into()),
-                ("texuniform", "true".into()),
-            ],
-        )
-    })
+    xml.fixed(LOOKS);
+    Ok(())
 }
 
 /// Length of a step of MuJoCo, in s.

@@ -1,6 +1,5 @@
 //! Orders: champions, a format, and the file to write.
 
-use std::io::Write;
 use std::path::Path;
 use std::path::PathBuf;
 
@@ -10,7 +9,7 @@ use super::mjcf::mjcf;
 use super::source::{ExportSource, ExportedChampion};
 use super::urdf::urdf;
 use super::{ExportError, ExportProgress, gltf, page, table_file};
-use snakes_core::save::UnfinishedFile;
+use snakes_core::save::store_text;
 use snakes_core::world::WorldPlan;
 
 /// Champions, a format and a file.
@@ -88,10 +87,7 @@ impl ExportOrder {
             let champion = &exported.loaded.champion;
             let plan = champion.trial.world_plan(&champion.genome);
             let text = model(&exported.name, &plan, &facts(exported));
-            let text = text.map_err(ExportError::unwritable(&self.path))?;
-            let mut file = UnfinishedFile::create(&self.path)?;
-            file.write_all(text.as_bytes()).map_err(ExportError::unwritable(&self.path))?;
-            Ok(file.finish()?)
+            Ok(store_text(&self.path, &text.map_err(ExportError::unwritable(&self.path))?)?)
         })
     }
 }

@@ -9,7 +9,6 @@ mod drawing;
 mod markup;
 mod run_report;
 
-use std::io::Write;
 use std::path::Path;
 
 use base64::Engine as _;
@@ -20,7 +19,7 @@ use super::source::ExportSource;
 use super::{ExportError, ExportProgress};
 use data::PageData;
 use snakes_core::ENGINE_VERSION;
-use snakes_core::save::UnfinishedFile;
+use snakes_core::save::store_text;
 
 /// The core as a WebAssembly module, which `web/build` makes.
 const CORE: &[u8] = include_bytes!("../../../../assets/page-core.wasm.gz");
@@ -43,9 +42,7 @@ pub(super) fn write_page(
     progress: &ExportProgress,
 ) -> Result<(), ExportError> {
     let data = PageData::recorded(source, progress)?;
-    let mut file = UnfinishedFile::create(path)?;
-    file.write_all(page(source, &data).as_bytes()).map_err(ExportError::unwritable(path))?;
-    Ok(file.finish()?)
+    Ok(store_text(path, &page(source, &data))?)
 }
 
 /// The text of the page.

@@ -55,6 +55,11 @@ impl XmlText {
         self.0.write_event(Event::End(BytesEnd::new(name)))
     }
 
+    /// Elements that are the same in every document, as XML with the indentation of their place.
+    pub fn fixed(&mut self, elements: &str) {
+        self.0.get_mut().extend(elements.trim_end().bytes());
+    }
+
     /// A comment. XML has no escapes in comments and allows no two hyphens there.
     pub fn comment(&mut self, text: &str) -> io::Result<()> {
         let text = format!(" {} ", printable(text).replace("--", "-\u{2010}"));
