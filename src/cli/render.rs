@@ -50,8 +50,6 @@ pub fn draw(wanted: &ExportArgs, at: &str, path: &Path) -> Result<(), CliError> 
         champions,
     };
     let (mut picture, tags) = render(&scene)?;
-    let tags: Vec<(&str, (f32, f32))> =
-        tags.iter().map(|tag| (tag.text.as_str(), tag.at)).collect();
     plot::tags(&mut picture, &tags)?;
     store_picture(path, &picture)?;
     print(&format!("saved to {}\n", path.display()))

@@ -10,7 +10,7 @@ pub(crate) struct ChartExport {
     /// The chart's data.
     pub figure: Arc<Figure>,
     /// First part of the file name.
-    pub name: &'static str,
+    pub name: String,
     /// File format.
     pub format: ChartFormat,
     /// Whether it is about the current run, whose name the picture then has.

@@ -10,10 +10,11 @@ use crate::studio::state::lessons::{
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::lane_dot::lane_dot;
-use crate::studio::ui::plot_axes::{bounds, fixed_plot, padded_range, x_title, y_title};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
 use snakes_core::score::{Evaluation, Fitness};
+use snakes_lab::plot::Axis;
 
 /// Draws the list of lessons or the lesson in progress, and collects the user's commands.
 pub(super) fn lessons(
@@ -252,22 +253,21 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
         known.collect()
     };
     let lines: Vec<Vec<[f64; 2]>> = runs.iter().map(best).collect();
-    let axis = |of: usize, least: f64| {
-        padded_range(lines.iter().flatten().map(move |point| point[of]), least)
-    };
+    let along = |of: usize| lines.iter().flatten().map(move |point| point[of]);
     // A metre of a distance, a tenth of a share.
     let least = if unit.is_empty() { 0.1 } else { 1.0 };
-    if let (Some(x), Some(y)) = (axis(0, 1.0), axis(1, least)) {
-        let unit = if unit.is_empty() { String::new() } else { format!(" ({})", unit.trim()) };
-        y_title(ui, &format!("Best fitness of each generation{unit}"));
-        fixed_plot("lesson", theme::PLOT_HEIGHT).show(ui, |plot| {
-            plot.set_plot_bounds(bounds(&x, &y));
+    if along(0).next().is_some() {
+        let x = Axis::around("Generation", "", along(0), 1.0);
+        let y = Axis::around("Best fitness of each generation", unit.trim(), along(1), least);
+        y_title(ui, &y.label());
+        fixed_plot("lesson", theme::PLOT_HEIGHT, [&x, &y]).show(ui, |plot| {
+            plot.set_plot_bounds(bounds(&x.range, &y.range));
             for (lane, (found, points)) in runs.iter().zip(&lines).enumerate() {
                 let line = Line::new(found.name.clone(), PlotPoints::from(points.clone()));
                 plot.line(line.color(palette.lane_color(lane)).width(2.0));
             }
         });
-        x_title(ui, "Generation");
+        x_title(ui, &x.label());
     }
     if is_busy {
         ui.horizontal(|ui| {

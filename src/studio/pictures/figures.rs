@@ -41,10 +41,7 @@ pub fn draw(
 /// Replaces the scene by a champion at the end of its rollout. Returns its result.
 fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     let champion = &loaded.champion;
-    let world = studio.app.world_mut();
-    let earlier: Vec<Entity> = world.query_filtered::<Entity, With<Lane>>().iter(world).collect();
-    earlier.into_iter().for_each(|lane| world.entity_mut(lane).despawn());
-
+    studio.clear_stage();
     let mut lane = Lane::new(StagedChampion::from_file(loaded, 0, "champion"), 0);
     let moments = lane.skip_to_end(MOMENTS);
     let evaluation = lane.evaluation();

@@ -23,12 +23,16 @@ use bevy::winit::WinitPlugin;
 use wgpu_types::PollType;
 
 use super::screenshot::picture_of;
+use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
 use crate::studio::failure::panic_guard;
+use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::{self, camera};
 use crate::studio::schedule::FrameSet;
+use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::Theme;
 use snakes_core::save::Picture;
+use snakes_lab::plot::NameTag;
 
 /// An app with the studio's scene, without a window and without a main loop.
 pub(crate) struct Offscreen {
@@ -114,6 +118,28 @@ impl Offscreen {
         app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into()), NoIndirectDrawing));
         app.update();
         Self { app, target, shots: 0 }
+    }
+
+    /// Shows these overlays.
+    pub fn show_overlays(&mut self, overlays: &[Overlay]) {
+        let mut shown = self.app.world_mut().resource_mut::<Overlays>();
+        overlays.iter().for_each(|overlay| shown.show(*overlay));
+    }
+
+    /// Removes all lanes from the stage.
+    pub fn clear_stage(&mut self) {
+        let world = self.app.world_mut();
+        let earlier: Vec<Entity> =
+            world.query_filtered::<Entity, With<Lane>>().iter(world).collect();
+        earlier.into_iter().for_each(|lane| world.entity_mut(lane).despawn());
+    }
+
+    /// Puts lanes side by side onto the stage.
+    pub fn put_on_stage(&mut self, lanes: Vec<Lane>) {
+        for lane in lanes {
+            let place = Transform::from_translation(lane.offset());
+            self.app.world_mut().spawn((lane, place, Visibility::default()));
+        }
     }
 
     /// Places the camera.
@@ -204,15 +230,16 @@ impl Offscreen {
         }
     }
 
-    /// Pixel positions of world points, from the top left of the picture; `None` behind the camera. Take the picture
-    /// first.
-    pub fn pixels_of(&mut self, points: impl IntoIterator<Item = Vec3>) -> Vec<Option<Vec2>> {
+    /// Tags for texts, each at its world point, without those behind the camera. Take the picture first.
+    pub fn tags_of(&mut self, texts: Vec<(Vec3, String)>) -> Vec<NameTag> {
         let world = self.app.world_mut();
         let mut cameras = world.query::<(&Camera, &GlobalTransform)>();
-        let camera = cameras.iter(world).next();
-        let place =
-            |point| camera.and_then(|(camera, at)| camera.world_to_viewport(at, point).ok());
-        points.into_iter().map(place).collect()
+        let Some((camera, eye)) = cameras.iter(world).next() else { return Vec::new() };
+        let tag = |(point, text)| {
+            let at = camera.world_to_viewport(eye, point).ok()?;
+            Some(NameTag { text, at: (at.x, at.y) })
+        };
+        texts.into_iter().filter_map(tag).collect()
     }
 }
 

@@ -7,12 +7,12 @@ use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
 use crate::studio::scene::camera::view::CameraView;
-use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{StageMode, lanes};
 use crate::studio::ui::theme::Theme;
 use snakes_core::save::{LoadedChampion, Picture};
+use snakes_lab::plot::NameTag;
 
 /// The content and style of the picture.
 #[derive(Debug, Clone)]
@@ -31,15 +31,6 @@ pub struct RenderedScene {
     pub overlays: Vec<Overlay>,
 }
 
-/// A name tag above a head.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NameTag {
-    /// Text of the tag.
-    pub text: String,
-    /// Middle of its lower edge, in pixels from the picture's top left.
-    pub at: (f32, f32),
-}
-
 /// Height of a tag's anchor above the head's centre, in metres.
 const OVER_HEAD_M: f32 = 1.4;
 
@@ -48,13 +39,7 @@ const OVER_HEAD_M: f32 = 1.4;
 /// # Errors
 /// No graphics driver is available, or a champion cannot be built.
 pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioError> {
-    let saved = scene.champions.iter().enumerate();
-    let champions =
-        saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
-    let (mut lanes, problems) = lanes(champions.collect(), &StageMode::Race);
-    if let Some(problem) = problems.into_iter().next() {
-        return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
-    }
+    let mut lanes = lanes_of(&scene.champions)?;
     for lane in &mut lanes {
         if scene.overlays.contains(&Overlay::Trail) {
             lane.finish_lookahead();
@@ -65,22 +50,26 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     let place = overview(&lanes, scene.camera, width as f32 / height.max(1) as f32);
     let heads = over_heads(&lanes.iter().collect::<Vec<_>>());
     Offscreen::draw(scene.size, scene.theme, |studio| {
-        let world = studio.app.world_mut();
-        let mut overlays = world.resource_mut::<Overlays>();
-        scene.overlays.iter().for_each(|overlay| overlays.show(*overlay));
-        for lane in lanes {
-            let place = Transform::from_translation(lane.offset());
-            world.spawn((lane, place, Visibility::default()));
-        }
+        studio.show_overlays(&scene.overlays);
+        studio.put_on_stage(lanes);
         studio.place_camera(place);
-        let picture = studio.picture()?;
-        let places = studio.pixels_of(heads.iter().map(|(head, _)| *head));
-        let tags = heads.iter().zip(places).filter_map(|((_, text), place)| {
-            let at = place?;
-            Some(NameTag { text: text.clone(), at: (at.x, at.y) })
-        });
-        Ok((picture, tags.collect()))
+        Ok((studio.picture()?, studio.tags_of(heads)))
     })
+}
+
+/// The lanes of named champions at their start.
+///
+/// # Errors
+/// A champion cannot be built.
+pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lane>, StudioError> {
+    let saved = champions.iter().enumerate();
+    let champions =
+        saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
+    let (lanes, problems) = lanes(champions.collect(), &StageMode::Race);
+    match problems.into_iter().next() {
+        Some(problem) => Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned())),
+        None => Ok(lanes),
+    }
 }
 
 /// For several lanes the texts above their heads, each with the point at which it stands, in metres.

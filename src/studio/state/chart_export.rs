@@ -52,17 +52,13 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let points = vec![[1.0, 2.0], [2.0, 3.5]];
-        let chart = Chart {
-            name: String::new(),
-            x: Axis::new("Generation", "", 0.0..=3.0),
-            y: Axis::new("Fitness", "m", 0.0..=4.0),
-            series: vec![Series::new("best", Role::First, Shape::Line(points))],
-            marks: Vec::new(),
-        };
+        let (x, y) = (Axis::new("Generation", "", 0.0..=3.0), Axis::new("Fitness", "m", 0.0..=4.0));
+        let series = vec![Series::new("best", Role::First, Shape::Line(points))];
+        let chart = Chart::new(x, y, series);
         let figure = Arc::new(Figure::of("Fitness", chart));
         let write = |format| {
             let figure = Arc::clone(&figure);
-            let of = ChartExport { figure, name: "fitness", format, is_of_run: true };
+            let of = ChartExport { figure, name: "fitness".to_owned(), format, is_of_run: true };
             export(&saves, &of, || "climb, seed 3".to_owned()).expect("written")
         };
         assert_eq!(write(ChartFormat::Csv), folder.path().join("exports/fitness-1.csv"));

@@ -142,7 +142,7 @@ pub const TAG_SIZE: f32 = 13.0;
 pub const CHART_HEIGHT: f32 = 170.0;
 /// Minimum height of a chart, in points.
 pub const MIN_CHART_HEIGHT: f32 = 80.0;
-/// Height of the charts of the Pareto front and of learning curves, in points.
+/// Least height of a chart in the panel of charts, and height of that of a lesson, in points.
 pub const PLOT_HEIGHT: f32 = 150.0;
 /// Height of the controls above and below a chart in its panel, in points.
 pub const CHART_CONTROLS_HEIGHT: f32 = 120.0;
@@ -154,9 +154,6 @@ pub const MULTIPLE_WIDTH: f32 = 230.0;
 pub const MULTIPLE_HEIGHT: f32 = 120.0;
 /// Width of a sample in a legend, in points.
 pub const SAMPLE_WIDTH: f32 = 20.0;
-/// Height of the archive map, in points.
-#[cfg(test)]
-pub const MAP_HEIGHT: f32 = 190.0;
 /// Minimum width of the labels at the left of a chart, in points.
 pub const AXIS_WIDTH: f32 = 24.0;
 /// Font size in charts, in points.

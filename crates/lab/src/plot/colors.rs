@@ -38,14 +38,6 @@ const SPECIES: [[u8; 3]; 10] = [
     [0xd4, 0x64, 0x10],
 ];
 
-/// Black or white: the colour of a text that is readable on an area of this colour.
-pub fn ink_on([red, green, blue]: [u8; 3]) -> [u8; 3] {
-    // Luminance by WCAG, with squares in place of the exponent; black and white have equal contrast at 0.18.
-    let light = |channel: u8| f32::from(channel) / 255.0 * (f32::from(channel) / 255.0);
-    let luminance = 0.2126 * light(red) + 0.7152 * light(green) + 0.0722 * light(blue);
-    if luminance > 0.2 { [0; 3] } else { [0xff; 3] }
-}
-
 /// Colours from the least to the greatest value: viridis (van der Walt and Smith, 2015). Its brightness rises evenly,
 /// so its order is visible without the hues.
 const RAMP: [[u8; 3]; 9] = [
@@ -73,7 +65,7 @@ pub fn ramp(share: f32) -> [u8; 3] {
     [mix(0), mix(1), mix(2)]
 }
 
-/// The same for the plotting library.
+/// The colour of a role for the plotting library.
 pub(super) fn color_of(role: Role) -> RGBColor {
     let [red, green, blue] = role_color(role);
     RGBColor(red, green, blue)

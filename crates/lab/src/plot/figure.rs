@@ -51,6 +51,8 @@ pub struct Axis {
     pub names: Vec<(f64, String)>,
     /// Whether it counts, so that only whole numbers make sense.
     pub is_whole: bool,
+    /// Whether positions are decimal logarithms of the numbers that labels show.
+    pub is_logarithmic: bool,
 }
 
 /// A reference value.
@@ -78,13 +80,13 @@ pub struct Series {
 pub enum Shape {
     /// Points joined by straight lines.
     Line(Vec<[f64; 2]>),
-    /// The same, dashed.
+    /// Points joined by dashed lines.
     Dashed(Vec<[f64; 2]>),
     /// Points.
     Points(Vec<[f64; 2]>),
     /// An area between a lower and an upper value at each x: `[x, lower, upper]`.
     Band(Vec<[f64; 3]>),
-    /// A layer of a stack, in the same form. It covers what is behind it.
+    /// A layer of a stack, which covers what is behind it: `[x, lower, upper]`.
     Layer(Vec<[f64; 3]>),
     /// Bars that begin at zero.
     Bars {
@@ -132,7 +134,24 @@ pub enum Role {
 impl Axis {
     /// An axis with numbers.
     pub fn new(name: &str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
-        Self { name: name.to_owned(), unit, range, names: Vec::new(), is_whole: false }
+        let (name, names) = (name.to_owned(), Vec::new());
+        Self { name, unit, range, names, is_whole: false, is_logarithmic: false }
+    }
+
+    /// An axis with numbers around all finite values: see [`padded_range`].
+    pub fn around(
+        name: &str,
+        unit: &'static str,
+        values: impl IntoIterator<Item = f64>,
+        least_width: f64,
+    ) -> Self {
+        Self::new(name, unit, padded_range(values, least_width).unwrap_or(0.0..=1.0))
+    }
+
+    /// An axis of equal ratios between two numbers, which are greater than zero, with labels at powers of ten.
+    pub fn logarithmic(name: &str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
+        let decades = libm::log10(*range.start())..=libm::log10(*range.end());
+        Self { is_whole: true, is_logarithmic: true, ..Self::new(name, unit, decades) }
     }
 
     /// An axis of a count, such as generations, with whole numbers.
@@ -145,15 +164,53 @@ impl Axis {
         with_unit(&self.name, self.unit)
     }
 
-    /// The name at a position, if there is one.
-    pub fn name_at(&self, position: f64) -> Option<&str> {
-        let is_there = |(at, _): &&(f64, String)| (at - position).abs() < 1.0e-6;
-        self.names.iter().find(is_there).map(|(_, name)| name.as_str())
+    /// The position of a number.
+    pub fn position_of(&self, number: f64) -> f64 {
+        if self.is_logarithmic { libm::log10(number) } else { number }
+    }
+
+    /// The number at a position.
+    pub fn number_at(&self, position: f64) -> f64 {
+        if self.is_logarithmic { libm::pow(10.0, position) } else { position }
     }
 }
 
-fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+/// A name with its unit in parentheses, unless the unit is empty or a space.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    match unit.trim() {
+        "" => name.to_owned(),
+        unit => format!("{name} ({unit})"),
+    }
+}
+
+/// The least and the greatest of the finite values; none if there are no such values.
+pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    let ends = finite.map(|value| [value; 2]);
+    ends.reduce(|[least, most], [value, _]| [least.min(value), most.max(value)])
+}
+
+/// The range of the finite values with a margin, at least `least_width` wide; none without finite values.
+pub fn padded_range(
+    values: impl IntoIterator<Item = f64>,
+    least_width: f64,
+) -> Option<RangeInclusive<f64>> {
+    let [least, most] = extent(values)?;
+    let missing = (least_width - (most - least)).max(0.0) / 2.0;
+    let margin = missing + ((most - least) * 0.07).max(least_width * 0.07);
+    Some(least - margin..=most + margin)
+}
+
+impl Chart {
+    /// The only chart of a figure, which needs no name, without reference values.
+    pub fn new(x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        Self { name: String::new(), x, y, series, marks: Vec::new() }
+    }
+
+    /// One of several charts, with its name.
+    pub fn named(self, name: &str) -> Self {
+        Self { name: name.to_owned(), ..self }
+    }
 }
 
 impl Series {
@@ -174,52 +231,25 @@ impl Shape {
         Some(([x, (low + high) / 2.0], most))
     }
 
-    /// The columns of its table, as suffixes to the name of the series.
-    fn columns(&self) -> &'static [&'static str] {
+    /// The points of a line or a cloud, or centre and height of each bar; none of other shapes.
+    pub fn points(&self) -> &[[f64; 2]] {
         match self {
-            Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
-            Self::Band(_) | Self::Layer(_) => &[", lower end", ", upper end"],
-            Self::Arrows(_) => &[", y from", ", x to", ", y to"],
-            Self::Boxes(_) => &[", x to", ", y from", ", y to"],
-            Self::Cells(_) => &[", x to", ", y from", ", y to", ""],
+            Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points,
+            Self::Bars { bars, .. } => bars,
+            _ => &[],
         }
     }
 
     /// Whether there is nothing to draw.
-    fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         match self {
-            Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points.is_empty(),
+            Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => {
+                self.points().is_empty()
+            }
             Self::Band(ends) | Self::Layer(ends) => ends.is_empty(),
-            Self::Bars { bars, .. } => bars.is_empty(),
             Self::Arrows(arrows) => arrows.is_empty(),
             Self::Boxes(boxes) => boxes.is_empty(),
             Self::Cells(cells) => cells.is_empty(),
-        }
-    }
-
-    /// The rows of its table: x, and a value for each column.
-    fn rows(&self) -> Vec<(f64, Vec<f64>)> {
-        match self {
-            Self::Line(points) | Self::Dashed(points) | Self::Points(points) => {
-                points.iter().map(|&[x, y]| (x, vec![y])).collect()
-            }
-            Self::Bars { bars, .. } => bars.iter().map(|&[x, y]| (x, vec![y])).collect(),
-            Self::Band(ends) | Self::Layer(ends) => {
-                ends.iter().map(|&[x, low, high]| (x, vec![low, high])).collect()
-            }
-            Self::Arrows(arrows) => {
-                arrows.iter().map(|&[[x, y], [to_x, to_y]]| (x, vec![y, to_x, to_y])).collect()
-            }
-            Self::Boxes(boxes) => {
-                let row = |&[left, right, bottom, top]: &[f64; 4]| (left, vec![right, bottom, top]);
-                boxes.iter().map(row).collect()
-            }
-            Self::Cells(cells) => cells
-                .iter()
-                .map(|&([left, right, bottom, top], _, value)| {
-                    (left, vec![right, bottom, top, value])
-                })
-                .collect(),
         }
     }
 }
@@ -233,6 +263,21 @@ impl Figure {
     /// A figure of several charts.
     pub fn of_several(title: &str, charts: Vec<Chart>) -> Self {
         Self { title: title.to_owned(), note: String::new(), charts, numbers: None }
+    }
+
+    /// The figure with an explanation.
+    pub fn with_note(self, note: impl Into<String>) -> Self {
+        Self { note: note.into(), ..self }
+    }
+
+    /// The figure with a table of other numbers than those of its charts: the heads of the columns, and the records.
+    pub fn with_numbers(
+        self,
+        heads: impl IntoIterator<Item = impl Into<String>>,
+        records: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        let heads = heads.into_iter().map(Into::into).collect();
+        Self { numbers: Some([heads].into_iter().chain(records).collect()), ..self }
     }
 
     /// Whether there is nothing in it to draw.
@@ -261,130 +306,11 @@ impl Figure {
         }
         listed
     }
-
-    /// The figure as a table, the first record its header: a column for each series, with its unit. If there are
-    /// several charts, the first column names the chart.
-    pub fn table(&self) -> Vec<Vec<String>> {
-        if let Some(numbers) = &self.numbers {
-            return numbers.clone();
-        }
-        let has_several_charts = self.charts.len() > 1;
-        let mut heads: Vec<String> = Vec::new();
-        let mut rows: Vec<Vec<(usize, String)>> = Vec::new();
-        let column = |head: String, heads: &mut Vec<String>| {
-            heads.iter().position(|known| *known == head).unwrap_or_else(|| {
-                heads.push(head);
-                heads.len() - 1
-            })
-        };
-        for chart in &self.charts {
-            let mut of_chart: Vec<Row> = Vec::new();
-            let first: Vec<(usize, String)> = if has_several_charts {
-                vec![(column("chart".to_owned(), &mut heads), chart.name.clone())]
-            } else {
-                Vec::new()
-            };
-            let x_column = column(chart.x.label(), &mut heads);
-            for series in chart.series.iter().filter(|series| !series.name.is_empty()) {
-                let name = &series.name;
-                let heads_of_series: Vec<usize> = (series.shape.columns().iter())
-                    .map(|end| column(with_unit(&(name.clone() + end), chart.y.unit), &mut heads))
-                    .collect();
-                for (x, values) in series.shape.rows() {
-                    let cells = heads_of_series.iter().copied().zip(values).collect();
-                    of_chart.push((x, cells));
-                }
-            }
-            for row in merged(of_chart) {
-                let x = chart.x.name_at(row.0).map_or(row.0.to_string(), str::to_owned);
-                let values = row.1.into_iter().map(|(column, value)| (column, value.to_string()));
-                rows.push(first.iter().cloned().chain([(x_column, x)]).chain(values).collect());
-            }
-        }
-        let filled = rows.into_iter().map(|row| {
-            let mut record = vec![String::new(); heads.len()];
-            row.into_iter().for_each(|(column, text)| record[column] = text);
-            record
-        });
-        let filled: Vec<Vec<String>> = filled.collect();
-        [heads].into_iter().chain(filled).collect()
-    }
-}
-
-/// A row of a table: x, and the columns with their values.
-type Row = (f64, Vec<(usize, f64)>);
-
-/// Joins rows of the same x, unless they have values in the same column.
-fn merged(mut rows: Vec<Row>) -> Vec<Row> {
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut merged: Vec<Row> = Vec::new();
-    let mut first_at_x = 0;
-    for (x, cells) in rows {
-        if merged.get(first_at_x).is_none_or(|row| row.0 != x) {
-            first_at_x = merged.len();
-        }
-        let is_free = |row: &&mut Row| {
-            cells.iter().all(|(column, _)| row.1.iter().all(|(taken, _)| taken != column))
-        };
-        match merged[first_at_x..].iter_mut().find(is_free) {
-            Some(row) => row.1.extend(cells),
-            None => merged.push((x, cells)),
-        }
-    }
-    merged
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn chart(name: &str, series: Vec<Series>) -> Chart {
-        Chart {
-            name: name.to_owned(),
-            x: Axis::new("Generation", "", 1.0..=3.0),
-            y: Axis::new("Fitness", "m", -8.0..=2.0),
-            series,
-            marks: Vec::new(),
-        }
-    }
-
-    fn line(name: &str, points: &[[f64; 2]]) -> Series {
-        Series::new(name, Role::First, Shape::Line(points.to_vec()))
-    }
-
-    #[test]
-    fn a_table_has_a_column_with_its_unit_for_each_named_series() {
-        let band = Series::new("middle half", Role::Others, Shape::Band(vec![[1.0, -8.0, -7.0]]));
-        let best = line("best", &[[1.0, -6.5], [2.0, 1.25]]);
-        let unnamed = line("", &[[3.0, 1.0]]);
-        let figure = Figure::of("Fitness", chart("", vec![band, unnamed, best]));
-        let head =
-            ["Generation", "middle half, lower end (m)", "middle half, upper end (m)", "best (m)"];
-        let expected = [head, ["1", "-8", "-7", "-6.5"], ["2", "", "", "1.25"]];
-        assert_eq!(figure.table(), expected.map(|row| row.map(str::to_owned).to_vec()));
-        assert!(!figure.is_empty());
-    }
-
-    #[test]
-    fn points_at_the_same_x_have_a_row_each_and_charts_are_named() {
-        let cloud = Shape::Points(vec![[1.0, 5.0], [1.0, 6.0], [2.0, 7.0]]);
-        let charts = vec![
-            chart(
-                "joint 1",
-                vec![Series::new("others", Role::Others, cloud), line("best", &[[1.0, 9.0]])],
-            ),
-            chart("joint 2", vec![line("best", &[[1.0, 8.0]])]),
-        ];
-        let table = Figure::of_several("", charts).table();
-        let expected = [
-            ["chart", "Generation", "others (m)", "best (m)"],
-            ["joint 1", "1", "5", "9"],
-            ["joint 1", "1", "6", ""],
-            ["joint 1", "2", "7", ""],
-            ["joint 2", "1", "", "8"],
-        ];
-        assert_eq!(table, expected.map(|row| row.map(str::to_owned).to_vec()));
-    }
 
     #[test]
     fn a_legend_lists_each_name_once_and_only_few_shades() {
@@ -394,18 +320,20 @@ mod tests {
                 Series::new(&format!("parent {index}"), shade, Shape::Line(Vec::new()))
             })
         };
-        let others = [line("best", &[]), line("", &[]), line("best", &[])];
+        let line = |name: &str| Series::new(name, Role::First, Shape::Line(Vec::new()));
+        let others = [line("best"), line(""), line("best")];
         let names = |count| {
             let series = shades(count).chain(others.clone()).collect();
-            Figure::of("", chart("", series)).listed().len()
+            let axis = Axis::new("", "", 0.0..=1.0);
+            Figure::of("", Chart::new(axis.clone(), axis, series)).listed().len()
         };
         assert_eq!((names(0), names(8), names(9)), (1, 9, 1));
     }
 
     #[test]
-    fn names_replace_numbers() {
-        let mut chart = chart("", vec![line("parent", &[[0.0, 0.5]])]);
-        chart.x.names = vec![(0.0, "density (kg/m³)".to_owned())];
-        assert_eq!(Figure::of("", chart).table()[1], ["density (kg/m³)", "0.5"]);
+    fn a_padded_range_is_never_empty() {
+        assert_eq!(padded_range([f64::NAN], 1.0), None);
+        let range = padded_range([2.0, f64::INFINITY], 1.0).expect("a value");
+        assert!(*range.start() <= 1.5 && *range.end() >= 2.5, "{range:?}");
     }
 }

@@ -1,13 +1,12 @@
 //! Texts on the frames of a film: a band along the lower edge, and a title over the picture. Their sizes follow the
 //! height of the picture.
 
-use plotters::backend::BitMapBackend;
-use plotters::coord::Shift;
-use plotters::drawing::DrawingArea;
+use std::error::Error;
+
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{FONT, INK, PlotError, font};
+use super::{Area, FONT, INK, PlotError, draw_on};
 use snakes_core::save::Picture;
 
 /// Opacity of the band and of a title's plate.
@@ -41,32 +40,30 @@ pub struct FilmTitle {
     pub opacity: f64,
 }
 
-type Canvas<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
-
 /// Writes the band onto a picture. What has no room is left out, the detail before the end of the name.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn film_band(picture: &mut Picture, band: &FilmBand) -> Result<(), PlotError> {
-    font()?;
     let size = (picture.width, picture.height);
-    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
-    let height = (size.1 / BANDS).max(LEAST_BAND).min(size.1);
-    let (width, top) = (size.0 as i32, (size.1 - height) as i32);
-    let plate = [(0, top), (width, size.1 as i32)];
-    area.draw(&Rectangle::new(plate, INK.mix(VEIL).filled())).map_err(PlotError::new)?;
-    let pixels = height * 11 / 20;
-    let (margin, middle) = (height as i32 / 2, top + height as i32 / 2);
-    let clock_width = width_of(&area, &band.clock, pixels)?;
-    write(&area, &band.clock, (width - margin, middle), (pixels, 1.0), HPos::Right)?;
-    let room = width - 3 * margin - clock_width;
-    let name = shortened(&area, &band.name, (pixels, room))?;
-    write(&area, &name, (margin, middle), (pixels, 1.0), HPos::Left)?;
-    let begins = margin + width_of(&area, &name, pixels)? + height as i32;
-    if begins + width_of(&area, &band.detail, pixels)? <= width - 2 * margin - clock_width {
-        write(&area, &band.detail, (begins, middle), (pixels, WEAK), HPos::Left)?;
-    }
-    area.present().map_err(PlotError::new)
+    draw_on(picture, |area| {
+        let height = (size.1 / BANDS).max(LEAST_BAND).min(size.1);
+        let (width, top) = (size.0 as i32, (size.1 - height) as i32);
+        let plate = [(0, top), (width, size.1 as i32)];
+        area.draw(&Rectangle::new(plate, INK.mix(VEIL).filled()))?;
+        let pixels = height * 11 / 20;
+        let (margin, middle) = (height as i32 / 2, top + height as i32 / 2);
+        let clock_width = width_of(area, &band.clock, pixels)?;
+        write(area, &band.clock, (width - margin, middle), (pixels, 1.0), HPos::Right)?;
+        let room = width - 3 * margin - clock_width;
+        let name = shortened(area, &band.name, (pixels, room))?;
+        write(area, &name, (margin, middle), (pixels, 1.0), HPos::Left)?;
+        let begins = margin + width_of(area, &name, pixels)? + height as i32;
+        if begins + width_of(area, &band.detail, pixels)? <= width - 2 * margin - clock_width {
+            write(area, &band.detail, (begins, middle), (pixels, WEAK), HPos::Left)?;
+        }
+        Ok(())
+    })
 }
 
 /// Writes a title onto a picture, in the middle of its upper part.
@@ -74,38 +71,37 @@ pub fn film_band(picture: &mut Picture, band: &FilmBand) -> Result<(), PlotError
 /// # Errors
 /// The plotting library failed.
 pub fn film_title(picture: &mut Picture, title: &FilmTitle) -> Result<(), PlotError> {
-    font()?;
     let size = (picture.width, picture.height);
-    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
-    let (large, small) = ((size.1 / 11).max(14), (size.1 / 24).max(9));
-    let most = size.0 as i32 * 9 / 10;
-    let fitting = |text: &str, pixels: u32| -> Result<u32, PlotError> {
-        let width = width_of(&area, text, pixels)?.max(1);
-        Ok(if width > most { (pixels as i32 * most / width).max(6) as u32 } else { pixels })
-    };
-    let (large, small) = (fitting(&title.text, large)?, fitting(&title.below, small)?);
-    let widest = width_of(&area, &title.text, large)?.max(width_of(&area, &title.below, small)?);
-    let below = if title.below.is_empty() { 0 } else { small as i32 * 3 / 2 };
-    let (middle, top) = (size.0 as i32 / 2, size.1 as i32 / 7);
-    let pad = small as i32;
-    let half = widest / 2 + pad * 2;
-    let bottom = top + large as i32 * 6 / 5 + below + pad * 2;
-    let plate = [(middle - half, top), (middle + half, bottom)];
-    let opacity = title.opacity.clamp(0.0, 1.0);
-    area.draw(&Rectangle::new(plate, INK.mix(VEIL * opacity).filled())).map_err(PlotError::new)?;
-    let line = top + pad + large as i32 * 3 / 5;
-    write(&area, &title.text, (middle, line), (large, opacity), HPos::Center)?;
-    let line = bottom - pad - small as i32 / 2;
-    write(&area, &title.below, (middle, line), (small, WEAK * opacity), HPos::Center)?;
-    area.present().map_err(PlotError::new)
+    draw_on(picture, |area| {
+        let (large, small) = ((size.1 / 11).max(14), (size.1 / 24).max(9));
+        let most = size.0 as i32 * 9 / 10;
+        let fitting = |text: &str, pixels: u32| -> Result<u32, Box<dyn Error>> {
+            let width = width_of(area, text, pixels)?.max(1);
+            Ok(if width > most { (pixels as i32 * most / width).max(6) as u32 } else { pixels })
+        };
+        let (large, small) = (fitting(&title.text, large)?, fitting(&title.below, small)?);
+        let widest = width_of(area, &title.text, large)?.max(width_of(area, &title.below, small)?);
+        let below = if title.below.is_empty() { 0 } else { small as i32 * 3 / 2 };
+        let (middle, top) = (size.0 as i32 / 2, size.1 as i32 / 7);
+        let pad = small as i32;
+        let half = widest / 2 + pad * 2;
+        let bottom = top + large as i32 * 6 / 5 + below + pad * 2;
+        let plate = [(middle - half, top), (middle + half, bottom)];
+        let opacity = title.opacity.clamp(0.0, 1.0);
+        area.draw(&Rectangle::new(plate, INK.mix(VEIL * opacity).filled()))?;
+        let line = top + pad + large as i32 * 3 / 5;
+        write(area, &title.text, (middle, line), (large, opacity), HPos::Center)?;
+        let line = bottom - pad - small as i32 / 2;
+        write(area, &title.below, (middle, line), (small, WEAK * opacity), HPos::Center)
+    })
 }
 
 /// A text, or as much of its beginning as has room, with dots that say so.
 fn shortened(
-    area: &Canvas<'_>,
+    area: &Area,
     text: &str,
     (pixels, room): (u32, i32),
-) -> Result<String, PlotError> {
+) -> Result<String, Box<dyn Error>> {
     if width_of(area, text, pixels)? <= room {
         return Ok(text.to_owned());
     }
@@ -121,28 +117,28 @@ fn shortened(
 }
 
 /// Width of a text of this size, in pixels.
-fn width_of(area: &Canvas<'_>, text: &str, pixels: u32) -> Result<i32, PlotError> {
+fn width_of(area: &Area, text: &str, pixels: u32) -> Result<i32, Box<dyn Error>> {
     if text.is_empty() {
         return Ok(0);
     }
     let style = (FONT, pixels).into_font().color(&WHITE);
-    Ok(area.estimate_text_size(text, &style).map_err(PlotError::new)?.0 as i32)
+    Ok(area.estimate_text_size(text, &style)?.0 as i32)
 }
 
 /// Writes a white text whose middle line is at the height of `at`.
 fn write(
-    area: &Canvas<'_>,
+    area: &Area,
     text: &str,
     at: (i32, i32),
     (pixels, opacity): (u32, f64),
     side: HPos,
-) -> Result<(), PlotError> {
+) -> Result<(), Box<dyn Error>> {
     if text.is_empty() {
         return Ok(());
     }
     let color = WHITE.mix(opacity);
     let style = (FONT, pixels).into_font().color(&color).pos(Pos::new(side, VPos::Center));
-    area.draw(&Text::new(text, at, style)).map_err(PlotError::new)
+    Ok(area.draw(&Text::new(text, at, style))?)
 }
 
 #[cfg(test)]

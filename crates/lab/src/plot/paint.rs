@@ -2,7 +2,6 @@
 
 use std::error::Error;
 
-use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use plotters::style::FontTransform;
@@ -13,11 +12,12 @@ use super::labels::beside_line;
 use super::series::{DASH, FigureAxes, paint_series};
 use super::ticks::TickedAxis;
 use super::{Area, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
-use super::{TEXT_PIXELS, TITLE_PIXELS, draw, text};
+use super::{TEXT_PIXELS, draw_on, text};
 use snakes_core::save::Picture;
 
-/// Size of every picture of a figure, in pixels.
+/// Size of a picture of a figure, in pixels.
 const SIZE: (u32, u32) = (1600, 900);
+const TITLE_PIXELS: u32 = 26;
 /// Margin of a picture, in pixels.
 const MARGIN: i32 = 24;
 /// Height of a line of the legend, in pixels.
@@ -32,32 +32,39 @@ const MAX_NAME_LENGTH: usize = 32;
 /// Maximum number of numbers along the vertical axis.
 const MOST_Y_TICKS: f64 = 10.0;
 
-/// Draws a figure.
+/// Draws a figure in the size of its pictures.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
-    draw(SIZE, |area| {
+    figure_of_size(figure, SIZE)
+}
+
+/// Draws a figure in a size in pixels.
+pub(super) fn figure_of_size(figure: &Figure, size: (u32, u32)) -> Result<Picture, PlotError> {
+    let mut picture = Picture::new(size.0, size.1);
+    draw_on(&mut picture, |area| {
+        area.fill(&WHITE)?;
         let title = (FONT, TITLE_PIXELS).into_font().color(&INK);
         area.draw(&Text::new(figure.title.as_str(), (MARGIN, MARGIN), title))?;
         let mut top = MARGIN + TITLE_PIXELS as i32 + 12;
         if !figure.note.is_empty() {
             let weak = color_of(Role::Others);
-            let style = (FONT, TEXT_PIXELS).into_font().color(&weak);
-            area.draw(&Text::new(figure.note.as_str(), (MARGIN, top), style))?;
+            area.draw(&Text::new(figure.note.as_str(), (MARGIN, top), text().color(&weak)))?;
             top += LEGEND_LINE;
         }
         let below = legend(area, figure, top)?;
         let (_, charts) = area.split_vertically(below);
         // As many columns as rows: the picture is wide, and so are its charts.
         let columns = (1..=figure.charts.len()).find(|n| n * n >= figure.charts.len());
-        let columns = columns.unwrap_or(1).min(figure.charts.len().max(1));
+        let columns = columns.unwrap_or(1);
         let rows = figure.charts.len().div_ceil(columns);
         for (part, chart) in charts.split_evenly((rows, columns)).iter().zip(&figure.charts) {
             paint(part, chart)?;
         }
         Ok(())
-    })
+    })?;
+    Ok(picture)
 }
 
 /// Writes the legend from `top` down. Returns its lower end, in pixels.
@@ -68,7 +75,7 @@ fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>>
     for series in &listed {
         let (width, _) = area.estimate_text_size(&series.name, &text)?;
         let needed = SAMPLE + 10 + width as i32 + 28;
-        if x + needed > SIZE.0 as i32 && x > MARGIN {
+        if x + needed > area.dim_in_pixel().0 as i32 && x > MARGIN {
             (x, y) = (MARGIN, y + LEGEND_LINE);
         }
         sample(area, series, (x, y + TEXT_PIXELS as i32 / 2))?;
@@ -113,14 +120,11 @@ fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dy
     Ok(())
 }
 
-fn paint(
-    area: &DrawingArea<BitMapBackend<'_>, Shift>,
-    chart: &Chart,
-) -> Result<(), Box<dyn Error>> {
+fn paint(area: &Area, chart: &Chart) -> Result<(), Box<dyn Error>> {
     let has_names = !chart.x.names.is_empty();
     let x = TickedAxis::new(&chart.x, if area.dim_in_pixel().0 > 800 { 12.0 } else { 6.0 });
     let y = TickedAxis::new(&chart.y, MOST_Y_TICKS);
-    let (x_digits, y_digits) = (x.digits(), y.digits());
+    let (x_labels, y_labels) = (x.labels(), y.labels());
     let mut builder = ChartBuilder::on(area);
     builder.margin(MARGIN).y_label_area_size(78);
     builder.x_label_area_size(if has_names { names_height(area, chart)? } else { 48 });
@@ -129,11 +133,11 @@ fn paint(
     }
     let mut axes = builder.build_cartesian_2d(x, y)?;
     let x_label = if has_names { String::new() } else { chart.x.label() };
-    let x_text = |x: &f64| if has_names { String::new() } else { format!("{x:.x_digits$}") };
+    let x_text = |x: &f64| if has_names { String::new() } else { x_labels(x) };
     axes.configure_mesh()
         .x_label_formatter(&x_text)
         .x_desc(x_label)
-        .y_label_formatter(&|y| format!("{y:.y_digits$}"))
+        .y_label_formatter(&y_labels)
         .y_desc(chart.y.label())
         .light_line_style(WHITE)
         .bold_line_style(if has_names { WHITE } else { FAINT })
@@ -167,10 +171,7 @@ fn short(name: &str) -> String {
 }
 
 /// Height of the longest name below the x axis, which stands upright, with its distance from the axis, in pixels.
-fn names_height(
-    area: &DrawingArea<BitMapBackend<'_>, Shift>,
-    chart: &Chart,
-) -> Result<u32, Box<dyn Error>> {
+fn names_height(area: &Area, chart: &Chart) -> Result<u32, Box<dyn Error>> {
     let mut longest = 0;
     for (_, name) in &chart.x.names {
         longest = longest.max(area.estimate_text_size(&short(name), &text())?.0);
@@ -180,7 +181,7 @@ fn names_height(
 
 /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
 fn mark_labels(
-    area: &DrawingArea<BitMapBackend<'_>, Shift>,
+    area: &Area,
     axes: &FigureAxes<'_, '_>,
     chart: &Chart,
 ) -> Result<(), Box<dyn Error>> {
@@ -189,14 +190,8 @@ fn mark_labels(
         let (x, y) = axes.plotting_area().map_coordinate(&(x, y));
         [(x - left) as f32, (y - top) as f32]
     };
-    let lines: Vec<Vec<[f32; 2]>> = (chart.series.iter())
-        .map(|series| match &series.shape {
-            Shape::Line(points) | Shape::Dashed(points) | Shape::Points(points) => {
-                points.iter().map(|&[x, y]| pixel(x, y)).collect()
-            }
-            _ => Vec::new(),
-        })
-        .collect();
+    let line = |series: &Series| series.shape.points().iter().map(|&[x, y]| pixel(x, y)).collect();
+    let lines: Vec<Vec<[f32; 2]>> = chart.series.iter().map(line).collect();
     let [from, to] = [
         pixel(*chart.x.range.start(), *chart.y.range.end()),
         pixel(*chart.x.range.end(), *chart.y.range.start()),
@@ -225,13 +220,10 @@ mod tests {
     use crate::plot::{Axis, Mark, role_color};
 
     fn chart(name: &str, series: Vec<Series>) -> Chart {
-        Chart {
-            name: name.to_owned(),
-            x: Axis::new("Generation", "", 0.0..=4.0),
-            y: Axis::new("Fitness", "m", -1.0..=4.0),
-            series,
-            marks: vec![Mark { name: "the first step".to_owned(), y: 3.0 }],
-        }
+        let (x, y) =
+            (Axis::new("Generation", "", 0.0..=4.0), Axis::new("Fitness", "m", -1.0..=4.0));
+        let marks = vec![Mark { name: "the first step".to_owned(), y: 3.0 }];
+        Chart { marks, ..Chart::new(x, y, series).named(name) }
     }
 
     /// Number of pixels of a picture that have the colour of a role.
@@ -267,8 +259,7 @@ mod tests {
             .map(|role| chart("joint", vec![line(role)]))
             .into();
         charts[0].x.names = vec![(1.0, "density (kg/m³)".to_owned())];
-        let figure =
-            Figure { note: "Lines and dashes".to_owned(), ..Figure::of_several("Torques", charts) };
+        let figure = Figure::of_several("Torques", charts).with_note("Lines and dashes");
         let picture = super::figure(&figure).expect("drawn");
         for role in [Role::First, Role::Second, Role::Third, Role::Twist] {
             assert!(pixels(&picture, role) > 300, "{role:?}");

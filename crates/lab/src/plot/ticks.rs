@@ -10,6 +10,7 @@ use super::Axis;
 /// An axis of a picture, with its numbers at the ticks of this module.
 pub(super) struct TickedAxis {
     range: RangedCoordf64,
+    is_logarithmic: bool,
     step: f64,
     ticks: Vec<f64>,
 }
@@ -19,12 +20,14 @@ impl TickedAxis {
     pub fn new(axis: &Axis, most: f64) -> Self {
         let (start, end) = (*axis.range.start(), *axis.range.end());
         let step = tick_step(end - start, most, axis.is_whole);
-        Self { range: (start..end).into(), step, ticks: ticks(&axis.range, step) }
+        let (range, ticks) = ((start..end).into(), ticks(&axis.range, step));
+        Self { range, is_logarithmic: axis.is_logarithmic, step, ticks }
     }
 
-    /// Number of digits after the point that its numbers need.
-    pub fn digits(&self) -> usize {
-        digits(self.step)
+    /// The text of a number.
+    pub fn labels(&self) -> impl Fn(&f64) -> String + use<> {
+        let Self { step, is_logarithmic, .. } = *self;
+        move |position| tick_text(*position, step, is_logarithmic)
     }
 }
 
@@ -63,9 +66,18 @@ fn ticks(range: &RangeInclusive<f64>, step: f64) -> Vec<f64> {
     (0..count).map(|index| (first + index as f64) * step).collect()
 }
 
-/// Number of digits after the point that tell multiples of a step apart.
-fn digits(step: f64) -> usize {
-    (-libm::floor(libm::log10(step * 1.000_001))).max(0.0) as usize
+/// The number at a tick of an axis whose ticks have this distance, with the digits that tell it from its neighbours. On a
+/// logarithmic axis it is the power of ten.
+pub fn tick_text(position: f64, step: f64, is_logarithmic: bool) -> String {
+    if is_logarithmic {
+        let digits = (-libm::floor(position)).max(0.0) as usize;
+        return format!("{:.digits$}", libm::pow(10.0, position));
+    }
+    let digits = libm::ceil(-libm::log10(step) - 1.0e-6).clamp(0.0, 9.0) as usize;
+    let text = format!("{position:.digits$}");
+    // Rounding makes a zero of either sign.
+    let is_zero = text.chars().all(|letter| !letter.is_ascii_digit() || letter == '0');
+    if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
 
 #[cfg(test)]
@@ -90,8 +102,16 @@ mod tests {
         assert!(ticks(&(0.2..=0.8), 1.0).is_empty());
     }
 
+    /// With steps of one half, egui_plot's own labels were "-0", "0", "0" and "1".
     #[test]
-    fn labels_have_as_many_digits_as_the_step_needs() {
-        assert_eq!([20.0, 1.0, 0.5, 0.05, 0.002].map(digits), [0, 0, 1, 2, 3]);
+    fn neighbouring_ticks_have_different_labels() {
+        let text = |position, step| tick_text(position, step, false);
+        assert_eq!([-0.5, 0.0, 0.5, 1.0].map(|at| text(at, 0.5)), ["-0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!([0.0, 20.0].map(|at| text(at, 20.0)), ["0", "20"]);
+        assert_eq!([-0.0, 0.2].map(|at| text(at, 0.2)), ["0.0", "0.2"]);
+        assert_eq!([0.05, 0.1].map(|at| text(at, 0.05)), ["0.05", "0.10"]);
+        assert_eq!((text(3000.0, 1000.0), text(0.004, 0.002)), ("3000".into(), "0.004".into()));
+        let powers = [-2.0, -1.0, 0.0, 3.0].map(|at| tick_text(at, 1.0, true));
+        assert_eq!(powers, ["0.01", "0.1", "1", "1000"]);
     }
 }

@@ -3,7 +3,7 @@
 use super::definition::{Arm, Demand};
 use super::measure::{Measure, Results};
 use super::values::{Form, ValueInfo, value, values};
-use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use crate::statistics::Quartiles;
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::{CURVE_POINTS, Protocol, StudiedArm, StudiedRun};
@@ -30,7 +30,7 @@ pub(super) fn study_figure(results: &Results<'_>) -> Figure {
     } else {
         ("Each point is a run.", value_charts(results))
     };
-    Figure { note: note.to_owned(), ..Figure::of_several(&study.title, charts) }
+    Figure::of_several(&study.title, charts).with_note(note)
 }
 
 /// The controllers of some arms, in their usual order.
@@ -79,13 +79,8 @@ pub fn curves(arms: &[StudiedArm], controller: ControllerKind) -> Chart {
     let y = range(ends);
     let budget = of_controller.iter().map(|arm| arm.protocol.budget).max().unwrap_or(1);
     let unit = of_controller.first().map_or("", |arm| arm.protocol.fitness.unit().trim());
-    Chart {
-        name: controller.name().to_owned(),
-        x: Axis::count("Evaluations", 0.0..=budget as f64),
-        y: Axis::new("Best fitness so far", unit, y),
-        series,
-        marks: Vec::new(),
-    }
+    let x = Axis::count("Evaluations", 0.0..=budget as f64);
+    Chart::new(x, Axis::new("Best fitness so far", unit, y), series).named(controller.name())
 }
 
 /// The title of a strategy without its explanation.
@@ -95,12 +90,7 @@ pub fn short_title(protocol: &Protocol) -> &'static str {
 
 /// The range of some values, with a margin.
 fn range(values: impl Iterator<Item = f64>) -> std::ops::RangeInclusive<f64> {
-    let finite = values.filter(|value| value.is_finite());
-    let (least, most) = finite
-        .fold((f64::MAX, f64::MIN), |(least, most), value| (least.min(value), most.max(value)));
-    if least > most {
-        return 0.0..=1.0;
-    }
+    let Some([least, most]) = extent(values) else { return 0.0..=1.0 };
     let margin = ((most - least) * 0.06).max(1e-3 * least.abs().max(most.abs())).max(1e-9);
     least - margin..=most + margin
 }
@@ -137,20 +127,10 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
             let points = (1..).map(f64::from).zip(published).map(|(x, y)| [x, *y]).collect();
             series.push(Series::new("published", Role::Second, Shape::Line(points)));
         }
-        let all = || {
-            series.iter().flat_map(|series| match &series.shape {
-                Shape::Line(points) => points.clone(),
-                _ => Vec::new(),
-            })
-        };
-        let (last, y) = (all().map(|[x, _]| x).fold(1.0, f64::max), range(all().map(|[_, y]| y)));
-        Chart {
-            name: String::new(),
-            x: Axis::count("Generation", 0.7..=last + 0.3),
-            y: Axis::new(&info.title, "m", y),
-            series,
-            marks: Vec::new(),
-        }
+        let all = || series.iter().flat_map(|series| series.shape.points());
+        let (last, y) = (all().map(|[x, _]| *x).fold(1.0, f64::max), range(all().map(|[_, y]| *y)));
+        let x = Axis::count("Generation", 0.7..=last + 0.3);
+        Chart::new(x, Axis::new(&info.title, "m", y), series)
     };
     values().iter().filter(is_shown).map(chart).collect()
 }
@@ -215,11 +195,6 @@ fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart 
     }
     let y_ends = marks.iter().map(|mark| mark.y).chain([*y.start(), *y.end()]);
     let (least, most) = y_ends.fold((f64::MAX, f64::MIN), |(a, b), y| (a.min(y), b.max(y)));
-    Chart {
-        name: info.title.clone(),
-        x,
-        y: Axis::new(&info.title, info.unit, least..=most),
-        series,
-        marks,
-    }
+    let y = Axis::new(&info.title, info.unit, least..=most);
+    Chart { marks, ..Chart::new(x, y, series).named(&info.title) }
 }

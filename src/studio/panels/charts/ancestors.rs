@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use crate::studio::ui::plot_axes::padded_range;
 use snakes_core::evolve::{IndividualId, Parents, Settings};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::{Ancestor, Ancestry, FitnessSpread};
@@ -33,10 +32,7 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
         best(ancestry, line.clone()),
     ];
     // Empty series need no legend entry.
-    series.retain(|series| match &series.shape {
-        Shape::Points(points) | Shape::Line(points) => !points.is_empty(),
-        _ => true,
-    });
+    series.retain(|series| !series.shape.is_empty());
     if line.len() > 1 {
         // Connects second parents to their children.
         let others: BTreeMap<IndividualId, &Arc<Ancestor>> =
@@ -50,22 +46,12 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
         series.splice(before_line..before_line, branches);
     }
     let last = ancestry.spreads.last().map_or(1, |spread| spread.generation).max(2);
-    let values = series.iter().flat_map(|series| match &series.shape {
-        Shape::Points(points) | Shape::Line(points) | Shape::Dashed(points) => points.as_slice(),
-        _ => &[],
-    });
+    let points = series.iter().flat_map(|series| series.shape.points());
     let aside = f64::from(last - 1) * 0.04;
-    let chart = Chart {
-        name: String::new(),
-        x: Axis::count("Generation", 1.0 - aside..=f64::from(last) + aside),
-        y: Axis::new(
-            axis_title(settings.trial.fitness),
-            unit.trim(),
-            padded_range(values.map(|value| value[1]), 1.0).unwrap_or(0.0..=1.0),
-        ),
-        series,
-        marks: Vec::new(),
-    };
+    let x = Axis::count("Generation", 1.0 - aside..=f64::from(last) + aside);
+    let title = axis_title(settings.trial.fitness);
+    let y = Axis::around(title, unit.trim(), points.map(|point| point[1]), 1.0);
+    let chart = Chart::new(x, y, series);
     let hit = |ancestor: &Ancestor| {
         let at = ancestor.place;
         let fitness = ancestor.fitness?;
@@ -82,8 +68,8 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
         Some(ChartHit::of(target, words, Pick::Individual(at), at))
     };
     let hits = ancestry.line.iter().chain(&ancestry.others).filter_map(|of| hit(of)).collect();
-    let note = note_on_start(ancestry);
-    ChartView::new(Figure { note, ..Figure::of("Ancestors of the best", chart) }, vec![hits])
+    let figure = Figure::of("Ancestors of the best", chart).with_note(note_on_start(ancestry));
+    ChartView::new(figure, vec![hits])
 }
 
 /// The best snake with its ancestors, if it has any.

@@ -1,7 +1,5 @@
 //! Pictures of the bodies in an archive, one in each cell and a large one at the pointer.
 
-use std::collections::BTreeMap;
-
 use bevy_egui::egui;
 
 use crate::studio::ui::outlines::Outlines;
@@ -19,7 +17,7 @@ const FILLED: f32 = 0.9;
 const LARGE: egui::Vec2 = egui::vec2(200.0, 60.0);
 
 /// A body from the side.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct SideView {
     length_m: f32,
     height_m: f32,
@@ -27,38 +25,37 @@ struct SideView {
     limbs_m: Vec<Vec<[f32; 2]>>,
 }
 
-/// The bodies of an archive's elites, by cell. Empty if all elites have the same body.
-#[derive(Debug, Default)]
+/// The bodies of an archive's elites, in the order of their cells. Empty if all elites have the same body.
+#[derive(Debug, Clone, Default)]
 pub(super) struct ArchivePictures {
-    bodies: BTreeMap<u32, SideView>,
+    bodies: Vec<SideView>,
     longest_m: f32,
 }
 
 impl ArchivePictures {
-    /// Those of elites with bodies of their own.
+    /// The pictures of elites, if they have bodies of their own.
     pub fn of(archive: &Archive, agent: &AgentSettings) -> Self {
         let body = |genes: &EliteGenes| match genes {
             EliteGenes::Point(_) => None,
             EliteGenes::Genome(genome) => Some(SideView::of(&agent.body_plan(genome))),
         };
-        let bodies: BTreeMap<u32, SideView> = archive
-            .elites()
-            .filter_map(|(cell, elite)| Some((cell, body(&elite.genes)?)))
-            .collect();
-        let longest_m = bodies.values().map(|body| body.length_m).fold(0.0, f32::max);
+        let bodies: Option<Vec<SideView>> =
+            archive.elites().map(|(_, elite)| body(&elite.genes)).collect();
+        let bodies = bodies.unwrap_or_default();
+        let longest_m = bodies.iter().map(|body| body.length_m).fold(0.0, f32::max);
         Self { bodies, longest_m }
     }
 
-    /// Draws the body of a cell from the side, the head on the right, as large as the cell allows: its row tells the length.
-    /// `ground` is the cell's colour.
+    /// Draws the body of the cell with this index from the side, the head on the right, as large as the cell allows: its
+    /// row tells the length. `ground` is the cell's colour.
     pub fn draw(
         &self,
         painter: &egui::Painter,
-        cell: u32,
+        index: usize,
         rect: egui::Rect,
         ground: egui::Color32,
     ) {
-        let Some(body) = self.bodies.get(&cell).filter(|_| rect.width() >= LEAST_WIDTH) else {
+        let Some(body) = self.bodies.get(index).filter(|_| rect.width() >= LEAST_WIDTH) else {
             return;
         };
         let [length_m, height_m] =
@@ -69,9 +66,9 @@ impl ArchivePictures {
         body.draw(painter, rect.center(), scale, shades);
     }
 
-    /// Draws the body of a cell large, in its colours.
-    pub fn large(&self, ui: &mut egui::Ui, cell: u32) {
-        let Some(body) = self.bodies.get(&cell) else { return };
+    /// Draws the body of the cell with this index large, in its colours.
+    pub fn large(&self, ui: &mut egui::Ui, index: usize) {
+        let Some(body) = self.bodies.get(index) else { return };
         let scale = (LARGE.x / self.longest_m.max(f32::MIN_POSITIVE))
             .min(LARGE.y / body.height_m.max(f32::MIN_POSITIVE));
         let size = egui::vec2(body.length_m, body.height_m) * scale;
@@ -118,8 +115,8 @@ mod tests {
         let archive = exploration.archive.as_ref().expect("MAP-Elites keeps one");
         let pictures = ArchivePictures::of(archive, &run.settings().trial.agent);
         assert_eq!(pictures.bodies.len(), archive.elites().len());
-        for (cell, body) in &pictures.bodies {
-            let [column, _] = archive.place(*cell);
+        for ((cell, _), body) in archive.elites().zip(&pictures.bodies) {
+            let [column, _] = archive.place(cell);
             assert_eq!(body.limbs_m.len() as u32, column + 2, "the columns are numbers of blocks");
         }
         assert!((4.0..=12.01).contains(&pictures.longest_m), "{} m", pictures.longest_m);

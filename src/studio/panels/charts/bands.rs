@@ -7,7 +7,7 @@ use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::save::SpeciesCount;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::GenerationReport;
 
 /// Maximum number of generations that are drawn. Layers keep their height over a part of each, which takes two points.
@@ -70,13 +70,8 @@ pub(super) fn view(
     let lives = lives(&known);
     let x = Axis::count("Generation", generations(reports.len()));
     let most = known.iter().map(|report| report.evaluations).max().unwrap_or(1);
-    let stack = Chart {
-        name: bands.name.to_owned(),
-        x: x.clone(),
-        y: Axis::count("Snakes", 0.0..=f64::from(most)),
-        series: layers(bands, &drawn, &lives),
-        marks: Vec::new(),
-    };
+    let y = Axis::count("Snakes", 0.0..=f64::from(most));
+    let stack = Chart::new(x.clone(), y, layers(bands, &drawn, &lives)).named(bands.name);
     let unit = settings.trial.fitness.unit();
     let of_report = |report: &&GenerationReport| hits(bands, report, &lives, unit, every as f64);
     let hits = drawn.iter().flat_map(of_report).collect();
@@ -86,11 +81,12 @@ pub(super) fn view(
         "{} Generation {}: {now}. Recorded since the start: {ever}.",
         bands.note, latest.generation
     );
-    let figure = Figure {
-        note,
-        numbers: Some(rows(bands, &known, unit)),
-        ..Figure::of_several(bands.title, vec![stack, best])
-    };
+    let best_fitness = with_unit("best fitness", unit);
+    let heads = ["generation", bands.column, "snakes", &best_fitness];
+    let figure = Figure::of_several(bands.title, vec![stack, best]).with_note(note).with_numbers(
+        heads.into_iter().chain(bands.best.columns),
+        known.iter().flat_map(|report| records(bands, report)),
+    );
     ChartView::new(figure, vec![hits, points])
 }
 
@@ -213,40 +209,26 @@ fn best_numbers(
     };
     let hits = known.iter().filter_map(hit).collect();
     let [first, second] = best.names;
-    let chart = Chart {
-        name: best.name.to_owned(),
-        x,
-        y: Axis::count(best.axis, -most * 0.06..=most * 1.12),
-        series: vec![
-            Series::new(first, Role::First, along(0)),
-            Series::new(second, Role::Second, along(1)),
-        ],
-        marks: Vec::new(),
-    };
-    (chart, hits)
+    let series = vec![
+        Series::new(first, Role::First, along(0)),
+        Series::new(second, Role::Second, along(1)),
+    ];
+    let y = Axis::count(best.axis, -most * 0.06..=most * 1.12);
+    (Chart::new(x, y, series).named(best.name), hits)
 }
 
-/// Table with one row per band and generation.
-fn rows(bands: &Bands, reports: &[&GenerationReport], unit: &str) -> Vec<Vec<String>> {
-    let fitness = match unit.trim() {
-        "" => "best fitness".to_owned(),
-        unit => format!("best fitness ({unit})"),
+/// Rows of the table about a generation, one for each band.
+fn records(bands: &Bands, report: &GenerationReport) -> Vec<Vec<String>> {
+    let numbers = (bands.best.of)(report);
+    let [first, second] =
+        [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()));
+    let generation = report.generation.to_string();
+    let row = |species: &SpeciesCount| {
+        let best = species.best.map_or(String::new(), |best| best.to_string());
+        let (id, size) = (species.id.to_string(), species.size.to_string());
+        vec![generation.clone(), id, size, best, first.clone(), second.clone()]
     };
-    let head = ["generation", bands.column, "snakes", &fitness];
-    let head = head.into_iter().chain(bands.best.columns).map(str::to_owned).collect();
-    let of_report = |report: &&GenerationReport| {
-        let numbers = (bands.best.of)(report);
-        let [first, second] =
-            [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()));
-        let generation = report.generation.to_string();
-        let row = move |species: &SpeciesCount| {
-            let best = species.best.map_or(String::new(), |best| best.to_string());
-            let (id, size) = (species.id.to_string(), species.size.to_string());
-            vec![generation.clone(), id, size, best, first.clone(), second.clone()]
-        };
-        report.species.iter().map(row).collect::<Vec<_>>()
-    };
-    [head].into_iter().chain(reports.iter().flat_map(of_report)).collect()
+    report.species.iter().map(row).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::genome::{BodyChange, Genome};
 use snakes_core::world::BodyPlan;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::{Ancestor, Ancestry, GenerationReport};
 
 /// Maximum number of bodies that are drawn; the earliest are left out.
@@ -70,16 +70,12 @@ pub(super) fn view(
     }
     let [red, blue] = blocks;
     let columns = structures.len().max(4) as f64;
-    let chart = Chart {
-        name: String::new(),
-        x: Axis::count(if is_line { "Structure" } else { "Best body" }, 0.4..=columns + 0.6),
-        y: Axis::new("Length", "m", 0.0..=tallest_m * 1.05),
-        series: vec![
-            Series::new("first, third, fifth block", Role::Red, Shape::Boxes(red)),
-            Series::new("second, fourth block", Role::Blue, Shape::Boxes(blue)),
-        ],
-        marks: Vec::new(),
-    };
+    let x = Axis::count(if is_line { "Structure" } else { "Best body" }, 0.4..=columns + 0.6);
+    let y = Axis::new("Length", "m", 0.0..=tallest_m * 1.05);
+    let series = vec![
+        Series::new("first, third, fifth block", Role::Red, Shape::Boxes(red)),
+        Series::new("second, fourth block", Role::Blue, Shape::Boxes(blue)),
+    ];
     let kind = if is_line {
         "Each column is a structure in the line of the best snake, the oldest on the left, seen from above with the head at \
          the top."
@@ -91,11 +87,12 @@ pub(super) fn view(
         0 => String::new(),
         count => format!(" {count} earlier ones are not shown."),
     };
-    let figure = Figure {
-        note: format!("{kind}{earlier}"),
-        numbers: Some(rows(settings, &structures)),
-        ..Figure::of("Ancestry of the best body", chart)
-    };
+    let fitness = with_unit("fitness", settings.trial.fitness.unit());
+    let heads = ["generation", "snake", "change", "blocks", "length (m)", &fitness, "gain"];
+    let records = structures.iter().map(|structure| record(settings, structure));
+    let figure = Figure::of("Ancestry of the best body", Chart::new(x, y, series))
+        .with_note(format!("{kind}{earlier}"))
+        .with_numbers(heads, records);
     ChartView::new(figure, vec![hits])
 }
 
@@ -214,29 +211,20 @@ fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
     structures
 }
 
-/// Table with one row per structure.
-fn rows(settings: &Settings, structures: &[Structure]) -> Vec<Vec<String>> {
-    let fitness = match settings.trial.fitness.unit().trim() {
-        "" => "fitness".to_owned(),
-        unit => format!("fitness ({unit})"),
-    };
-    let head = ["generation", "snake", "change", "blocks", "length (m)", &fitness, "gain"];
-    let row = |structure: &Structure| {
-        let body = settings.trial.agent.body_plan(&structure.genome);
-        let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
-        let gain =
-            structure.fitness.zip(structure.before).map(|(fitness, before)| fitness - before);
-        vec![
-            structure.place.generation.to_string(),
-            (structure.place.individual + 1).to_string(),
-            structure.change.clone(),
-            body.limbs().to_string(),
-            body.length_m().to_string(),
-            number(structure.fitness),
-            number(gain),
-        ]
-    };
-    [head.map(str::to_owned).to_vec()].into_iter().chain(structures.iter().map(row)).collect()
+/// Row of the table about a structure.
+fn record(settings: &Settings, structure: &Structure) -> Vec<String> {
+    let body = settings.trial.agent.body_plan(&structure.genome);
+    let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
+    let gain = structure.fitness.zip(structure.before).map(|(fitness, before)| fitness - before);
+    vec![
+        structure.place.generation.to_string(),
+        (structure.place.individual + 1).to_string(),
+        structure.change.clone(),
+        body.limbs().to_string(),
+        body.length_m().to_string(),
+        number(structure.fitness),
+        number(gain),
+    ]
 }
 
 #[cfg(test)]

@@ -79,22 +79,8 @@ impl ChartKind {
     }
 
     /// Prefix of exported file names.
-    pub fn file_name(self) -> &'static str {
-        match self {
-            Self::Fitness => "fitness",
-            Self::Spread => "spread",
-            Self::Species => "species",
-            Self::Blocks => "blocks",
-            Self::Bodies => "bodies",
-            Self::Stairs => "stairs",
-            Self::Ancestors => "ancestors",
-            Self::Torques => "torques",
-            Self::Parents => "parents",
-            Self::Front => "front",
-            Self::Archive => "archive",
-            Self::Runs => "runs",
-            Self::Methods => "methods",
-        }
+    pub fn file_name(self) -> String {
+        self.labels().0.to_lowercase()
     }
 
     /// Text shown while there is no data.

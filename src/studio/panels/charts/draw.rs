@@ -13,7 +13,7 @@ use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::{Command, StageCommand};
 use crate::studio::panels::shown::ShownLane;
-use crate::studio::ui::plot_axes::{bounds, fixed_plot, grid, x_title, y_title};
+use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_lab::plot::{Chart, Role, Series, Shape, beside_line};
@@ -54,13 +54,14 @@ pub(super) fn draw(
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP;
             for &(index, chart) in row {
-                let hits = view.hits.get(index).map_or(&[][..], Vec::as_slice);
                 ui.vertical(|ui| {
                     ui.set_width(size.x);
-                    let drawn = view.drawn.get(index).map_or(&[][..], Vec::as_slice);
-                    let (id, title) = (format!("{id} {index}"), figure.title.as_str());
-                    let part = ChartPart { id, title, chart, drawn };
-                    part.ui(ui, hits, size.y, shown, commands);
+                    let (hits, drawn) = (
+                        view.hits.get(index).map_or(&[][..], Vec::as_slice),
+                        view.drawn.get(index).map_or(&[][..], Vec::as_slice),
+                    );
+                    let part = ChartPart { view, chart, hits, drawn };
+                    part.ui(ui, &format!("{id} {index}"), size.y, shown, commands);
                 });
             }
         });
@@ -72,9 +73,9 @@ pub(super) fn draw(
 
 /// One chart of a figure.
 struct ChartPart<'a> {
-    id: String,
-    title: &'a str,
+    view: &'a ChartView,
     chart: &'a Chart,
+    hits: &'a [ChartHit],
     /// Series prepared for drawing.
     drawn: &'a [DrawnSeries],
 }
@@ -83,12 +84,12 @@ impl ChartPart<'_> {
     fn ui(
         &self,
         ui: &mut egui::Ui,
-        hits: &[ChartHit],
+        id: &str,
         height: f32,
         shown: &[ShownLane],
         commands: &mut Vec<Command>,
     ) {
-        let chart = self.chart;
+        let Self { view, chart, hits, .. } = *self;
         let has_names = !chart.x.names.is_empty();
         let name = if chart.name.is_empty() { String::new() } else { chart.name.clone() + ": " };
         let above = y_title(ui, &format!("{name}{}", chart.y.label()));
@@ -96,11 +97,8 @@ impl ChartPart<'_> {
         let left = (height - titles).max(theme::MIN_CHART_HEIGHT);
         let palette = theme::of(ui);
         // This module draws the hover text itself.
-        let plot =
-            fixed_plot(&self.id, left).label_formatter(|_| None).show_axes([!has_names, true]);
-        let plot = plot.x_grid_spacer(grid(chart.x.is_whole));
-        let plot = plot.y_grid_spacer(grid(chart.y.is_whole));
-        let plot = plot.show(ui, |plot| {
+        let plot = fixed_plot(id, left, [&chart.x, &chart.y]).label_formatter(|_| None);
+        let plot = plot.show_axes([!has_names, true]).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
             for (place, _) in &chart.x.names {
                 let upright =
@@ -118,13 +116,14 @@ impl ChartPart<'_> {
         x_title(ui, &if has_names { chart.x.name.clone() } else { chart.x.label() });
         let response = plot.response;
         let label = match chart.name.as_str() {
-            "" => format!("Chart: {}", self.title),
-            name => format!("Chart: {}, {name}", self.title),
+            "" => format!("Chart: {}", view.figure.title),
+            name => format!("Chart: {}, {name}", view.figure.title),
         };
         response.widget_info(|| {
             egui::WidgetInfo::labeled(egui::WidgetType::Other, ui.is_enabled(), &label)
         });
         let painter = ui.painter_at(response.rect);
+        self.cells(&painter, &plot.transform, palette);
         self.mark_labels(&painter, &plot.transform, palette);
         layer_labels(&painter, &plot.transform, chart, palette);
         for shown in shown {
@@ -133,13 +132,14 @@ impl ChartPart<'_> {
                 continue;
             };
             match shown.color(palette) {
-                Some(color) => lane_mark(&painter, &plot.transform, hit, color, palette),
-                None => ring(&painter, &plot.transform, hit, palette.second),
+                Some(color) => lane_mark(&painter, &plot.transform, hit.target, color, palette),
+                None => ring(&painter, &plot.transform, hit.target, palette.second),
             }
         }
         let at = response.interact_pointer_pos().or(response.hover_pos());
-        let Some(hit) = at.and_then(|at| nearest(hits, &plot.transform, at)) else { return };
-        ring(&painter, &plot.transform, hit, palette.text);
+        let Some(index) = at.and_then(|at| nearest(hits, &plot.transform, at)) else { return };
+        let hit = &hits[index];
+        ring(&painter, &plot.transform, hit.target, palette.text);
         if response.clicked()
             && let Some(pick) = hit.pick
         {
@@ -155,7 +155,29 @@ impl ChartPart<'_> {
         } else {
             ""
         };
-        response.on_hover_text_at_pointer(hit.words() + replay);
+        response.on_hover_ui_at_pointer(|ui| {
+            // As egui does for texts: a tooltip does not shrink with its content.
+            ui.set_max_width(ui.spacing().tooltip_width);
+            view.pictures.large(ui, index);
+            ui.label(hit.words() + replay);
+        });
+    }
+
+    /// Paints cells and the bodies in them on a ground of empty cells. Polygons of the plot would show seams between
+    /// neighbours.
+    fn cells(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
+        for series in &self.chart.series {
+            let Shape::Cells(cells) = &series.shape else { continue };
+            painter.rect_filled(*transform.frame(), 0.0, palette.empty_cell);
+            for (index, (area, share, _)) in cells.iter().enumerate() {
+                let area = on_screen(transform, HitShape::Area(*area));
+                // A thin gap separates cells if they are large enough.
+                let area = area.shrink(if area.size().min_elem() > 6.0 { 0.5 } else { 0.0 });
+                let color = palette.role(Role::Share(*share));
+                painter.rect_filled(area, 0.0, color);
+                self.view.pictures.draw(painter, index, area, color);
+            }
+        }
     }
 
     /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
@@ -256,71 +278,64 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
                 plot.polygon(block.allow_hover(false));
             }
         }
-        Shape::Cells(cells) => {
-            for ([left, right, bottom, top], share, _) in cells {
-                let corners =
-                    vec![[*left, *bottom], [*right, *bottom], [*right, *top], [*left, *top]];
-                let cell = Polygon::new("", corners).stroke(Stroke::NONE);
-                let cell = cell.fill_color(palette.role(Role::Share(*share)));
-                plot.polygon(cell.allow_hover(false));
-            }
+        // Painted over the plot.
+        Shape::Cells(_) => {}
+    }
+}
+
+/// A hit target on the screen. A point is an area without extent.
+fn on_screen(transform: &PlotTransform, target: HitShape) -> egui::Rect {
+    let place = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));
+    match target {
+        HitShape::Point([x, y]) | HitShape::Column([x, y]) => egui::Rect::from_pos(place(x, y)),
+        HitShape::Area([left, right, bottom, top]) => {
+            egui::Rect::from_two_pos(place(left, bottom), place(right, top))
         }
     }
 }
 
-/// Hit target under the pointer.
-fn nearest<'a>(hits: &'a [ChartHit], transform: &PlotTransform, at: Pos2) -> Option<&'a ChartHit> {
-    let place = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
-    let distance = |hit: &ChartHit| match hit.target {
-        HitShape::Point(point) => {
-            Some(place(point).distance(at)).filter(|far| *far <= CLICK_DISTANCE)
-        }
-        // The small vertical term picks the nearest point of a column.
-        HitShape::Column(point) => {
-            let (aside, along) = ((place(point).x - at.x).abs(), (place(point).y - at.y).abs());
-            (aside <= CLICK_DISTANCE).then_some(aside + along * 1.0e-3)
-        }
-        HitShape::Area([left, right, bottom, top]) => {
-            let area = egui::Rect::from_two_pos(place([left, bottom]), place([right, top]));
-            area.contains(at).then_some(0.0)
+/// Index of the hit target under the pointer.
+fn nearest(hits: &[ChartHit], transform: &PlotTransform, at: Pos2) -> Option<usize> {
+    let distance = |hit: &ChartHit| {
+        let area = on_screen(transform, hit.target);
+        let way = at - area.center();
+        match hit.target {
+            HitShape::Point(_) => (way.length() <= CLICK_DISTANCE).then_some(way.length()),
+            // The small vertical term picks the nearest point of a column.
+            HitShape::Column(_) => {
+                (way.x.abs() <= CLICK_DISTANCE).then_some(way.x.abs() + way.y.abs() * 1.0e-3)
+            }
+            HitShape::Area(_) => area.contains(at).then_some(0.0),
         }
     };
-    let near = hits.iter().filter_map(|hit| Some((hit, distance(hit)?)));
-    near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(hit, _)| hit)
+    let near = hits.iter().enumerate().filter_map(|(index, hit)| Some((index, distance(hit)?)));
+    near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
 }
 
 /// Marks an individual that is on the stage beside others by the dot of its lane, as in the leaderboard.
 fn lane_mark(
     painter: &egui::Painter,
     transform: &PlotTransform,
-    hit: &ChartHit,
+    target: HitShape,
     color: Color32,
     palette: &Palette,
 ) {
-    let ([x, y], is_area) = match hit.target {
-        HitShape::Point(at) | HitShape::Column(at) => (at, false),
-        HitShape::Area([left, right, bottom, top]) => {
-            ([(left + right) / 2.0, (bottom + top) / 2.0], true)
-        }
-    };
-    if is_area {
-        ring(painter, transform, hit, color);
+    if matches!(target, HitShape::Area(_)) {
+        ring(painter, transform, target, color);
     }
-    let at = transform.position_from_point(&PlotPoint::new(x, y));
+    let at = on_screen(transform, target).center();
     // The edge keeps the dot apart from curves of a similar colour.
     painter.circle(at, theme::LANE_DOT / 2.0, color, Stroke::new(1.5, palette.panel));
 }
 
 /// Draws a ring around the hovered target, or around the individual on the stage.
-fn ring(painter: &egui::Painter, transform: &PlotTransform, hit: &ChartHit, color: Color32) {
-    let place = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
-    let stroke = Stroke::new(2.0, color);
-    match hit.target {
-        HitShape::Point(point) | HitShape::Column(point) => {
-            painter.circle_stroke(place(point), 6.0, stroke);
+fn ring(painter: &egui::Painter, transform: &PlotTransform, target: HitShape, color: Color32) {
+    let (area, stroke) = (on_screen(transform, target), Stroke::new(2.0, color));
+    match target {
+        HitShape::Point(_) | HitShape::Column(_) => {
+            painter.circle_stroke(area.center(), 6.0, stroke);
         }
-        HitShape::Area([left, right, bottom, top]) => {
-            let area = egui::Rect::from_two_pos(place([left, bottom]), place([right, top]));
+        HitShape::Area(_) => {
             painter.rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
         }
     }

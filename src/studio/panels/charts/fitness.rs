@@ -6,7 +6,7 @@ use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::score::Fitness;
-use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use snakes_lab::run::{GenerationReport, Statistics};
 
 /// Minimum length of the axis: the six generations of the original experiment.
@@ -42,14 +42,11 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
         [statistics.best, statistics.mean, statistics.median, low]
     });
     let frame = ChartBounds::new(settings, reports.len(), ends);
-    let marks = frame.marks.iter();
-    let chart = Chart {
-        name: String::new(),
-        x: Axis::count("Generation", frame.x),
-        y: Axis::new(axis_title(settings.trial.fitness), unit.trim(), frame.y),
-        series,
-        marks: marks.map(|(name, y)| Mark { name: (*name).to_owned(), y: *y }).collect(),
-    };
+    let marks = frame.marks.iter().map(|(name, y)| Mark { name: (*name).to_owned(), y: *y });
+    let marks = marks.collect();
+    let x = Axis::count("Generation", frame.x);
+    let y = Axis::new(axis_title(settings.trial.fitness), unit.trim(), frame.y);
+    let chart = Chart { marks, ..Chart::new(x, y, series) };
     let hits = reports.iter().filter_map(|report| hit(report, unit)).collect();
     ChartView::new(Figure::of("Fitness by generation", chart), vec![hits])
 }
@@ -98,10 +95,7 @@ struct ChartBounds {
 impl ChartBounds {
     fn new(settings: &Settings, finished: usize, values: impl Iterator<Item = f64>) -> Self {
         let trial = &settings.trial;
-        let (mut min, mut max) = (f64::MAX, f64::MIN);
-        for value in values.filter(|value| value.is_finite()) {
-            (min, max) = (min.min(value), max.max(value));
-        }
+        let [mut min, mut max] = extent(values).unwrap_or([f64::MAX, f64::MIN]);
         let mut marks = Vec::new();
         // Only a distance can be compared with positions on the stairs.
         if trial.fitness.is_along_y() {

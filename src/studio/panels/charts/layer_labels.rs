@@ -22,7 +22,7 @@ pub(super) fn layer_labels(
         let Role::Species(number) = series.role else { continue };
         let Some(([x, y], thickness)) = series.shape.thickest() else { continue };
         let color = palette.role(series.role);
-        let ink = Palette::ink_on(color);
+        let ink = theme::palette::text_on(color);
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         let text = painter.layout_no_wrap(number.to_string(), font, ink);
         let at = |y: f64| transform.position_from_point(&PlotPoint::new(x, y));

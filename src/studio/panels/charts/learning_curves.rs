@@ -19,55 +19,24 @@ use snakes_lab::study::{controllers, curves, short_title};
 #[derive(Debug)]
 pub(crate) struct CurvesPanel {
     study: StudyRuns,
-    /// Summary of the study in one line.
-    about: String,
     controllers: Vec<ControllerKind>,
     /// Controller whose curves are shown.
     controller: ControllerKind,
-    /// Cached view of the shown curves.
-    view: Option<(ControllerKind, ChartView)>,
+    view: ChartView,
 }
 
 impl CurvesPanel {
     /// Panel for the runs of a study.
     pub fn new(study: &StudyRuns) -> Self {
         let controllers = controllers(&study.arms);
-        let mut presets: Vec<&str> =
-            study.arms.iter().map(|arm| arm.protocol.preset.as_str()).collect();
-        presets.sort_unstable();
-        presets.dedup();
-        let budget = study.arms.iter().map(|arm| arm.protocol.budget).max().unwrap_or(0);
-        Self {
-            about: format!(
-                "Study {}, preset {}, {budget} evaluations per run",
-                study.study,
-                presets.join(", ")
-            ),
-            // Waves and gaits learn more than free signals, so the last controller is shown first.
-            controller: controllers.last().copied().unwrap_or_default(),
-            controllers,
-            study: study.clone(),
-            view: None,
-        }
+        // Waves and gaits learn more than free signals, so the last controller is shown first.
+        let controller = controllers.last().copied().unwrap_or_default();
+        Self { view: view(study, controller), study: study.clone(), controllers, controller }
     }
 
     /// Figure of the shown curves.
-    pub fn figure(&mut self) -> Arc<Figure> {
-        Arc::clone(&self.view().figure)
-    }
-
-    /// View of the shown curves, computed once.
-    fn view(&mut self) -> &ChartView {
-        let shown = self.controller;
-        let known = self.view.take().filter(|(of, _)| *of == shown);
-        let (_, view) = self.view.insert(known.unwrap_or_else(|| {
-            let mut chart = curves(&self.study.arms, shown);
-            chart.name.clear();
-            let note = format!("{}. Lines: median over the seeds.", self.about);
-            let figure = Figure { note, ..Figure::of(&format!("Methods, {shown}"), chart) };
-            (shown, ChartView { is_of_run: false, ..ChartView::new(figure, Vec::new()) })
-        }));
-        view
+    pub fn figure(&self) -> &Arc<Figure> {
+        &self.view.figure
     }
 
     /// Draws the panel with curves `height` points high.
@@ -79,11 +48,13 @@ impl CurvesPanel {
             ui.label("Controller");
             for kind in &self.controllers {
                 let choice = ui.selectable_value(&mut self.controller, *kind, kind.name());
-                choice.on_hover_text(kind.words());
+                if choice.on_hover_text(kind.words()).changed() {
+                    self.view = view(&self.study, *kind);
+                }
             }
         });
         // Nothing in it can be clicked.
-        draw::draw(ui, "curves", self.view(), height, &[], &mut Vec::new());
+        draw::draw(ui, "curves", &self.view, height, &[], &mut Vec::new());
         self.table(ui);
     }
 
@@ -123,6 +94,23 @@ impl CurvesPanel {
             }
         });
     }
+}
+
+/// The curves of a controller, with a summary of the study.
+fn view(study: &StudyRuns, controller: ControllerKind) -> ChartView {
+    let protocols = || study.arms.iter().map(|arm| &arm.protocol);
+    let mut presets: Vec<&str> = protocols().map(|of| of.preset.as_str()).collect();
+    presets.sort_unstable();
+    presets.dedup();
+    let presets = presets.join(", ");
+    let budget = protocols().map(|of| of.budget).max().unwrap_or(0);
+    let note = format!(
+        "Study {}, preset {presets}, {budget} evaluations per run. Lines: median over the seeds.",
+        study.study
+    );
+    let chart = curves(&study.arms, controller).named("");
+    let figure = Figure::of(&format!("Methods, {controller}"), chart).with_note(note);
+    ChartView { is_of_run: false, ..ChartView::new(figure, Vec::new()) }
 }
 
 /// A value of all runs that have it.

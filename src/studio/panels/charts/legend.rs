@@ -14,31 +14,30 @@ pub(super) fn legend(ui: &mut egui::Ui, view: &ChartView) {
         for series in view.figure.listed() {
             entry(ui, series);
         }
-        click_hint(ui, hint(view));
+        let hint = hint(view);
+        if !hint.is_empty() {
+            let weak = theme::of(ui).text_weak;
+            let text = egui::RichText::new(hint).small().italics().color(weak);
+            // It moves to the next line as a whole.
+            ui.add(egui::Label::new(text).extend());
+        }
     });
 }
 
-/// Says what a click does, in the weak colour of explanations.
-pub(super) fn click_hint(ui: &mut egui::Ui, text: &str) {
-    if !text.is_empty() {
-        let text = egui::RichText::new(text).small().italics().color(theme::of(ui).text_weak);
-        // It moves to the next line as a whole.
-        ui.add(egui::Label::new(text).extend());
-    }
-}
-
+/// Says what a click does; empty if there is nothing to point at.
 fn hint(view: &ChartView) -> &'static str {
     let mut hits = view.hits.iter().flatten().peekable();
     let shapes = || view.figure.charts.iter().flat_map(|chart| &chart.series).map(|of| &of.shape);
-    let has_bars = shapes().any(|of| matches!(of, Shape::Bars { .. }));
-    let has_layers = shapes().any(|of| matches!(of, Shape::Layer(_)));
+    let has = |is_it: fn(&Shape) -> bool| shapes().any(is_it);
     if hits.peek().is_none() {
         ""
     } else if !hits.any(|hit| hit.pick.is_some()) {
         "Point at a line to read it."
-    } else if has_layers {
+    } else if has(|of| matches!(of, Shape::Cells(_))) {
+        "Click a coloured cell to replay its snake."
+    } else if has(|of| matches!(of, Shape::Layer(_))) {
         "Point at a band to read it. Click a point of the lines to replay that snake."
-    } else if has_bars {
+    } else if has(|of| matches!(of, Shape::Bars { .. })) {
         "Click a bar to replay its best snake."
     } else {
         "Click any point to replay that snake."

@@ -17,7 +17,6 @@ mod legend;
 mod parents;
 mod pareto_front;
 mod runs;
-mod search_charts;
 mod species;
 mod spread;
 mod stairs;
@@ -38,12 +37,9 @@ use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
 use snakes_lab::plot::Figure;
 
-use archive_map::archive_map;
-use archive_pictures::ArchivePictures;
 use blocks::BLOCKS;
 use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
-use pareto_front::front_plot;
 use species::SPECIES;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
@@ -52,10 +48,6 @@ use view::{ChartView, Version};
 pub(super) struct ChartsPanel {
     kind: ChartKind,
     known: Option<(ChartKind, Version, Option<ChartView>)>,
-    /// Cached figure of the archive or the front, which draw themselves.
-    figure: Option<(ChartKind, Version, Arc<Figure>)>,
-    /// Cached pictures of the bodies in the archive.
-    pictures: Option<(Version, ArchivePictures)>,
     torques: TorqueComparison,
     curves: Option<CurvesPanel>,
     has_listed_runs: bool,
@@ -68,8 +60,6 @@ impl ChartsPanel {
             // A comparison that was given at start is shown first.
             kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },
             known: None,
-            figure: None,
-            pictures: None,
             torques: TorqueComparison::default(),
             curves: comparison.map(CurvesPanel::new),
             has_listed_runs: false,
@@ -101,9 +91,6 @@ impl ChartsPanel {
             .min(tallest)
             .max(theme::PLOT_HEIGHT);
         match self.kind {
-            ChartKind::Front | ChartKind::Archive => {
-                self.search_chart(ui, run, height, shown, commands)
-            }
             ChartKind::Methods => self.methods(ui, height, commands),
             ChartKind::Torques => self.torques(ui, run, height, selected, commands),
             kind => self.run_chart(ui, run, kind, height, shown, commands),
@@ -129,7 +116,7 @@ impl ChartsPanel {
             self.known = Some((kind, version, view_of(kind, run)));
         }
         let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
-        let view = view.filter(|view| !view.figure.is_empty()).ok_or(kind.empty_text());
+        let view = view.filter(|view| !view.figure.is_empty()).ok_or_else(|| reason(kind, run));
         view_or_reason(ui, kind, view, height, shown, commands);
         if kind == ChartKind::Runs {
             runs::run_list(ui, run, commands);
@@ -150,63 +137,10 @@ impl ChartsPanel {
         view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
     }
 
-    /// Draws the front or the archive.
-    fn search_chart(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        height: f32,
-        shown: &[ShownLane],
-        commands: &mut Vec<Command>,
-    ) {
-        let (kind, version) = (self.kind, run.version());
-        let unit = run.settings().trial.fitness.unit();
-        let exploration = run.exploration();
-        let front = exploration.map(|of| &of.front).filter(|front| front.members().len() > 0);
-        let archive = exploration.and_then(|of| of.archive.as_ref());
-        let archive = archive.filter(|archive| archive.elites().len() > 0);
-        if !matches!(&self.figure, Some((of, at, _)) if (*of, *at) == (kind, version)) {
-            let figure = match kind {
-                ChartKind::Front => front.map(search_charts::front),
-                _ => archive.map(|archive| search_charts::archive(archive, unit)),
-            };
-            self.figure = figure.map(|figure| (kind, version, Arc::new(figure)));
-        }
-        match &self.figure {
-            Some((.., figure)) => header(ui, figure, (kind.file_name(), true), commands),
-            None => title(ui, kind.labels().0),
-        }
-        match (kind, front, archive) {
-            (ChartKind::Front, Some(front), _) => {
-                let trial = &run.settings().trial;
-                front_plot(ui, front, trial, shown, height, commands);
-            }
-            (ChartKind::Front, None, _) if exploration.is_some() => {
-                explain(ui, "No snake has ended ahead of its starting position yet.");
-            }
-            (ChartKind::Archive, _, Some(archive)) => {
-                if !matches!(&self.pictures, Some((at, _)) if *at == version) {
-                    let pictures = ArchivePictures::of(archive, &run.settings().trial.agent);
-                    self.pictures = Some((version, pictures));
-                }
-                if let Some((_, pictures)) = &self.pictures {
-                    archive_map(ui, archive, unit, pictures, shown, height, commands);
-                }
-            }
-            (ChartKind::Archive, ..) if !run.settings().evolution.strategy.info().has_archive => {
-                explain(
-                    ui,
-                    "Only MAP-Elites keeps an archive: the best snake for each kind of behaviour. Select it as the strategy in the Run panel and start a run.",
-                );
-            }
-            _ => explain(ui, kind.empty_text()),
-        }
-    }
-
     fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
         match &mut self.curves {
             Some(curves) => {
-                header(ui, &curves.figure(), (ChartKind::Methods.file_name(), false), commands);
+                header(ui, curves.figure(), (ChartKind::Methods, false), commands);
                 curves.ui(ui, height);
             }
             None => {
@@ -228,8 +162,8 @@ fn view_or_reason(
 ) {
     match view {
         Ok(view) => {
-            header(ui, &view.figure, (kind.file_name(), view.is_of_run), commands);
-            draw::draw(ui, kind.file_name(), view, height, shown, commands);
+            header(ui, &view.figure, (kind, view.is_of_run), commands);
+            draw::draw(ui, kind.labels().0, view, height, shown, commands);
         }
         Err(why) => {
             title(ui, kind.labels().0);
@@ -259,7 +193,7 @@ impl FitnessChart {
             self.known = Some((version, fitness::view(run.settings(), run.reports())));
         }
         let Some((_, view)) = &self.known else { return };
-        header(ui, &view.figure, (ChartKind::Fitness.file_name(), true), commands);
+        header(ui, &view.figure, (ChartKind::Fitness, true), commands);
         draw::draw(ui, "fitness alone", view, height, shown, commands);
     }
 }
@@ -281,18 +215,33 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
             run.reports(),
             exploration?.stairs.as_ref()?,
         )),
+        ChartKind::Front => Some(pareto_front::view(settings, &exploration?.front)),
+        ChartKind::Archive => Some(archive_map::view(settings, exploration?.archive.as_ref()?)),
         ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),
-        ChartKind::Torques | ChartKind::Front | ChartKind::Archive | ChartKind::Methods => None,
+        ChartKind::Torques | ChartKind::Methods => None,
     }
 }
 
-/// Draws the title of a chart, and its export buttons; the name is that of an exported file.
+/// The reason why the chart of a run is empty.
+fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
+    match kind {
+        ChartKind::Front if run.exploration().is_some() => {
+            "No snake has ended ahead of its starting position yet."
+        }
+        ChartKind::Archive if !run.settings().evolution.strategy.info().has_archive => {
+            "Only MAP-Elites keeps an archive: the best snake for each kind of behaviour. Select it as the strategy in the Run panel and start a run."
+        }
+        _ => kind.empty_text(),
+    }
+}
+
+/// Draws the title of a chart, and its export buttons. The flag says whether it is about the current run.
 fn header(
     ui: &mut egui::Ui,
     figure: &Arc<Figure>,
-    (name, is_of_run): (&'static str, bool),
+    (kind, is_of_run): (ChartKind, bool),
     commands: &mut Vec<Command>,
 ) {
     let is_empty = figure.is_empty();
@@ -307,7 +256,7 @@ fn header(
                 let figure = Arc::clone(figure);
                 commands.push(Command::Run(RunCommand::ExportChart(ChartExport {
                     figure,
-                    name,
+                    name: kind.file_name(),
                     format,
                     is_of_run,
                 })));

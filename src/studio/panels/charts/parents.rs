@@ -9,7 +9,7 @@ use crate::studio::ui::plot_axes::number;
 use snakes_core::evolve::Settings;
 use snakes_core::genome::Feature;
 use snakes_core::schema::DisplayUnit;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::Ancestor;
 
 /// Maximum number of lines that can be distinguished.
@@ -62,10 +62,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         }
         values.push(features.iter().map(|feature| feature.value).collect());
         if names.is_empty() {
-            let name = |feature: &Feature| match feature.unit {
-                "" => feature.name.clone(),
-                unit => format!("{} ({unit})", feature.name),
-            };
+            let name = |feature: &Feature| with_unit(&feature.name, feature.unit);
             names = (0..).map(f64::from).zip(features.iter().map(name)).collect();
         }
         let share =
@@ -80,7 +77,16 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     let aside = (last * 0.03).max(0.3);
     let x = Axis { names, ..Axis::new("Gene", "", -aside..=last + aside) };
     let y = Axis::new("Value within its range (0 lowest, 1 highest)", "", -0.05..=1.05);
-    let chart = Chart { name: String::new(), x, y, series, marks: Vec::new() };
+    // Exported files contain the values instead of their relative positions.
+    let heads: Vec<String> =
+        [x.name.clone()].into_iter().chain(series.iter().map(|of| of.name.clone())).collect();
+    let records: Vec<Vec<String>> = (x.names.iter().enumerate())
+        .map(|(index, (_, name))| {
+            let of_parents =
+                values.iter().map(|of| of.get(index).map_or(String::new(), f32::to_string));
+            [name.clone()].into_iter().chain(of_parents).collect()
+        })
+        .collect();
     let left_out = match surplus {
         0 => String::new(),
         _ => format!(" The best {MAX_PARENTS} of {} are shown.", surplus + known.len()),
@@ -94,10 +100,8 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     } else {
         format!("{about}{left_out}")
     };
-    // Exported files contain the values instead of their relative positions.
-    let numbers = Some(columns(&chart, &values));
-    let figure = Figure { note, numbers, ..Figure::of("Gene values of the parents", chart) };
-    Some(ChartView::new(figure, vec![hits]))
+    let figure = Figure::of("Gene values of the parents", Chart::new(x, y, series));
+    Some(ChartView::new(figure.with_note(note).with_numbers(heads, records), vec![hits]))
 }
 
 /// A feature in the unit in which panels show it: angles in degrees.
@@ -107,18 +111,6 @@ fn in_unit_of_panels(mut feature: Feature) -> Feature {
         feature.unit = display.unit;
     }
     feature
-}
-
-/// Table with one row per gene and one column per parent.
-fn columns(chart: &Chart, values: &[Vec<f32>]) -> Vec<Vec<String>> {
-    let parents = chart.series.iter().map(|series| series.name.clone());
-    let head = [chart.x.name.clone()].into_iter().chain(parents).collect();
-    let row = |(index, (_, name)): (usize, &(f64, String))| {
-        let of_parents =
-            values.iter().map(|of| of.get(index).map_or(String::new(), f32::to_string));
-        [name.clone()].into_iter().chain(of_parents).collect()
-    };
-    [head].into_iter().chain(chart.x.names.iter().enumerate().map(row)).collect()
 }
 
 #[cfg(test)]

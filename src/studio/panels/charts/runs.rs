@@ -8,7 +8,6 @@ use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
-use crate::studio::ui::plot_axes::padded_range;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::RunPlan;
@@ -54,7 +53,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     }
     let values =
         curves.iter().flat_map(|of| &of.points).flat_map(|&[_, best, median]| [best, median]);
-    let y = padded_range(values, 1.0).unwrap_or(0.0..=1.0);
+    let y = Axis::around(axis_title(fitness), unit.trim(), values, 1.0);
     let last = curves.iter().flat_map(|of| &of.points).map(|point| point[0]).fold(2.0, f64::max);
     let aside = (last - 1.0) * 0.04;
     let line = |of: &Curves, value: usize| -> Vec<[f64; 2]> {
@@ -77,20 +76,14 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     };
     let hits = curves.iter().flat_map(|of| of.points.iter().map(move |point| hit(of, point)));
     let hits = hits.collect();
-    let chart = Chart {
-        name: String::new(),
-        x: Axis::count("Generation", 1.0 - aside..=last + aside),
-        y: Axis::new(axis_title(fitness), unit.trim(), y),
-        series: series.collect(),
-        marks: Vec::new(),
-    };
+    let x = Axis::count("Generation", 1.0 - aside..=last + aside);
+    let chart = Chart::new(x, y, series.collect());
     let note = if rewards_differ {
         "These runs use different rewards, so their fitness cannot be compared."
     } else {
         ""
     };
-    let note = note.to_owned();
-    ChartView::new(Figure { note, ..Figure::of("Comparison of runs", chart) }, vec![hits])
+    ChartView::new(Figure::of("Comparison of runs", chart).with_note(note), vec![hits])
 }
 
 fn title(plan: &RunPlan) -> String {

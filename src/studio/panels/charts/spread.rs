@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::fitness::axis_title;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use crate::studio::ui::plot_axes::{number, padded_range, step};
+use crate::studio::ui::plot_axes::{number, step};
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::score::Evaluation;
 use snakes_core::world::Disqualification;
@@ -38,17 +38,9 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let max = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
     let ends = bins.iter().flat_map(|bin| [bin.from, bin.to]);
     let top = f64::from(max.max(1)) * 1.06;
-    let chart = Chart {
-        name: String::new(),
-        x: Axis::new(
-            axis_title(settings.trial.fitness),
-            unit.trim(),
-            padded_range(ends, 1.0).unwrap_or(0.0..=1.0),
-        ),
-        y: Axis::count("Snakes", 0.0..=top),
-        series: vec![Series::new("snakes", Role::First, bars)],
-        marks: Vec::new(),
-    };
+    let x = Axis::around(axis_title(settings.trial.fitness), unit.trim(), ends, 1.0);
+    let y = Axis::count("Snakes", 0.0..=top);
+    let chart = Chart::new(x, y, vec![Series::new("snakes", Role::First, bars)]);
     let hits = bins.iter().map(|bin| {
         let Bin { from, to, count, best: (individual, fitness) } = *bin;
         let range = format!("from {} to {}{unit}", number(from), number(to));
@@ -64,7 +56,7 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let hits = hits.collect();
     let title = format!("Fitness within generation {number_of}");
     let note = disqualified(&generation.evaluations);
-    ChartView::new(Figure { note, ..Figure::of(&title, chart) }, vec![hits])
+    ChartView::new(Figure::of(&title, chart).with_note(note), vec![hits])
 }
 
 /// Sorts healthy snakes into bins of equal, round width. Empty bins are left out.

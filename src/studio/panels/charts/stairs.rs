@@ -3,7 +3,6 @@
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use crate::studio::ui::plot_axes::padded_range;
 use snakes_core::evolve::{IndividualId, StairsNode, StairsTree, StrategyKind, Transfer};
 use snakes_core::save::StairsCount;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
@@ -21,13 +20,10 @@ pub(super) fn view(
     let has_challenges = strategy != StrategyKind::Mcc;
     let last = f64::from(tree.rounds.max(1));
     let aside = last * 0.04;
-    let nodes = Chart {
-        name: "Stairs".to_owned(),
-        x: Axis::count("Round", -aside..=last + aside),
-        y: Axis::new("Mean rise", "m", padded_range(rises(tree), 0.1).unwrap_or(0.0..=1.0)),
-        series: series(tree, has_challenges),
-        marks: Vec::new(),
-    };
+    let x = Axis::count("Round", -aside..=last + aside);
+    let rises = tree.nodes.iter().map(|node| f64::from(node.stairs.rise_m));
+    let y = Axis::around("Mean rise", "m", rises, 0.1);
+    let nodes = Chart::new(x.clone(), y, series(tree, has_challenges)).named("Stairs");
     let progress = by_round(reports, |count| match has_challenges {
         true => count.challenges,
         false => count.solved,
@@ -48,29 +44,18 @@ pub(super) fn view(
             "Each staircase entered the queue because a snake climbed it.",
         )
     };
-    let challenges = Chart {
-        name: name.to_owned(),
-        x: Axis::count("Round", -aside..=last + aside),
-        y: Axis::count(title, 0.0..=most * 1.05),
-        series: vec![Series::new(series, Role::Third, Shape::Line(progress))],
-        marks: Vec::new(),
-    };
+    let y = Axis::count(title, 0.0..=most * 1.05);
+    let series = vec![Series::new(series, Role::Third, Shape::Line(progress))];
+    let challenges = Chart::new(x, y, series).named(name);
     let hits = (0..).zip(&tree.nodes).map(|(index, node)| hit(index, node)).collect();
-    let figure = Figure {
-        title: "Stairs that evolve".to_owned(),
-        note: format!("Click stairs to see their snake climb them. {note}"),
-        charts: vec![nodes, challenges],
-        numbers: Some(table(tree)),
-    };
+    let figure = Figure::of_several("Stairs that evolve", vec![nodes, challenges])
+        .with_note(format!("Click stairs to see their snake climb them. {note}"))
+        .with_numbers(HEADS, (1..).zip(&tree.nodes).map(record));
     ChartView::new(figure, vec![hits, Vec::new()])
 }
 
 fn place(node: &StairsNode) -> [f64; 2] {
     [node.born.into(), node.stairs.rise_m.into()]
-}
-
-fn rises(tree: &StairsTree) -> impl Iterator<Item = f64> {
-    tree.nodes.iter().map(|node| f64::from(node.stairs.rise_m))
 }
 
 /// The stairs of a tree by their state: solved or not, or, where all are, whether they are still in their queue.
@@ -103,11 +88,7 @@ fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
         state("in the queue", Role::First, &|node| node.archived.is_none());
     }
     // Empty series need no legend entry.
-    series.retain(|series| match &series.shape {
-        Shape::Points(points) => !points.is_empty(),
-        Shape::Arrows(arrows) => !arrows.is_empty(),
-        _ => true,
-    });
+    series.retain(|series| !series.shape.is_empty());
     series
 }
 
@@ -158,35 +139,33 @@ fn words(index: u32, node: &StairsNode) -> String {
     )
 }
 
-/// The stairs as a table, the names of the columns first.
-fn table(tree: &StairsTree) -> Vec<Vec<String>> {
-    let head = [
-        "stairs",
-        "shape",
-        "parent",
-        "round",
-        "archived",
-        "solved",
-        "new challenge",
-        "share",
-        "trials",
-    ];
+/// Heads of the columns of the table.
+const HEADS: [&str; 9] = [
+    "stairs",
+    "shape",
+    "parent",
+    "round",
+    "archived",
+    "solved",
+    "new challenge",
+    "share",
+    "trials",
+];
+
+/// Row of the table about the stairs with a number.
+fn record((number, node): (u32, &StairsNode)) -> Vec<String> {
     let text = |number: Option<u32>| number.map_or(String::new(), |number| number.to_string());
-    let row = |(index, node): (u32, &StairsNode)| {
-        vec![
-            (index + 1).to_string(),
-            node.stairs.to_string(),
-            text(node.parent.map(|parent| parent + 1)),
-            node.born.to_string(),
-            text(node.archived),
-            text(node.solved),
-            node.is_new_challenge.to_string(),
-            node.score.to_string(),
-            node.trials.to_string(),
-        ]
-    };
-    let rows = (0..).zip(&tree.nodes).map(row);
-    [head.map(str::to_owned).to_vec()].into_iter().chain(rows).collect()
+    vec![
+        number.to_string(),
+        node.stairs.to_string(),
+        text(node.parent.map(|parent| parent + 1)),
+        node.born.to_string(),
+        text(node.archived),
+        text(node.solved),
+        node.is_new_challenge.to_string(),
+        node.score.to_string(),
+        node.trials.to_string(),
+    ]
 }
 
 #[cfg(test)]

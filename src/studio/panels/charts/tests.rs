@@ -124,7 +124,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
             else {
                 panic!("{kind:?}: {sent:?}")
             };
-            assert_eq!((*name, *format), (kind.file_name(), ChartFormat::Csv));
+            assert_eq!((name, *format), (&kind.file_name(), ChartFormat::Csv));
             assert!(figure.table().len() > 1, "{kind:?} has rows");
         }
     }

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use super::view::{ChartHit, ChartView, HitShape, Version};
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
-use crate::studio::ui::plot_axes::padded_range;
 use snakes_core::evolve::IndividualId;
 use snakes_core::genome::{Genome, JointCommands};
 use snakes_core::score::{KeyframeHistory, Rollout, Trial};
@@ -223,29 +222,19 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
     let (of_child, of_parent) = (lines(child), parent.map(lines).unwrap_or_default());
     let all = of_child.iter().chain(&of_parent).flat_map(|of| of.bend.iter().chain(&of.twist));
     // All charts share a range, so that joints can be compared.
-    let y = padded_range(all.map(|point| point[1]).chain([-1.0, 1.0]), 2.0).unwrap_or(-1.0..=1.0);
+    let y = Axis::around("Torque", "N·m", all.map(|point| point[1]).chain([-1.0, 1.0]), 2.0);
     let chart = |(index, lines): (usize, &TorqueLines)| {
-        let before = of_parent.get(index);
-        let dashed =
-            |points: Option<&Vec<[f64; 2]>>| Shape::Dashed(points.cloned().unwrap_or_default());
-        let series = [
-            ("parent's bend", Role::Bend, dashed(before.map(|of| &of.bend))),
-            ("parent's twist", Role::Twist, dashed(before.map(|of| &of.twist))),
-            ("bend", Role::Bend, Shape::Line(lines.bend.clone())),
-            ("twist", Role::Twist, Shape::Line(lines.twist.clone())),
-        ];
-        let has_points = |series: &&(&str, Role, Shape)| !matches!(&series.2, Shape::Dashed(points) if points.is_empty());
-        Chart {
-            name: format!("Joint {}", index + 1),
-            x: Axis::new("Time", "s", 0.0..=f64::from(trial.duration_s)),
-            y: Axis::new("Torque", "N·m", y.clone()),
-            series: series
-                .iter()
-                .filter(has_points)
-                .map(|(name, role, shape)| Series::new(name, *role, shape.clone()))
-                .collect(),
-            marks: Vec::new(),
+        let mut series = Vec::new();
+        if let Some(before) = of_parent.get(index).filter(|of| !of.bend.is_empty()) {
+            let (bend, twist) = (before.bend.clone(), before.twist.clone());
+            series.push(Series::new("parent's bend", Role::Bend, Shape::Dashed(bend)));
+            series.push(Series::new("parent's twist", Role::Twist, Shape::Dashed(twist)));
         }
+        let (bend, twist) = (lines.bend.clone(), lines.twist.clone());
+        series.push(Series::new("bend", Role::Bend, Shape::Line(bend)));
+        series.push(Series::new("twist", Role::Twist, Shape::Line(twist)));
+        let x = Axis::new("Time", "s", 0.0..=f64::from(trial.duration_s));
+        Chart::new(x, y.clone(), series).named(&format!("Joint {}", index + 1))
     };
     let charts: Vec<Chart> = of_child.iter().enumerate().map(chart).collect();
     let note = match parent {
@@ -257,7 +246,7 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
     let figure = Figure::of_several(&format!("Torques: {}", child.name), charts);
     let hits = of_child.iter().enumerate().map(|(index, lines)| hits(lines, of_parent.get(index)));
     let hits = hits.collect();
-    let view = ChartView::new(Figure { note, ..figure }, hits);
+    let view = ChartView::new(figure.with_note(note), hits);
     ChartView { is_of_run: child.is_of_run, ..view }
 }
 

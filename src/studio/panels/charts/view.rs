@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::archive_pictures::ArchivePictures;
 use super::downsample::{DrawnSeries, drawn};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::IndividualId;
@@ -17,6 +18,8 @@ pub(super) struct ChartView {
     pub drawn: Vec<Vec<DrawnSeries>>,
     /// Hit targets of each chart.
     pub hits: Vec<Vec<ChartHit>>,
+    /// Pictures of the bodies in its cells, in their order. The first hit targets belong to the same cells.
+    pub pictures: ArchivePictures,
     /// Whether it is about the current run.
     pub is_of_run: bool,
 }
@@ -25,7 +28,8 @@ impl ChartView {
     /// View of one or several charts of the current run.
     pub fn new(figure: Figure, hits: Vec<Vec<ChartHit>>) -> Self {
         let drawn = figure.charts.iter().map(drawn).collect();
-        Self { figure: Arc::new(figure), drawn, hits, is_of_run: true }
+        let pictures = ArchivePictures::default();
+        Self { figure: Arc::new(figure), drawn, hits, pictures, is_of_run: true }
     }
 }
 

@@ -8,7 +8,6 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::{decimals, in_percent};
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
 use snakes_core::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 use snakes_core::genome::controllers::{JointGroup, Wave};
 
@@ -58,7 +57,7 @@ fn joints(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
             egui::vec2(width - 2.0, area.height()),
         );
         let color = palette.category(wave);
-        let ink = Palette::ink_on(color);
+        let ink = theme::palette::text_on(color);
         ui.painter().rect_filled(cell, theme::GAP / 2.0, color);
         let (above, below) = if width >= WORD_WIDTH {
             (format!("Joint {}", joint + 1), format!("wave {}", wave + 1))

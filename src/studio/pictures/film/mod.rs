@@ -28,7 +28,7 @@ pub use order::{FilmOrder, FilmPart};
 use film_file::FilmFile;
 use frame_folder::FrameFolder;
 use gif_file::{GifFile, GifPalette, SAMPLES};
-use plan::FilmPlan;
+use plan::planned;
 use shooting::shoot;
 use video::Video;
 
@@ -54,17 +54,17 @@ pub fn film(
     path: &Path,
     progress: &ExportProgress,
 ) -> Result<(), FilmError> {
-    let plan = FilmPlan::new(order)?;
-    within("number of frames", plan.frames.len(), 1..=MOST_FRAMES)?;
+    let plan = planned(order)?;
+    within("number of frames", plan.len(), 1..=MOST_FRAMES)?;
     let (size, fps) = (order.size, order.fps);
     // A file that cannot be written is refused before the first frame is drawn.
     let mut file: Option<Box<dyn FilmFile>> = match format {
         ExportFormat::Mp4 => Some(Box::new(Video::begin(path, size, fps)?)),
-        ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.frames.len())?)),
+        ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.len())?)),
         _ => None,
     };
     let mut gif = file.is_none().then(|| GifFile::begin(path, size, fps)).transpose()?;
-    let all = plan.frames.len();
+    let all = plan.len();
     shoot(order, &plan, |shooting| {
         if let Some(mut gif) = gif.take() {
             let mut samples = Vec::new();

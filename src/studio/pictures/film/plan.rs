@@ -6,10 +6,9 @@ use super::camera_path::camera_path;
 use super::error::FilmError;
 use super::order::{FilmOrder, FilmPart};
 use crate::studio::error::StudioError;
-use crate::studio::pictures::render::in_view;
+use crate::studio::pictures::render;
+use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{StageMode, end_s, lanes};
 use snakes_core::check::within;
 use snakes_lab::plot::FilmTitle;
 
@@ -19,12 +18,6 @@ const HOLD_S: f64 = 1.2;
 const TITLE_S: f64 = 2.8;
 /// Time in which it fades at the end of that, in seconds of the film.
 const FADE_S: f64 = 0.5;
-
-/// The frames of a film.
-pub struct FilmPlan {
-    /// All frames, in their order.
-    pub frames: Vec<FilmFrame>,
-}
 
 /// A frame of a film.
 #[derive(Debug, Clone)]
@@ -39,18 +32,16 @@ pub struct FilmFrame {
     pub title: Option<FilmTitle>,
 }
 
-impl FilmPlan {
-    /// Simulates all parts once, and plans their frames.
-    ///
-    /// # Errors
-    /// A champion cannot be built, or the film has no moment.
-    pub fn new(order: &FilmOrder) -> Result<Self, FilmError> {
-        let mut frames = Vec::new();
-        for (index, part) in order.parts.iter().enumerate() {
-            frames.extend(frames_of(order, index, part)?);
-        }
-        Ok(Self { frames })
+/// Simulates all parts once, and plans all frames, in their order.
+///
+/// # Errors
+/// A champion cannot be built, or the film has no moment.
+pub fn planned(order: &FilmOrder) -> Result<Vec<FilmFrame>, FilmError> {
+    let mut frames = Vec::new();
+    for (index, part) in order.parts.iter().enumerate() {
+        frames.extend(frames_of(order, index, part)?);
     }
+    Ok(frames)
 }
 
 fn frames_of(
@@ -75,7 +66,7 @@ fn frames_of(
     let times_s: Vec<f64> = times_s.collect();
     let points = times_s.iter().map(|time_s| {
         lanes.iter_mut().for_each(|lane| lane.skip_to(*time_s));
-        in_view(&lanes)
+        render::in_view(&lanes)
     });
     let points: Vec<Vec<Vec3>> = points.collect();
     let aspect = order.size.0 as f32 / order.size.1.max(1) as f32;
@@ -97,13 +88,7 @@ fn frames_of(
 
 /// The lanes of a part at their start, with all that is known about their future.
 pub fn lanes_of(part: &FilmPart) -> Result<Vec<Lane>, StudioError> {
-    let saved = part.champions.iter().enumerate();
-    let champions =
-        saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
-    let (mut lanes, problems) = lanes(champions.collect(), &StageMode::Race);
-    if let Some(problem) = problems.into_iter().next() {
-        return Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned()));
-    }
+    let mut lanes = render::lanes_of(&part.champions)?;
     lanes.iter_mut().for_each(Lane::finish_lookahead);
     Ok(lanes)
 }

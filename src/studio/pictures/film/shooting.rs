@@ -7,15 +7,14 @@ use bevy::prelude::*;
 
 use super::error::FilmError;
 use super::order::FilmOrder;
-use super::plan::{FilmPlan, lanes_of};
+use super::plan::{FilmFrame, lanes_of};
 use crate::studio::pictures::offscreen::Offscreen;
 use crate::studio::pictures::render::over_heads;
-use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::ranking::ranking;
 use snakes_core::save::Picture;
 use snakes_lab::plot;
-use snakes_lab::plot::{FilmBand, FilmTitle};
+use snakes_lab::plot::{FilmBand, FilmTitle, NameTag};
 
 /// Maximum number of frames that are drawn and not returned yet.
 const IN_FLIGHT: usize = 3;
@@ -23,7 +22,7 @@ const IN_FLIGHT: usize = 3;
 /// A scene in which the frames of a film are drawn.
 pub struct Shooting<'s> {
     order: &'s FilmOrder,
-    plan: &'s FilmPlan,
+    plan: &'s [FilmFrame],
     studio: &'s mut Offscreen,
     /// Index of the part that is on the stage.
     part: Option<usize>,
@@ -36,20 +35,19 @@ struct PendingFrame {
     index: usize,
     shot: u64,
     band: Option<FilmBand>,
-    tags: Vec<(String, (f32, f32))>,
+    tags: Vec<NameTag>,
     title: Option<FilmTitle>,
 }
 
 /// Runs `work`, which plays frames of the plan.
 pub fn shoot(
     order: &FilmOrder,
-    plan: &FilmPlan,
+    plan: &[FilmFrame],
     work: impl FnOnce(&mut Shooting<'_>) -> Result<(), FilmError>,
 ) -> Result<(), FilmError> {
     let mut done = Ok(());
     Offscreen::draw(order.size, order.theme, |studio| {
-        let mut overlays = studio.app.world_mut().resource_mut::<Overlays>();
-        order.overlays.iter().for_each(|overlay| overlays.show(*overlay));
+        studio.show_overlays(&order.overlays);
         done = work(&mut Shooting { order, plan, studio, part: None, time_s: 0.0 });
         Ok(())
     })?;
@@ -88,7 +86,7 @@ impl Shooting<'_> {
 
     /// Draws a frame, and keeps the texts that belong onto it.
     fn draw(&mut self, index: usize) -> Result<PendingFrame, FilmError> {
-        let planned = &self.plan.frames[index];
+        let planned = &self.plan[index];
         let is_new = self.part != Some(planned.part) || planned.time_s < self.time_s;
         if is_new {
             self.put_on_stage(planned.part)?;
@@ -103,23 +101,15 @@ impl Shooting<'_> {
         }
         let shot = self.studio.shoot();
         let (band, heads) = if self.order.has_captions { self.texts() } else { (None, Vec::new()) };
-        let places = self.studio.pixels_of(heads.iter().map(|(head, _)| *head));
-        let tags = heads.into_iter().zip(places);
-        let tags = tags.filter_map(|((_, text), at)| Some((text, (at?.x, at?.y)))).collect();
+        let tags = self.studio.tags_of(heads);
         let title = planned.title.clone().filter(|_| self.order.has_captions);
         Ok(PendingFrame { index, shot, band, tags, title })
     }
 
     /// Replaces the lanes of the stage by those of a part, at their start.
     fn put_on_stage(&mut self, part: usize) -> Result<(), FilmError> {
-        let world = self.studio.app.world_mut();
-        let mut earlier = world.query_filtered::<Entity, With<Lane>>();
-        let earlier: Vec<Entity> = earlier.iter(world).collect();
-        earlier.into_iter().for_each(|lane| world.entity_mut(lane).despawn());
-        for lane in lanes_of(&self.order.parts[part])? {
-            let place = Transform::from_translation(lane.offset());
-            world.spawn((lane, place, Visibility::default()));
-        }
+        self.studio.clear_stage();
+        self.studio.put_on_stage(lanes_of(&self.order.parts[part])?);
         (self.part, self.time_s) = (Some(part), 0.0);
         Ok(())
     }
@@ -156,9 +146,7 @@ fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
 
 /// A frame with its texts.
 fn written_on(mut picture: Picture, frame: &PendingFrame) -> Result<Picture, FilmError> {
-    let tags: Vec<(&str, (f32, f32))> =
-        frame.tags.iter().map(|(text, at)| (text.as_str(), *at)).collect();
-    plot::tags(&mut picture, &tags)?;
+    plot::tags(&mut picture, &frame.tags)?;
     if let Some(band) = &frame.band {
         plot::film_band(&mut picture, band)?;
     }
@@ -174,6 +162,7 @@ mod tests {
     use crate::studio::commands::camera_mode::CameraMode;
     use crate::studio::commands::overlay::Overlay;
     use crate::studio::pictures::film::order::FilmPart;
+    use crate::studio::pictures::film::plan::planned;
     use crate::studio::ui::theme::Theme;
     use snakes_core::save::{load_champion, shipped_champion};
 
@@ -238,7 +227,7 @@ mod tests {
             overlays: vec![Overlay::Trail, Overlay::Contacts, Overlay::Torques],
             has_captions: true,
         };
-        let plan = FilmPlan::new(&order).expect("planned");
+        let plan = planned(&order).expect("planned");
         let frames = |indices: &[usize]| {
             let mut drawn = Vec::new();
             let shot = shoot(&order, &plan, |shooting| {
@@ -250,7 +239,7 @@ mod tests {
             shot.expect("drawn");
             drawn
         };
-        let all: Vec<usize> = (0..plan.frames.len()).collect();
+        let all: Vec<usize> = (0..plan.len()).collect();
         let together = frames(&all);
         assert_eq!(together.iter().map(|(index, _)| *index).collect::<Vec<_>>(), all);
         // One in the middle of the first part, its last one, and one under the title of the second part.

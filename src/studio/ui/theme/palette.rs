@@ -287,13 +287,6 @@ impl Palette {
         self.role(Role::Species(number as u32))
     }
 
-    /// Text on a colour: black or white.
-    pub fn ink_on(color: Color32) -> Color32 {
-        let [red, green, blue, _] = color.to_array();
-        let [ink, ..] = plot::ink_on([red, green, blue]);
-        Color32::from_gray(ink)
-    }
-
     /// Colour of a lane: on the snake's collar, beside its lane, in lists and in charts. The first lane is 0; after ten
     /// lanes the colours repeat.
     pub fn lane_color(&self, number: usize) -> Color32 {
@@ -366,7 +359,7 @@ pub fn ramp(share: f32) -> Color32 {
     Color32::from_rgb(red, green, blue)
 }
 
-/// Colour of text on a colour of the [`ramp`]: dark or light, whichever is easier to read.
+/// Colour of text on a colour: black or white, whichever is easier to read.
 pub fn text_on(ground: Color32) -> Color32 {
     let texts = [Color32::BLACK, Color32::WHITE];
     if contrast(texts[0], ground) > contrast(texts[1], ground) { texts[0] } else { texts[1] }

@@ -146,7 +146,7 @@ fn species_have_colours_that_stay_apart_from_each_other_and_from_the_panel() {
             }
             let next = apart(own, of.role(Role::Species(number + 1)));
             assert!(next > 0.19, "{number} and its neighbour: {next}");
-            let found = contrast(Palette::ink_on(own), own);
+            let found = contrast(text_on(own), own);
             assert!(found >= READABLE, "{number}: its number has {found:.2}");
         }
         assert_eq!(of.role(Role::Species(17)), of.role(Role::Species(7)));
