@@ -235,11 +235,9 @@ fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let friction = plan.skin.friction * plan.skin.friction;
     let [torsional, rolling] = OTHER_FRICTION;
     xml.element("contact", &[], |xml| {
-        for joint in &body.joints {
-            let [front, rear] = [joint.parent, joint.child].map(|part| part_name(body, part));
-            xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
-        }
-        for (a, b) in pairs().filter(|&(a, b)| is_free(a, b) && !are_joined(a, b)) {
+        let joined = body.joints.iter().map(|joint| (joint.parent, joint.child));
+        let free = pairs().filter(|&(a, b)| is_free(a, b) && !are_joined(a, b));
+        for (a, b) in joined.chain(free) {
             let [front, rear] = [a, b].map(|part| part_name(body, part));
             xml.leaf("exclude", &[("body1", front), ("body2", rear)])?;
         }

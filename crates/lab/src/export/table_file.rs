@@ -1,6 +1,5 @@
 //! Tables of motion as CSV and Parquet.
 
-use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,11 +21,6 @@ use snakes_core::score::Rollout;
 /// Rows that are held in memory and become one group of a Parquet file.
 const ROWS_PER_GROUP: usize = 100_000;
 
-/// The rows of a table, one after the other.
-trait TableSink {
-    fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError>;
-}
-
 /// The columns that say which row it is: see [`KEYS`].
 #[derive(Debug, Clone, Copy)]
 struct RowKey<'n> {
@@ -37,11 +31,11 @@ struct RowKey<'n> {
     limb: u32,
 }
 
-/// Sends the rows of all champions.
+/// Sends the rows of all champions, one after the other.
 fn send_rows(
     champions: &[ExportedChampion],
     progress: &ExportProgress,
-    sink: &mut dyn TableSink,
+    mut send_row: impl FnMut(&RowKey, &RowValues) -> Result<(), ExportError>,
 ) -> Result<(), ExportError> {
     let mut reader = RowReader::default();
     for (index, ExportedChampion { name, loaded, .. }) in champions.iter().enumerate() {
@@ -51,7 +45,7 @@ fn send_rows(
             let time_s = f64::from(step) / steps_per_s;
             let rows = reader.rows(rollout);
             (1..).zip(&rows).try_for_each(|(limb, values)| {
-                sink.row(&RowKey { champion: name, step, time_s, limb }, values)
+                send_row(&RowKey { champion: name, step, time_s, limb }, values)
             })
         };
         follow(&loaded.champion, &progress.part(index, champions.len()), send)?;
@@ -65,26 +59,18 @@ pub(super) fn write_csv(
     path: &Path,
     progress: &ExportProgress,
 ) -> Result<(), ExportError> {
-    struct CsvTable<'p, W: Write> {
-        writer: csv::Writer<W>,
-        path: &'p Path,
-    }
-    impl<W: Write> TableSink for CsvTable<'_, W> {
-        fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
-            let numbers = [key.step.to_string(), key.time_s.to_string(), key.limb.to_string()];
-            let values = values.iter().map(|value| value.map(|value| value.to_string()));
-            let cells = [key.champion.to_owned()].into_iter().chain(numbers);
-            let cells = cells.chain(values.map(Option::unwrap_or_default));
-            self.writer.write_record(cells).map_err(of_csv(self.path))
-        }
-    }
+    let failed = of_csv(path);
     let mut file = UnfinishedFile::create(path)?;
-    let mut table = CsvTable { writer: csv::Writer::from_writer(&mut file), path };
-    let names = columns().map(|column| column.name);
-    table.writer.write_record(names).map_err(of_csv(path))?;
-    send_rows(champions, progress, &mut table)?;
-    table.writer.flush().map_err(ExportError::unwritable(path))?;
-    drop(table);
+    let mut writer = csv::Writer::from_writer(&mut file);
+    writer.write_record(columns().map(|column| column.name)).map_err(&failed)?;
+    send_rows(champions, progress, |key, values| {
+        let numbers = [key.step.to_string(), key.time_s.to_string(), key.limb.to_string()];
+        let values = values.iter().map(|value| value.map(|value| value.to_string()));
+        let cells = [key.champion.to_owned()].into_iter().chain(numbers);
+        writer.write_record(cells.chain(values.map(Option::unwrap_or_default))).map_err(&failed)
+    })?;
+    writer.flush().map_err(ExportError::unwritable(path))?;
+    drop(writer);
     Ok(file.finish()?)
 }
 
@@ -109,17 +95,6 @@ pub(super) fn write_parquet(
     path: &Path,
     progress: &ExportProgress,
 ) -> Result<(), ExportError> {
-    let mut file = UnfinishedFile::create(path)?;
-    fill_parquet(&mut file, champions, path, progress)?;
-    Ok(file.finish()?)
-}
-
-fn fill_parquet(
-    file: &mut UnfinishedFile,
-    champions: &[ExportedChampion],
-    path: &Path,
-    progress: &ExportProgress,
-) -> Result<(), ExportError> {
     let failed = of_parquet(path);
     let meanings =
         columns().map(|column| KeyValue::new(column.name.to_owned(), column.meaning.to_owned()));
@@ -138,18 +113,18 @@ fn fill_parquet(
         .set_column_encoding(KEYS[0].name.into(), Encoding::PLAIN)
         .build();
     let schema = Arc::new(schema().map_err(&failed)?);
+    let file = UnfinishedFile::create(path)?;
     let writer = SerializedFileWriter::new(file, schema, Arc::new(properties));
     let mut table =
         ParquetTable { writer: writer.map_err(&failed)?, path, group: RowGroup::default() };
-    send_rows(champions, progress, &mut table)?;
+    send_rows(champions, progress, |key, values| table.row(key, values))?;
     table.write_group()?;
-    table.writer.into_inner().map_err(&failed)?;
-    Ok(())
+    Ok(table.writer.into_inner().map_err(&failed)?.finish()?)
 }
 
 /// A Parquet file in progress.
-struct ParquetTable<'p, W: Write + Send> {
-    writer: SerializedFileWriter<W>,
+struct ParquetTable<'p> {
+    writer: SerializedFileWriter<UnfinishedFile>,
     path: &'p Path,
     group: RowGroup,
 }
@@ -177,7 +152,8 @@ impl Default for RowGroup {
     }
 }
 
-impl<W: Write + Send> TableSink for ParquetTable<'_, W> {
+impl ParquetTable<'_> {
+    /// Takes a row, and writes those that are held once they make a group.
     fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
         let group = &mut self.group;
         group.champions.push(key.champion.into());
@@ -190,20 +166,18 @@ impl<W: Write + Send> TableSink for ParquetTable<'_, W> {
         }
         if group.steps.len() >= ROWS_PER_GROUP { self.write_group() } else { Ok(()) }
     }
-}
 
-impl<W: Write + Send> ParquetTable<'_, W> {
     /// Writes the rows that are held.
     fn write_group(&mut self) -> Result<(), ExportError> {
         let group = std::mem::take(&mut self.group);
         let mut write = || {
             let mut row_group = self.writer.next_row_group()?;
-            write_column::<ByteArrayType, _>(&mut row_group, &group.champions, None)?;
-            write_column::<Int32Type, _>(&mut row_group, &group.steps, None)?;
-            write_column::<DoubleType, _>(&mut row_group, &group.times_s, None)?;
-            write_column::<Int32Type, _>(&mut row_group, &group.limbs, None)?;
+            write_column::<ByteArrayType>(&mut row_group, &group.champions, None)?;
+            write_column::<Int32Type>(&mut row_group, &group.steps, None)?;
+            write_column::<DoubleType>(&mut row_group, &group.times_s, None)?;
+            write_column::<Int32Type>(&mut row_group, &group.limbs, None)?;
             for (present, levels) in &group.values {
-                write_column::<FloatType, _>(&mut row_group, present, Some(levels))?;
+                write_column::<FloatType>(&mut row_group, present, Some(levels))?;
             }
             row_group.close().map(drop)
         };
@@ -211,8 +185,8 @@ impl<W: Write + Send> ParquetTable<'_, W> {
     }
 }
 
-fn write_column<T: parquet::data_type::DataType, W: Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
+fn write_column<T: parquet::data_type::DataType>(
+    group: &mut SerializedRowGroupWriter<'_, UnfinishedFile>,
     values: &[T::T],
     levels: Option<&[i16]>,
 ) -> Result<(), ParquetError> {
