@@ -88,56 +88,52 @@ impl GifPalette {
     }
 }
 
+/// A GIF whose palette is not known yet.
+pub struct BegunGif {
+    file: UnfinishedFile,
+    path: PathBuf,
+    size: [u16; 2],
+    fps: u32,
+}
+
 /// A GIF that is being written.
 pub struct GifFile {
+    palette: GifPalette,
+    encoder: Encoder<UnfinishedFile>,
     path: PathBuf,
-    size: (u16, u16),
+    /// Width of a frame, in pixels.
+    width: usize,
     fps: u32,
-    stage: GifStage,
     /// The palette's colours of the last frame.
     last: Vec<u8>,
     frames: u32,
 }
 
-/// How far the file has come.
-enum GifStage {
-    /// Its palette is not known yet.
-    Begun(UnfinishedFile),
-    /// Frames are being written.
-    Open(GifPalette, Box<Encoder<UnfinishedFile>>),
-    /// Its palette could not be written.
-    Broken,
-}
-
-impl GifFile {
+impl BegunGif {
     /// Begins the file.
     pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
         within("--fps", fps, GIF_FPS)?;
         within("--size", size.0.max(size.1), 1..=u32::from(u16::MAX))?;
-        let stage = GifStage::Begun(UnfinishedFile::create(path)?);
-        let size = (size.0 as u16, size.1 as u16);
-        Ok(Self { path: path.to_owned(), size, fps, stage, last: Vec::new(), frames: 0 })
+        let file = UnfinishedFile::create(path)?;
+        Ok(Self { file, path: path.to_owned(), size: [size.0 as u16, size.1 as u16], fps })
     }
 
     /// Takes the colours of the film.
-    pub fn use_palette(&mut self, palette: GifPalette) -> Result<(), FilmError> {
-        let stage = std::mem::replace(&mut self.stage, GifStage::Broken);
-        let GifStage::Begun(file) = stage else { return Ok(()) };
-        let unwritable = ExportError::unwritable(&self.path);
-        let encoder = Encoder::new(file, self.size.0, self.size.1, &palette.rgb);
-        let mut encoder = encoder.map_err(&unwritable)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(&unwritable)?;
-        self.stage = GifStage::Open(palette, Box::new(encoder));
-        Ok(())
+    pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, FilmError> {
+        let Self { file, path, size: [width, height], fps } = self;
+        let encoder = Encoder::new(file, width, height, &palette.rgb);
+        let mut encoder = encoder.map_err(ExportError::unwritable(&path))?;
+        encoder.set_repeat(Repeat::Infinite).map_err(ExportError::unwritable(&path))?;
+        let (width, last) = (usize::from(width), Vec::new());
+        Ok(GifFile { palette, encoder, path, width, fps, last, frames: 0 })
     }
 }
 
 impl FilmFile for GifFile {
     fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
-        let GifStage::Open(palette, encoder) = &mut self.stage else { return Ok(()) };
-        let indices = palette.indices(frame);
+        let indices = self.palette.indices(frame);
         let shown = changed(&indices, &self.last);
-        let (left, top, width, height, buffer) = cropped(&shown, usize::from(self.size.0));
+        let (left, top, width, height, buffer) = cropped(&shown, self.width);
         let part = Frame {
             // Rounded so that no error adds up.
             delay: (hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps))
@@ -151,15 +147,15 @@ impl FilmFile for GifFile {
             buffer: Cow::Owned(buffer),
             ..Frame::default()
         };
-        encoder.write_frame(&part).map_err(ExportError::unwritable(&self.path))?;
+        self.encoder.write_frame(&part).map_err(ExportError::unwritable(&self.path))?;
         self.last = indices;
         self.frames += 1;
         Ok(())
     }
 
     fn finish(self: Box<Self>) -> Result<(), FilmError> {
-        let GifStage::Open(_, encoder) = self.stage else { return Ok(()) };
-        let file = encoder.into_inner().map_err(ExportError::unwritable(&self.path))?;
+        let Self { encoder, path, .. } = *self;
+        let file = encoder.into_inner().map_err(ExportError::unwritable(&path))?;
         Ok(file.finish()?)
     }
 }

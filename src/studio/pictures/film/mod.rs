@@ -27,7 +27,7 @@ pub use order::{FilmOrder, FilmPart};
 
 use film_file::FilmFile;
 use frame_folder::FrameFolder;
-use gif_file::{GifFile, GifPalette, SAMPLES};
+use gif_file::{BegunGif, GifPalette, SAMPLES};
 use plan::planned;
 use shooting::shoot;
 use video::Video;
@@ -63,18 +63,17 @@ pub fn film(
         ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.len())?)),
         _ => None,
     };
-    let mut gif = file.is_none().then(|| GifFile::begin(path, size, fps)).transpose()?;
+    let mut gif = file.is_none().then(|| BegunGif::begin(path, size, fps)).transpose()?;
     let all = plan.len();
     shoot(order, &plan, |shooting| {
-        if let Some(mut gif) = gif.take() {
+        if let Some(gif) = gif.take() {
             let mut samples = Vec::new();
             let chosen: Vec<usize> = evenly(all, SAMPLES, SAMPLES).collect();
             shooting.play(&chosen, |_, frame| {
                 samples.push(frame);
                 Ok(progress.reach(0.0)?)
             })?;
-            gif.use_palette(GifPalette::of(&samples))?;
-            file = Some(Box::new(gif));
+            file = Some(Box::new(gif.with_palette(GifPalette::of(&samples))?));
         }
         let Some(file) = &mut file else { return Ok(()) };
         let every: Vec<usize> = (0..all).collect();
