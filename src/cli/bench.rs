@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 
 use super::args::Args;
 use super::error::CliError;
-use super::output::print;
+use super::output::{print, print_json};
 use snakes_core::evolve::Champion;
 use snakes_core::save::load_champion;
 use snakes_lab::run::bench::{BenchReport, Workload, bench};
@@ -31,7 +31,7 @@ pub fn print_bench(args: &Args, champion: Option<&Path>) -> Result<(), CliError>
     if args.json {
         let mut line = serde_json::json!(report);
         line["type"] = "bench".into();
-        return print(&format!("{line}\n"));
+        return print_json(&line);
     }
     print(&table(&report))
 }

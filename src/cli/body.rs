@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use serde_json::json;
+
 use super::error::CliError;
-use super::output::print;
+use super::output::{print, print_json};
 use snakes_core::genome::joint_tree;
 use snakes_core::save::load_champion;
 use snakes_core::world::BodyPlan;
@@ -22,7 +24,7 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
         let joint = body.joint_before(index);
         let [width_m, length_m, height_m] = body.limb_size_m(index);
         let spring = body.spring_of(index);
-        let line = serde_json::json!({
+        print_json(&json!({
             "type": "block",
             "block": index + 1,
             "joined_to": joint.map(|joint| body.parts[joint.parent].limb + 1),
@@ -38,10 +40,9 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
             "twist_limit_rad": joint.map(|joint| joint.twist_limit_rad),
             "max_bend_torque_nm": joint.map(|joint| joint.max_bend_torque_nm),
             "max_twist_torque_nm": joint.map(|joint| joint.max_twist_torque_nm),
-        });
-        print(&format!("{line}\n"))?;
+        }))?;
     }
-    let line = serde_json::json!({
+    print_json(&json!({
         "done": true,
         "blocks": body.limbs(),
         "parts": body.parts.len(),
@@ -51,8 +52,7 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
         "mass_kg": body.mass_kg(),
         "volume_m3": body.volume_m3(),
         "torque_nm": body.torque_nm(),
-    });
-    print(&format!("{line}\n"))
+    }))
 }
 
 fn table(body: &BodyPlan, is_own: bool, tree: Option<String>) -> String {

@@ -7,23 +7,19 @@ use std::sync::Arc;
 use serde_json::json;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::args::Args;
+use super::args::{Args, CredentialFlags};
 use super::error::CliError;
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_json};
 use snakes_cluster::{
-    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, Simulator,
-    WorkerOptions, host_name, machines, proof, purge, unique_name, work,
+    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, RunQueue,
+    Simulator, WorkerOptions, host_name, machines, proof, purge, unique_name, work,
 };
 use snakes_lab::run::Evaluator;
 use snakes_lab::run::headless::say;
 
 fn server(args: &Args) -> BrokerOptions {
-    let url = args.workers.nats.clone().unwrap_or_default();
-    BrokerOptions {
-        url,
-        creds: args.workers.credentials.creds.clone(),
-        tls_ca: args.workers.credentials.tls_ca.clone(),
-    }
+    let CredentialFlags { creds, tls_ca } = args.workers.credentials.clone();
+    BrokerOptions { url: args.workers.nats.clone().unwrap_or_default(), creds, tls_ca }
 }
 
 /// An evaluator on the workers of a server.
@@ -31,7 +27,7 @@ pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Eva
     let (expect_workers, local_threads) = (args.expect_workers()?, args.local_threads()?);
     let server = server(args);
     server.check()?;
-    // The same run of two people, or of one person in two folders, is two runs on the server.
+    // One plan of two people, or of one person in two folders, is two runs on the server.
     let place = format!("{} {}", host_name(), place.display());
     let run = format!("{words}-{:08x}", xxh3_64(place.as_bytes()) as u32);
     let broker = Broker::connect(&server, &run)?;
@@ -70,16 +66,13 @@ pub fn worker(args: &Args) -> Result<(), CliError> {
 pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
     let broker = Broker::connect(&server(args), "machines")?;
     if let Some(run) = purged {
-        let found = purge(&broker, run)?;
-        let line = match args.json {
-            true => {
-                json!({"type": "removed", "run": run, "batches": found.batches, "results": found.results}).to_string()
-            }
-            false => {
-                format!("{run}: removed {} batches and {} results", found.batches, found.results)
-            }
-        };
-        return print(&format!("{line}\n"));
+        let RunQueue { batches, results } = purge(&broker, run)?;
+        if args.json {
+            return print_json(
+                &json!({"type": "removed", "run": run, "batches": batches, "results": results}),
+            );
+        }
+        return print(&format!("{run}: removed {batches} batches and {results} results\n"));
     }
     let machines = machines(&broker)?;
     print(&if args.json { as_json(&machines) } else { as_text(&machines) })

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "studio")]
+use crate::studio::film::FilmError;
+#[cfg(feature = "cluster")]
+use snakes_cluster::ClusterError;
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 use snakes_lab::export::ExportError;
@@ -32,7 +36,7 @@ pub enum CliError {
     /// The workers on other machines could not be used.
     #[cfg(feature = "cluster")]
     #[error(transparent)]
-    Cluster(snakes_cluster::ClusterError),
+    Cluster(#[from] ClusterError),
     /// This build knows no other machines.
     #[cfg(not(feature = "cluster"))]
     #[error(
@@ -60,14 +64,14 @@ pub enum CliError {
     },
     /// A champion could not be exported.
     #[error(transparent)]
-    Export(ExportError),
+    Export(#[from] ExportError),
     /// MuJoCo could not be used.
     #[error(transparent)]
     Mujoco(#[from] MujocoError),
     /// A film could not be made.
     #[cfg(feature = "studio")]
     #[error(transparent)]
-    Film(crate::studio::film::FilmError),
+    Film(#[from] FilmError),
     /// A plot could not be drawn.
     #[error(transparent)]
     Plot(#[from] snakes_lab::plot::PlotError),
@@ -90,7 +94,11 @@ impl CliError {
     /// 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::SeveralRuns { .. } => 2,
+            Self::Usage(_) | Self::SeveralRuns { .. } | Self::Export(ExportError::Invalid(_)) => 2,
+            #[cfg(feature = "studio")]
+            Self::Film(FilmError::Export(ExportError::Invalid(_))) => 2,
+            #[cfg(feature = "cluster")]
+            Self::Cluster(ClusterError::Invalid(_)) => 2,
             _ => 1,
         }
     }
@@ -99,35 +107,6 @@ impl CliError {
 impl From<Invalid> for CliError {
     fn from(invalid: Invalid) -> Self {
         Self::Usage(invalid.to_string())
-    }
-}
-
-impl From<ExportError> for CliError {
-    fn from(error: ExportError) -> Self {
-        match error {
-            ExportError::Invalid(invalid) => invalid.into(),
-            other => Self::Export(other),
-        }
-    }
-}
-
-#[cfg(feature = "studio")]
-impl From<crate::studio::film::FilmError> for CliError {
-    fn from(error: crate::studio::film::FilmError) -> Self {
-        match error {
-            crate::studio::film::FilmError::Export(error) => error.into(),
-            other => Self::Film(other),
-        }
-    }
-}
-
-#[cfg(feature = "cluster")]
-impl From<snakes_cluster::ClusterError> for CliError {
-    fn from(error: snakes_cluster::ClusterError) -> Self {
-        match error {
-            snakes_cluster::ClusterError::Invalid(invalid) => invalid.into(),
-            other => Self::Cluster(other),
-        }
     }
 }
 

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::args::Args;
+use super::args::{Args, ExamArgs};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print};
-use super::replay::equals_record;
+use super::output::{cancel_on_interrupt, print, print_json};
+use super::replay::{equals_record, name_of};
 use snakes_core::check::Invalid;
 use snakes_core::genome::StairsClass;
 use snakes_core::save::{LoadedChampion, SaveError, check_examinable, load_champion, store_exam};
@@ -28,21 +28,17 @@ use snakes_lab::run::{Evaluator, RunControl, short};
 use snakes_lab::statistics::Share;
 use snakes_lab::study::suites_named;
 
-/// Examines champions and prints the results; if `writes`, also into their files.
-pub fn exam(
-    args: &Args,
-    files: &[PathBuf],
-    suites: &[String],
-    writes: bool,
-) -> Result<(), CliError> {
-    let (suites, asks_mujoco) = asked(suites)?;
-    if asks_mujoco && writes {
+/// Examines champions and prints the results; if that is wanted, also into their files.
+pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
+    let ExamArgs { files, suite, write: writes, .. } = wanted;
+    let (suites, asks_mujoco) = asked(suite)?;
+    if asks_mujoco && *writes {
         let allowed = format!("other suites; the results of {MUJOCO} are not stored");
         return Err(Invalid::new("--write", "set", allowed).into());
     }
     let load = |file: &PathBuf| {
         let loaded = load_champion(file)?;
-        if writes {
+        if *writes {
             check_examinable(file, &loaded)?;
         }
         Ok(loaded)
@@ -61,7 +57,7 @@ pub fn exam(
         let results = with_bar(&bar, &control, examined);
         let results = results.map_err(|_| HeadlessError::Cancelled { kept: None });
         let results = trusted(&*evaluator, results)?;
-        if writes {
+        if *writes {
             store_exam(file, &loaded, &results)?;
         }
         let in_mujoco = match &mut mujoco {
@@ -69,12 +65,12 @@ pub fn exam(
             None => None,
         };
         if args.json {
-            results.iter().try_for_each(|result| print(&json_line(file, result, matches)))?;
+            results.iter().try_for_each(|result| print_json(&json_line(file, result, matches)))?;
             if let Some((result, mujoco)) = in_mujoco.as_ref().zip(mujoco.as_ref()) {
-                print(&mujoco_line(file, result, mujoco.version(), matches))?;
+                print_json(&mujoco_line(file, result, mujoco.version(), matches))?;
             }
         } else {
-            rows.push(ExamRow { name: name(file), results, in_mujoco });
+            rows.push(ExamRow { name: name_of(file), results, in_mujoco });
         }
         Ok(())
     };
@@ -88,7 +84,7 @@ pub fn exam(
         return result;
     }
     if args.json {
-        return print(&format!("{}\n", json!({"type": "done", "files": files.len()})));
+        return print_json(&json!({"type": "done", "files": files.len()}));
     }
     print(&table(&suites, &rows))
 }
@@ -132,11 +128,7 @@ struct ExamRow {
     in_mujoco: Option<MujocoResult>,
 }
 
-fn name(file: &Path) -> String {
-    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
+fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> Value {
     let kept_in = match result.suite {
         ExamSuite::HeldOut => &[],
         _ => result.each.as_slice(),
@@ -144,7 +136,7 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
     let each: serde_json::Map<_, _> =
         kept_in.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
     let classes: Vec<_> = result.classes().into_iter().map(class_json).collect();
-    let line = json!({
+    json!({
         "type": "suite",
         "file": file.display().to_string(),
         "suite": result.suite.choice().name,
@@ -156,12 +148,11 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> String {
         "kept_in": each,
         "classes": classes,
         "matches": matches,
-    });
-    format!("{line}\n")
+    })
 }
 
 /// A class of the held-out stairs, with the 95 % interval of its share.
-fn class_json((class, landed, trials): (&str, u32, u32)) -> serde_json::Value {
+fn class_json((class, landed, trials): (&str, u32, u32)) -> Value {
     let Share { seen, least, most } = Share::of(landed, trials);
     json!({
         "class": class, "trials": trials, "landed": landed, "share": seen, "least": least, "most": most,
@@ -174,7 +165,7 @@ fn with_interval(landed: u32, trials: u32) -> String {
     format!("{landed} of {trials} ({least:.2}–{most:.2})")
 }
 
-fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool) -> String {
+fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool) -> Value {
     let of = |engine: usize| {
         json!({
             "climbed": result.climbed[engine],
@@ -182,7 +173,7 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
             "way": short(result.way[engine]),
         })
     };
-    let line = json!({
+    json!({
         "type": "suite",
         "file": file.display().to_string(),
         "suite": MUJOCO,
@@ -192,8 +183,7 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
         "there": of(1),
         "kept": short(result.kept),
         "matches": matches,
-    });
-    format!("{line}\n")
+    })
 }
 
 /// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
@@ -210,17 +200,14 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
                     of_rates.flat_map(|result| &result.each).map(|(label, _)| label.clone()),
                 );
             }
-            (ExamSuite::HeldOut, _) => {
-                head.push(suite.choice().name.to_owned());
-                if shows_classes {
-                    head.extend(StairsClass::names().into_iter().map(str::to_owned));
-                }
-            }
             (ExamSuite::Engine, _) => {
                 head.extend(["landed in the other engine", "kept there"].map(str::to_owned));
             }
             _ => head.push(suite.choice().name.to_owned()),
         }
+    }
+    if shows_classes {
+        head.extend(StairsClass::names().into_iter().map(str::to_owned));
     }
     if champions.iter().any(|row| row.in_mujoco.is_some()) {
         let steps = format!("{CLIMBED_STEPS} steps");

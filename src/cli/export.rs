@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use super::args::{Args, ExportArgs};
 use super::error::CliError;
 #[cfg(feature = "studio")]
 use super::film;
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_json};
 use super::replay::equals_record;
 use snakes_core::check::Invalid;
 use snakes_lab::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
@@ -58,7 +58,7 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
 /// Draws the figures of a run.
 fn figures(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     refuse_json(args, "--figures")?;
-    if let Some(flag) = wanted.film.given() {
+    if let Some(flag) = &wanted.film_flag {
         return Err(CliError::Usage(format!("{flag} has no effect with --figures")));
     }
     let [run] = wanted.files.as_slice() else {
@@ -89,7 +89,7 @@ fn refuse_other_flags(wanted: &ExportArgs, format: ExportFormat) -> Result<(), C
         let allowed = "a name that ends in .png";
         return Err(Invalid::new("--output", format!("\".{ending}\""), allowed).into());
     }
-    let given = wanted.film.given().filter(|_| !format.is_film());
+    let given = wanted.film_flag.as_ref().filter(|_| !format.is_film());
     given.map_or(Ok(()), |flag| {
         let problem = format!("{flag} has no effect with .{ending} (see snakes export --help)");
         Err(CliError::Usage(problem))
@@ -112,11 +112,9 @@ fn with_progress(
         let show = |share: f64| {
             let per_mille = (share * PER_MILLE) as u32;
             if told.replace(Some(per_mille)) != Some(per_mille) {
+                let progress = f64::from(per_mille) / PER_MILLE;
                 // A reader that has gone away does not end the export.
-                let _ = print(&format!(
-                    "{}\n",
-                    json!({"type": "progress", "progress": f64::from(per_mille) / PER_MILLE})
-                ));
+                let _ = print_json(&json!({"type": "progress", "progress": progress}));
             }
         };
         work(&ExportProgress::new(&show, &is_cancelled))?
@@ -128,17 +126,11 @@ fn with_progress(
         bar.finish_and_clear();
         result?
     };
-    print(&said(args, &saved))
-}
-
-/// The line about the file that was written.
-fn said(args: &Args, saved: &Path) -> String {
     let path = saved.display();
     if args.json {
-        format!("{}\n", json!({"type": "done", "saved": path.to_string()}))
-    } else {
-        format!("saved to {path}\n")
+        return print_json(&json!({"type": "done", "saved": path.to_string()}));
     }
+    print(&format!("saved to {path}\n"))
 }
 
 /// Cancels at the end of standard input, so that a program that started this one can end it, even by its own end.

@@ -1,13 +1,11 @@
 //! `snakes export` to a film.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use super::args::{ExportArgs, FilmArgs, size};
-use super::error::{CliError, of_flag};
-use super::replay::{equals_record, named_champions};
+use super::args::{ExportArgs, FilmArgs, number, number_or, size};
+use super::error::CliError;
+use super::replay::{champions_to_draw, longest_s};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
-use crate::studio::{CameraMode, Overlay};
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::{LoadedChampion, load_run};
 use snakes_lab::export::{ExportFormat, ExportProgress};
@@ -40,22 +38,21 @@ pub fn ordered(
     let text = flags.size.as_deref().unwrap_or(default);
     let size = size("--size", text, LEAST_PIXELS, LARGEST_PIXELS)?;
     check_film_size(format, size)?;
-    let fps = number("--fps", flags.fps.as_deref(), if is_gif { 25 } else { 30 })?;
+    let fps = number_or("--fps", &flags.fps, if is_gif { 25 } else { 30 }, "a number")?;
     within("--fps", fps, if is_gif { crate::studio::film::GIF_FPS } else { FPS })?;
-    let speed = number("--speed", flags.speed.as_deref(), 1.0)?;
+    let speed = number_or("--speed", &flags.speed, 1.0, "a number")?;
     within("--speed", speed, SPEED)?;
-    let camera = flags.camera.as_deref().unwrap_or("follow");
-    let overlays = flags.show.iter().map(|name| Overlay::named(name));
+    let end_s = flags.end.as_deref().map(|text| number("--end", text, "a number"));
     let order = FilmOrder {
         parts: parts(wanted, format)?,
-        start_s: number("--start", flags.start.as_deref(), 0.0)?,
-        end_s: flags.end.as_deref().map(|text| number("--end", Some(text), 0.0)).transpose()?,
+        start_s: number_or("--start", &flags.start, 0.0, "a number")?,
+        end_s: end_s.transpose()?,
         speed,
         fps,
         size,
-        camera: CameraMode::named(camera).map_err(of_flag("--camera"))?,
+        camera: flags.camera()?,
         theme: flags.theme()?,
-        overlays: overlays.collect::<Result<_, Invalid>>().map_err(of_flag("--show"))?,
+        overlays: flags.overlays()?,
         has_captions: !flags.no_captions,
     };
     check_moments(flags, &order)?;
@@ -74,19 +71,9 @@ impl OrderedFilm {
     }
 }
 
-fn number<T: FromStr>(flag: &str, text: Option<&str>, default: T) -> Result<T, Invalid> {
-    let Some(text) = text else { return Ok(default) };
-    text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), "a number"))
-}
-
 /// Checks that the film has a beginning before its end, within the longest trial.
 fn check_moments(flags: &FilmArgs, order: &FilmOrder) -> Result<(), Invalid> {
-    let champions = order.parts.iter().flat_map(|part| &part.champions);
-    let length_s = |loaded: &LoadedChampion| {
-        let trial = &loaded.champion.trial;
-        f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s)
-    };
-    let longest_s = champions.map(|(_, loaded)| length_s(loaded)).fold(0.0, f64::max);
+    let longest_s = longest_s(order.parts.iter().flat_map(|part| &part.champions));
     within("--start", order.start_s, 0.0..=longest_s)?;
     let Some(end_s) = order.end_s else { return Ok(()) };
     within("--end", end_s, order.start_s..=longest_s)?;
@@ -109,14 +96,7 @@ fn parts(wanted: &ExportArgs, format: ExportFormat) -> Result<Vec<FilmPart>, Cli
         return Err(CliError::Usage(problem));
     }
     format.check_champions(wanted.files.len())?;
-    let champions = named_champions(&wanted.files)?;
-    for (file, (_, loaded)) in wanted.files.iter().zip(&champions) {
-        // A champion of another engine is drawn from its recording.
-        if loaded.is_of_this_engine() || loaded.recording.is_none() {
-            equals_record(file, loaded)?;
-        }
-    }
-    Ok(vec![FilmPart { title: None, champions }])
+    Ok(vec![FilmPart { title: None, champions: champions_to_draw(&wanted.files)? }])
 }
 
 /// The first, the middle and the last generation of a run.
@@ -128,21 +108,17 @@ fn story(wanted: &ExportArgs) -> Result<Vec<FilmPart>, CliError> {
             return Err(CliError::Usage(problem.to_owned()));
         }
     };
-    let mut champions = load_run(run)?;
+    let champions = load_run(run)?;
     let last = champions.len() - 1;
-    let mut told = vec![0, last / 2, last];
-    told.dedup();
+    let told = [0, last / 2, last];
     let all = champions.last().map_or(0, |(generation, _)| *generation);
-    let mut index = 0;
-    champions.retain(|_| {
-        index += 1;
-        told.contains(&(index - 1))
-    });
+    let champions = champions.into_iter().enumerate();
+    let champions = champions.filter(|(index, _)| told.contains(index)).map(|(_, of)| of);
     let part = |(generation, loaded): (u32, LoadedChampion)| {
         let title = format!("Generation {generation} of {all}");
         let below = loaded.champion.reached();
         let champions = vec![(format!("Generation {generation}"), loaded)];
         FilmPart { title: Some((title, below)), champions }
     };
-    Ok(champions.into_iter().map(part).collect())
+    Ok(champions.map(part).collect())
 }

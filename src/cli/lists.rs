@@ -2,7 +2,7 @@
 
 use super::args::Args;
 use super::error::CliError;
-use super::output::print;
+use super::output::{print, print_json, print_names};
 use snakes_core::evolve::fields;
 use snakes_core::save::shipped_presets;
 use snakes_core::schema::markdown;
@@ -10,19 +10,8 @@ use snakes_lab::run::with_short_numbers;
 
 /// Prints the presets that come with the program.
 pub fn print_presets(json: bool) -> Result<(), CliError> {
-    let mut text = String::new();
-    let presets = shipped_presets()?;
-    let width = presets.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
-    for preset in presets {
-        if json {
-            let line =
-                serde_json::json!({"type": "preset", "name": preset.name, "about": preset.about});
-            text += &format!("{line}\n");
-        } else {
-            text += &format!("{:<width$}  {}\n", preset.name, preset.about);
-        }
-    }
-    print(&text)
+    let presets = shipped_presets()?.into_iter().map(|preset| (preset.name, preset.about));
+    print_names("preset", &presets.collect::<Vec<_>>(), json)
 }
 
 /// Prints every setting with its value; or as tables that describe them, which are `docs/settings.md`.
@@ -44,7 +33,7 @@ pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
     }
     if args.json {
         let line = serde_json::json!({"type": "settings", "preset": preset, "settings": settings});
-        return print(&format!("{}\n", with_short_numbers(&line)));
+        return print_json(&with_short_numbers(&line));
     }
     let fields = fields(&settings);
     let width = fields.iter().map(|(path, _)| path.len()).max().unwrap_or(0);

@@ -73,20 +73,20 @@ fn dispatch(mut args: Args, task: &Task) -> Result<(), CliError> {
 
 fn perform(args: &Args, task: &Task) -> Result<(), CliError> {
     match task {
-        Task::Window { files } => open_studio(args, files),
+        Task::Window(files) => open_studio(args, files),
         Task::Run => evolve(args),
-        Task::CheckReplay { files } => replay::replay(files, args.json),
-        Task::Exam { files, perturbed, .. } if perturbed.trials.is_some() => {
-            robust::robust(args, files, perturbed)
+        Task::CheckReplay(files) => replay::replay(files, args.json),
+        Task::Exam(wanted) if wanted.perturbed.trials.is_some() => {
+            robust::robust(args, &wanted.files, &wanted.perturbed)
         }
-        Task::Exam { files, suites, writes, .. } => exam::exam(args, files, suites, *writes),
+        Task::Exam(wanted) => exam::exam(args, wanted),
         Task::Study(wanted) => study::study(args, wanted),
         Task::Export(wanted) => export::export(args, wanted),
         Task::Presets => lists::print_presets(args.json),
         Task::Settings { as_markdown } => lists::print_settings(args, *as_markdown),
-        Task::Body { file } => body::body(file, args.json),
+        Task::Body(file) => body::body(file, args.json),
         Task::Verify => verify::verify(args),
-        Task::Bench { file } => bench::print_bench(args, file.as_deref()),
+        Task::Bench(file) => bench::print_bench(args, file.as_deref()),
         #[cfg(feature = "cluster")]
         Task::Worker => cluster::worker(args),
         #[cfg(feature = "cluster")]
@@ -94,7 +94,7 @@ fn perform(args: &Args, task: &Task) -> Result<(), CliError> {
         #[cfg(not(feature = "cluster"))]
         Task::Worker | Task::Machines { .. } => Err(CliError::NoCluster),
         Task::Completions(shell) => print(&args::completions(*shell)),
-        Task::Manual { folder } => manual::manual(folder.as_deref()),
+        Task::Manual(folder) => manual::manual(folder.as_deref()),
     }
 }
 

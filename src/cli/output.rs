@@ -3,6 +3,8 @@
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use serde_json::{Value, json};
+
 use super::error::CliError;
 use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::HeadlessError;
@@ -13,6 +15,21 @@ pub fn print(text: &str) -> Result<(), CliError> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => Ok(other.map_err(HeadlessError::from)?),
     }
+}
+
+/// Writes a line of JSON to standard output.
+pub fn print_json(line: &Value) -> Result<(), CliError> {
+    print(&format!("{line}\n"))
+}
+
+/// Writes a list of things of a kind, each with its name and a sentence about it.
+pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Result<(), CliError> {
+    let width = things.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, about): &(String, String)| match as_json {
+        true => format!("{}\n", json!({"type": kind, "name": name, "about": about})),
+        false => format!("{name:<width$}  {about}\n"),
+    };
+    print(&things.iter().map(line).collect::<String>())
 }
 
 /// The control that the interrupt key cancels.

@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use super::args::{Args, StudyArgs, number};
+use serde_json::json;
+
+use super::args::{Args, StudyArgs, WHOLE, number_or};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_json};
 use snakes_core::check::Invalid;
 use snakes_core::evolve::RunPlan;
 use snakes_core::save::{
@@ -45,10 +47,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     if let Some((flag, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
         return Err(CliError::Usage(format!("{flag} has no effect with snakes study poet")));
     }
-    let rounds = wanted
-        .rounds
-        .as_deref()
-        .map_or(Ok(ROUNDS), |text| number("--rounds", text, "a whole number from 0 up"))?;
+    let rounds = number_or("--rounds", &wanted.rounds, ROUNDS, WHOLE)?;
     let mut settings = load_preset("poet")?.settings;
     // The published run is of this engine.
     settings.trial.physics.engine = PhysicsEngine::Rapier;
@@ -110,11 +109,10 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
 fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), CliError> {
     store_csv(csv, &poet_records(study))?;
     if args.json {
-        let line = serde_json::json!({
+        return print_json(&json!({
             "type": "done", "study": "poet", "rounds": study.rounds, "run_hash": study.run_hash, "stairs": study.stairs, "solved": study.solved,
             "challenges": study.challenges.last(), "searches": study.controls.len(), "files": [ron, csv],
-        });
-        return print(&format!("{line}\n"));
+        }));
     }
     let [ron, csv] = [ron, csv].map(|file| file.display().to_string());
     print(&format!("{}\nsaved to  {ron}\n          {csv}\n", poet_claims(study)))

@@ -33,17 +33,38 @@ pub fn equals_record(file: &Path, loaded: &LoadedChampion) -> Result<bool, CliEr
     Ok(difference.is_none())
 }
 
-/// A saved champion, with the name of its file.
-#[cfg(feature = "studio")]
-fn named_champion(file: &Path) -> Result<(String, LoadedChampion), CliError> {
-    let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok((name, load_champion(file)?))
+/// The name of a champion: that of its file.
+pub fn name_of(file: &Path) -> String {
+    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Saved champions, each with the name of its file.
+/// A saved champion, with its name.
 #[cfg(feature = "studio")]
-pub fn named_champions(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampion)>, CliError> {
-    files.iter().map(|file| named_champion(file)).collect()
+fn named_champion(file: &Path) -> Result<(String, LoadedChampion), CliError> {
+    Ok((name_of(file), load_champion(file)?))
+}
+
+/// Saved champions that are to be drawn, with their names. One of another engine is drawn from its recording, and the others
+/// are compared with their records.
+#[cfg(feature = "studio")]
+pub fn champions_to_draw(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampion)>, CliError> {
+    let named = files.iter().map(|file| named_champion(file));
+    let champions = named.collect::<Result<Vec<_>, _>>()?;
+    for (file, (_, loaded)) in files.iter().zip(&champions) {
+        if loaded.is_of_this_engine() || loaded.recording.is_none() {
+            equals_record(file, loaded)?;
+        }
+    }
+    Ok(champions)
+}
+
+/// The duration of the longest trial of some champions, in s.
+#[cfg(feature = "studio")]
+pub fn longest_s<'c>(champions: impl IntoIterator<Item = &'c (String, LoadedChampion)>) -> f64 {
+    let trials = champions.into_iter().map(|(_, loaded)| &loaded.champion.trial);
+    let lengths_s =
+        trials.map(|trial| f64::from(trial.steps()) / f64::from(trial.physics.steps_per_s));
+    lengths_s.fold(0.0, f64::max)
 }
 
 /// Champions and problems with which the window opens.

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::args::{Args, PerturbationArgs, number};
+use super::args::{Args, PerturbationArgs, WHOLE, number_or};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_json};
 use super::replay::equals_record;
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::load_champion;
@@ -20,13 +20,9 @@ use snakes_lab::statistics::Share;
 
 /// Simulates champions in perturbed trials and prints the shares.
 pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Result<(), CliError> {
-    let number_of = |flag: &str, text: &Option<String>, default: u64| match text {
-        Some(text) => number(flag, text, "a whole number from 0 up"),
-        None => Ok(default),
-    };
-    let trials = number_of("--trials", &wanted.trials, 0)?;
+    let trials: u64 = number_or("--trials", &wanted.trials, 0, WHOLE)?;
     within("--trials", trials, 1..=1_000_000)?;
-    let (trials, seed) = (trials as u32, number_of("--seed", &wanted.seed, 1)?);
+    let (trials, seed) = (trials as u32, number_or("--seed", &wanted.seed, 1, WHOLE)?);
     let range = PerturbationRange::from(wanted);
     schema::check(&range).map_err(of_its_flag)?;
     // The first file stands for all.
@@ -44,8 +40,7 @@ pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Resu
         print_shares(args.json, file, &found, (&range, seed), matches)?;
     }
     if args.json {
-        let line = json!({"type": "done", "files": files.len()});
-        return print(&format!("{line}\n"));
+        return print_json(&json!({"type": "done", "files": files.len()}));
     }
     Ok(())
 }
@@ -61,11 +56,10 @@ fn print_shares(
     let name = file.display().to_string();
     if as_json {
         for (step, Share { seen, least, most }) in shares(found) {
-            let line = json!({
+            print_json(&json!({
                 "type": "step", "file": name, "step": step, "share": seen, "least": least, "most": most,
                 "trials": found.trials, "disqualified": found.disqualified, "matches": matches,
-            });
-            print(&format!("{line}\n"))?;
+            }))?;
         }
         return Ok(());
     }

@@ -1,9 +1,9 @@
 //! `snakes study`: the runs, exams and results of a built-in study or of a user's own.
 
-use super::args::{Args, StudyArgs, number};
+use super::args::{Args, StudyArgs, WHOLE, number, number_or};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_names};
 use super::poet_study;
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
@@ -13,8 +13,6 @@ use snakes_lab::study::{
     DURATION, Plain, Results, Study, StudyFiles, built_in_studies, json_lines, perform,
     suites_named, tables, values_as_markdown,
 };
-
-const WHOLE: &str = "a whole number from 0 up";
 
 /// Makes what the study's files do not have yet, and prints the results; without a name, lists the studies.
 pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
@@ -65,13 +63,7 @@ fn of_its_flag(args: &Args, wanted: &StudyArgs, invalid: Invalid) -> Invalid {
 fn list(args: &Args) -> Result<(), CliError> {
     let poet = ("poet".to_owned(), poet_study::ABOUT.to_owned());
     let studies = built_in_studies()?.into_iter().map(|study| (study.name, study.about));
-    let studies: Vec<(String, String)> = studies.chain([poet]).collect();
-    let width = studies.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let line = |(name, about): &(String, String)| match args.json {
-        true => format!("{}\n", serde_json::json!({"type": "study", "name": name, "about": about})),
-        false => format!("{name:<width$}  {about}\n"),
-    };
-    print(&studies.iter().map(line).collect::<String>())
+    print_names("study", &studies.chain([poet]).collect::<Vec<_>>(), args.json)
 }
 
 /// The study with what the flags change.
@@ -85,9 +77,7 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
         study.preset.clone_from(preset);
     }
     study.first_seed = args.seed_or(study.first_seed)?;
-    if let Some(text) = &wanted.seeds {
-        study.seeds = number("--seeds", text, WHOLE)?;
-    }
+    study.seeds = number_or("--seeds", &wanted.seeds, study.seeds, WHOLE)?;
     if let Some(text) = &wanted.evaluations {
         study.evaluations = Some(number("--evaluations", text, WHOLE)?);
     }

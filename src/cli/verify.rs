@@ -1,10 +1,11 @@
 //! `snakes verify`: a table, a fingerprint, and whether this machine agrees with the reference.
 
 use indicatif::ProgressBar;
+use serde_json::json;
 
 use super::args::Args;
 use super::error::CliError;
-use super::output::{cancel_on_interrupt, print};
+use super::output::{cancel_on_interrupt, print, print_json};
 use snakes_core::{ENGINE_VERSION, Engine, Processors};
 use snakes_lab::run::verify::Trajectories;
 
@@ -32,24 +33,22 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
     let agrees = computed == reference;
     if args.json {
         for (found, known) in rows() {
-            let line = serde_json::json!({
+            print_json(&json!({
                 "type": "trajectory",
                 "what": found.what,
                 "hash": found.hash,
                 "reference": known,
                 "agrees": Some(found.hash.as_str()) == known,
-            });
-            print(&format!("{line}\n"))?;
+            }))?;
         }
-        let line = serde_json::json!({
+        print_json(&json!({
             "type": "done",
             "engine": ENGINE_VERSION,
             "processors": Processors::THIS,
             "fingerprint": fingerprint,
             "reference": reference.fingerprint(),
             "agrees": agrees,
-        });
-        print(&format!("{line}\n"))?;
+        }))?;
     } else {
         let width = computed.trajectories.iter().map(|t| t.what.chars().count()).max().unwrap_or(0);
         let mut text = format!("{:<width$}  hash of this machine  reference\n", "trajectory");

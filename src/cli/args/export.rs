@@ -23,6 +23,9 @@ pub struct ExportArgs {
     /// Cancel at the end of standard input, for programs that start this one
     #[arg(long, hide = true)]
     pub until_input_ends: bool,
+    /// The first flag of films that is given.
+    #[arg(skip)]
+    pub film_flag: Option<String>,
 }
 
 /// Lists every format.

@@ -3,7 +3,9 @@
 #[cfg(feature = "studio")]
 use crate::cli::error::{CliError, of_flag};
 #[cfg(feature = "studio")]
-use crate::studio::Theme;
+use crate::studio::{CameraMode, Overlay, Theme};
+#[cfg(feature = "studio")]
+use snakes_core::check::Invalid;
 
 /// The flags of pictures and films.
 #[derive(Debug, Default, clap::Args)]
@@ -54,21 +56,17 @@ impl FilmArgs {
         Ok(named.map_err(of_flag("--theme"))?.unwrap_or_default())
     }
 
-    /// The first of these flags that is given.
-    pub fn given(&self) -> Option<&'static str> {
-        let flags = [
-            ("--size", self.size.is_some()),
-            ("--fps", self.fps.is_some()),
-            ("--camera", self.camera.is_some()),
-            ("--show", !self.show.is_empty()),
-            ("--no-captions", self.no_captions),
-            ("--speed", self.speed.is_some()),
-            ("--start", self.start.is_some()),
-            ("--end", self.end.is_some()),
-            ("--theme", self.theme.is_some()),
-            ("--at", self.at.is_some()),
-            ("--story", self.story),
-        ];
-        flags.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
+    /// The camera.
+    #[cfg(feature = "studio")]
+    pub fn camera(&self) -> Result<CameraMode, Invalid> {
+        let named = CameraMode::named(self.camera.as_deref().unwrap_or("follow"));
+        named.map_err(of_flag("--camera"))
+    }
+
+    /// The overlays.
+    #[cfg(feature = "studio")]
+    pub fn overlays(&self) -> Result<Vec<Overlay>, Invalid> {
+        let named = self.show.iter().map(|name| Overlay::named(name));
+        named.collect::<Result<_, _>>().map_err(of_flag("--show"))
     }
 }

@@ -13,7 +13,7 @@ use super::groups::{
     OutFlag, OutputFlags, RunFlags, SeedFlag, ServerFlags, SettingFlags, ThreadFlags, WindowFlags,
     WorkerFlags,
 };
-use super::robust::PerturbationArgs;
+use super::robust::ExamArgs;
 use super::study::StudyArgs;
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
@@ -83,17 +83,9 @@ pub enum CliCommand {
     },
     /// Examine champions: varied trials, other step rates, other stairs, a higher step, shoves, or trials that vary as you say
     Exam {
-        /// Saved champions
-        #[arg(required = true)]
-        files: Vec<PathBuf>,
-        #[arg(long, value_name = "NAME", help = exam_suite_help())]
-        suite: Vec<String>,
-        /// Write the results into the files
-        #[arg(long)]
-        write: bool,
-        /// The ranges of trials that the user gives.
+        /// The champions, and their trials.
         #[command(flatten)]
-        perturbed: PerturbationArgs,
+        exam: ExamArgs,
         /// The workers that simulate the trials.
         #[command(flatten)]
         workers: WorkerFlags,
@@ -238,7 +230,7 @@ pub(super) fn suite_help() -> String {
 }
 
 /// Lists every suite of `snakes exam`.
-fn exam_suite_help() -> String {
+pub(super) fn exam_suite_help() -> String {
     format!(
         "{} {MUJOCO}: {MUJOCO_SENTENCE}",
         suite_help().replace("[default: all]", "[default: all but engine and mujoco]")

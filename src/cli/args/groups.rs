@@ -144,7 +144,7 @@ pub struct ServerFlags {
 }
 
 /// Credentials that a server asks for.
-#[derive(Debug, Default, Group)]
+#[derive(Debug, Clone, Default, Group)]
 #[command(next_help_heading = MACHINES)]
 pub struct CredentialFlags {
     /// File with the credentials for the server: what `nsc` writes (.creds), or the seed of an NKey

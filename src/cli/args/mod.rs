@@ -17,11 +17,13 @@ pub use completions::completions;
 pub use export::ExportArgs;
 #[cfg(feature = "studio")]
 pub use film::FilmArgs;
+#[cfg(feature = "cluster")]
+pub use groups::CredentialFlags;
 pub use manual::manual;
 pub use parse::{Parsed, parse};
-pub use robust::PerturbationArgs;
+pub use robust::{ExamArgs, PerturbationArgs};
 pub use study::StudyArgs;
 pub use task::{Args, Task};
-pub use values::number;
 #[cfg(feature = "studio")]
 pub use values::size;
+pub use values::{WHOLE, number, number_or};

@@ -101,15 +101,25 @@ fn order_tip(error: &clap::Error) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn refusal(words: &str) -> String {
+    /// The result of parsing a command line without the program's name.
+    pub fn parsed(words: &str) -> Result<Parsed, CliError> {
         let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
-        match parse(arguments.map(OsString::from)) {
-            Err(error) => error.to_string(),
-            Ok(_) => unreachable!("{words} is refused"),
+        parse(arguments.map(OsString::from))
+    }
+
+    /// A task and its flags, or an error.
+    pub fn asked(words: &str) -> Result<(Args, Task), CliError> {
+        match parsed(words)? {
+            Parsed::Run(args, task) => Ok((*args, *task)),
+            Parsed::Print(_) => unreachable!("no help was asked for"),
         }
+    }
+
+    fn refusal(words: &str) -> String {
+        asked(words).expect_err("refused").to_string()
     }
 
     #[test]

@@ -1,6 +1,25 @@
-//! The flags of `snakes exam` about trials that vary as the user says.
+//! The flags of `snakes exam`.
 
+use std::path::PathBuf;
+
+use super::flags::exam_suite_help;
 use snakes_core::score::PerturbationRange;
+
+/// The flags of `snakes exam` that no other command has.
+#[derive(Debug, clap::Args)]
+pub struct ExamArgs {
+    /// Saved champions
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    #[arg(long, value_name = "NAME", help = exam_suite_help())]
+    pub suite: Vec<String>,
+    /// Write the results into the files
+    #[arg(long)]
+    pub write: bool,
+    /// The ranges of trials that the user gives.
+    #[command(flatten)]
+    pub perturbed: PerturbationArgs,
+}
 
 /// How much the conditions of trials vary.
 #[derive(Debug, clap::Args)]

@@ -3,24 +3,25 @@
 use std::path::Path;
 
 use super::task::Args;
-use super::values::number;
+use super::values::{WHOLE, number};
 use crate::cli::error::{CliError, of_flag};
+use crate::cli::replay::name_of;
 use crate::cli::resume::run_in;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{Champion, Founder, RunPlan, Settings, check_effects, with_fields};
 use snakes_core::save::{
-    ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs, shipped_presets,
+    DEFAULT_PRESET, ExistingRun, Preset, SavesFolder, load_champion, load_preset, load_stairs,
+    shipped_presets,
 };
 use snakes_core::schema::Choices;
 use snakes_core::score::Fitness;
 use snakes_lab::run::RunSource;
 
-const WHOLE: &str = "a whole number from 0 up";
-
 impl Args {
     /// The preset that is named, or the command's default, as it stands in its file.
     pub fn preset(&self) -> Result<Preset, CliError> {
-        Ok(load_preset(self.run.settings.preset.as_deref().unwrap_or(self.default_preset))?)
+        let named = self.run.settings.preset.as_deref().or(self.default_preset);
+        Ok(load_preset(named.unwrap_or(DEFAULT_PRESET))?)
     }
 
     /// The folder for this run's champions.
@@ -81,8 +82,7 @@ impl Args {
         preset.settings.genome = preset.settings.genome.widened_for(&genome);
         let (preset, settings) = self.flags_over(preset)?;
         self.check_effects(&settings)?;
-        let name = file.file_stem().unwrap_or_default().to_string_lossy();
-        let founder = Founder::new(&name, genome);
+        let founder = Founder::new(&name_of(file), genome);
         Ok(RunPlan::new(&preset, self.seed()?, settings).starting_from(founder)?)
     }
 
@@ -91,7 +91,7 @@ impl Args {
         self.flags_over(self.preset()?)
     }
 
-    /// The same for runs with these very settings: each `--set` has to have an effect on them.
+    /// The settings of a run as it is described, on which each `--set` has to have an effect.
     pub fn settings_of_run(&self) -> Result<(String, Settings), CliError> {
         let (preset, settings) = self.settings()?;
         self.check_effects(&settings)?;
@@ -128,28 +128,21 @@ impl Args {
 
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
-        if let Some(text) = &self.run.settings.population {
-            settings.evolution.population = number("--population", text, WHOLE)?;
-        }
-        if let Some(text) = &self.run.settings.generations {
-            settings.evolution.generations = number("--generations", text, WHOLE)?;
-        }
+        let changes = self.changes()?;
         if let Some(duration_s) = self.duration_s()? {
             settings.trial.duration_s = duration_s;
-        }
-        if let Some(text) = &self.run.settings.fitness {
-            settings.trial.fitness = Fitness::named("--fitness", text)?;
         }
         if let Some(named) = &self.run.settings.stairs {
             settings.trial.stairs = load_stairs(named)?.stairs;
         }
-        let mut changes = Vec::new();
-        for text in &self.run.settings.set {
-            changes.push(named_value(text)?);
-        }
-        let changed = with_fields(&settings, changes).map_err(|invalid| {
-            // The same error without --set comes from another flag.
-            let is_of_flag = settings.check().is_err_and(|other| other == invalid);
+        let with = |changes: &[(&str, String)]| {
+            with_fields(&settings, changes.iter().map(|(name, value)| (*name, value.as_str())))
+        };
+        // Those of --set are the last.
+        let of_flags = changes.len() - self.run.settings.set.len();
+        let changed = with(&changes).map_err(|invalid| {
+            // An error that is there without --set, too, comes from another flag.
+            let is_of_flag = with(&changes[..of_flags]).is_err_and(|other| other == invalid);
             match invalid.field.as_str() {
                 "set" => of_flag("--set")(invalid),
                 _ if is_of_flag => self.of_its_flag(invalid),
@@ -190,24 +183,15 @@ fn named_value(text: &str) -> Result<(&str, &str), Invalid> {
 mod tests {
     use super::*;
     use crate::cli::args::flags::CommandLine;
-    use crate::cli::args::{Parsed, parse};
+    use crate::cli::args::parse::tests::asked;
     use clap::CommandFactory;
-    use std::ffi::OsString;
-
-    fn args(words: &str) -> Result<Args, CliError> {
-        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
-        match parse(arguments.map(OsString::from))? {
-            Parsed::Run(args, _) => Ok(*args),
-            Parsed::Print(_) => unreachable!("no help was asked for"),
-        }
-    }
 
     fn args_of(words: &str) -> Args {
-        args(words).expect("allowed")
+        asked(words).expect("allowed").0
     }
 
     fn refusal(words: &str) -> String {
-        let complaint = args(words).and_then(|args| {
+        let complaint = asked(words).and_then(|(args, _)| {
             args.seed()?;
             args.threads()?;
             args.settings().map(drop)
@@ -222,7 +206,7 @@ mod tests {
 
     #[test]
     fn flags_override_the_preset() {
-        let args = args("--no-render --seed 7 --population 20 --duration 2.5").expect("allowed");
+        let args = args_of("--no-render --seed 7 --population 20 --duration 2.5");
         let (preset, settings) = args.settings().expect("allowed");
         assert_eq!(preset, "climb");
         assert_eq!(settings.evolution.population, 20);

@@ -7,15 +7,15 @@ use clap::parser::ValueSource;
 use clap_complete::Shell;
 
 use super::export::ExportArgs;
+use super::film::FilmArgs;
 use super::flags::{CliCommand, CommandLine, ShownList};
 use super::groups::{OutputFlags, RunFlags, ThreadFlags, WindowFlags, WorkerFlags};
-use super::robust::PerturbationArgs;
+use super::robust::ExamArgs;
 use super::study::StudyArgs;
 use crate::cli::error::CliError;
-use snakes_core::save::DEFAULT_PRESET;
 
 /// The flags that several commands have; empty where a command has none.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Args {
     /// Whether JSON is printed.
     pub json: bool,
@@ -26,44 +26,21 @@ pub struct Args {
     /// The window.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "this build has no window"))]
     pub window: WindowFlags,
-    /// The preset unless one is named.
-    pub(super) default_preset: &'static str,
-}
-
-impl Default for Args {
-    fn default() -> Self {
-        let (run, workers, window) =
-            (RunFlags::default(), WorkerFlags::default(), WindowFlags::default());
-        Self { json: false, run, workers, window, default_preset: DEFAULT_PRESET }
-    }
+    /// The command's own preset, unless one is named.
+    pub(super) default_preset: Option<&'static str>,
 }
 
 /// A task of the program.
 #[derive(Debug)]
 pub enum Task {
-    /// Open the window, with champions that are replayed.
-    Window {
-        /// Their files.
-        files: Vec<PathBuf>,
-    },
+    /// Open the window, with the champions in these files.
+    Window(Vec<PathBuf>),
     /// Evolve in the terminal.
     Run,
-    /// Check champions against their records.
-    CheckReplay {
-        /// Their files.
-        files: Vec<PathBuf>,
-    },
+    /// Check the champions in these files against their records.
+    CheckReplay(Vec<PathBuf>),
     /// Examine champions.
-    Exam {
-        /// Their files.
-        files: Vec<PathBuf>,
-        /// Names of suites.
-        suites: Vec<String>,
-        /// Whether the results are written into the files.
-        writes: bool,
-        /// Trials that vary as the user says.
-        perturbed: PerturbationArgs,
-    },
+    Exam(ExamArgs),
     /// Perform a study.
     Study(StudyArgs),
     /// Write champions in other formats.
@@ -75,18 +52,12 @@ pub enum Task {
         /// Whether as Markdown.
         as_markdown: bool,
     },
-    /// Print a champion's body.
-    Body {
-        /// The champion's file.
-        file: PathBuf,
-    },
+    /// Print the body of the champion in this file.
+    Body(PathBuf),
     /// Compare the bits of this machine with the reference.
     Verify,
-    /// Measure the speed of the simulation.
-    Bench {
-        /// A champion's file.
-        file: Option<PathBuf>,
-    },
+    /// Measure the speed of the simulation, of the champion in this file.
+    Bench(Option<PathBuf>),
     /// Compute for runs on other computers.
     Worker,
     /// List the machines on a server.
@@ -97,11 +68,8 @@ pub enum Task {
     },
     /// Print completions.
     Completions(Shell),
-    /// Print manual pages.
-    Manual {
-        /// The folder of the pages.
-        folder: Option<PathBuf>,
-    },
+    /// Print the manual page, or write all pages into this folder.
+    Manual(Option<PathBuf>),
 }
 
 /// The preset of the bench, which is about the report's run.
@@ -123,7 +91,7 @@ impl CommandLine {
             }
             refuse::<OutputFlags>(matches, "the studio; add --no-render")?;
             refuse_server(matches, "the studio; add --no-render")?;
-            return Ok((args, Task::Window { files: Vec::new() }));
+            return Ok((args, Task::Window(Vec::new())));
         };
         let matches = matches.subcommand().map_or(matches, |(_, matches)| matches);
         let mut args = Args::default();
@@ -144,19 +112,20 @@ impl CommandLine {
                     refuse_ids(matches, &["from"], "snakes replay")?;
                 }
                 args = Args { json: output.json, run, workers, window, ..args };
-                if no_render { Task::CheckReplay { files } } else { Task::Window { files } }
+                if no_render { Task::CheckReplay(files) } else { Task::Window(files) }
             }
-            CliCommand::Exam { files, suite, write, perturbed, workers, output } => {
+            CliCommand::Exam { exam, workers, output } => {
                 args = Args { json: output.json, workers, ..args };
-                Task::Exam { files, suites: suite, writes: write, perturbed }
+                Task::Exam(exam)
             }
             CliCommand::Study { study, settings, seed, restart, workers, out, output } => {
                 let run = RunFlags { settings, seed, restart, out, ..RunFlags::default() };
                 args = Args { json: output.json, run, workers, ..args };
                 Task::Study(study)
             }
-            CliCommand::Export { export, output } => {
+            CliCommand::Export { mut export, output } => {
                 args.json = output.json;
+                export.film_flag = first_given(matches, &ids_of::<FilmArgs>());
                 Task::Export(export)
             }
             CliCommand::Show { what: ShownList::Presets { output } } => {
@@ -169,7 +138,7 @@ impl CommandLine {
             }
             CliCommand::Show { what: ShownList::Body { file, output } } => {
                 args.json = output.json;
-                Task::Body { file }
+                Task::Body(file)
             }
             CliCommand::Verify { threads, output } => {
                 (args.json, args.workers.threads) = (output.json, threads);
@@ -178,8 +147,8 @@ impl CommandLine {
             CliCommand::Bench { file, settings, threads, output } => {
                 (args.json, args.run.settings) = (output.json, settings);
                 args.workers.threads = threads;
-                args.default_preset = BENCH_PRESET;
-                Task::Bench { file }
+                args.default_preset = Some(BENCH_PRESET);
+                Task::Bench(file)
             }
             CliCommand::Worker { threads, server } => {
                 let threads = ThreadFlags { threads, ..ThreadFlags::default() };
@@ -193,17 +162,28 @@ impl CommandLine {
                 Task::Machines { purge }
             }
             CliCommand::Completions { shell } => Task::Completions(shell),
-            CliCommand::Man { out } => Task::Manual { folder: out },
+            CliCommand::Man { out } => Task::Manual(out),
         };
         Ok((args, task))
     }
 }
 
+/// The flags of a group.
+fn ids_of<G: clap::Args>() -> Vec<String> {
+    let group = G::augment_args(clap::Command::new(""));
+    group.get_arguments().map(|flag| flag.get_id().to_string()).collect()
+}
+
+/// The first of some flags that is given, as it is typed.
+fn first_given(matches: &ArgMatches, ids: &[impl AsRef<str>]) -> Option<String> {
+    let mut ids = ids.iter().map(AsRef::as_ref);
+    let given = ids.find(|id| matches.value_source(id) == Some(ValueSource::CommandLine));
+    given.map(|id: &str| format!("--{}", id.replace('_', "-")))
+}
+
 /// Refuses the first given flag of a group.
 fn refuse<G: clap::Args>(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
-    let group = G::augment_args(clap::Command::new(""));
-    let ids: Vec<&str> = group.get_arguments().map(|flag| flag.get_id().as_str()).collect();
-    refuse_ids(matches, &ids, words)
+    refuse_ids(matches, &ids_of::<G>(), words)
 }
 
 /// Refuses flags of a server; threads have an effect.
@@ -212,31 +192,20 @@ fn refuse_server(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
 }
 
 /// `words` name the command, and after a semicolon what would help.
-fn refuse_ids(matches: &ArgMatches, ids: &[&str], words: &str) -> Result<(), CliError> {
-    let is_given = |id: &&&str| matches.value_source(id) == Some(ValueSource::CommandLine);
-    ids.iter().find(is_given).map_or(Ok(()), |id| {
-        let flag = id.replace('_', "-");
-        Err(CliError::Usage(format!("--{flag} has no effect with {words} (see snakes --help)")))
+fn refuse_ids(matches: &ArgMatches, ids: &[impl AsRef<str>], words: &str) -> Result<(), CliError> {
+    first_given(matches, ids).map_or(Ok(()), |flag| {
+        Err(CliError::Usage(format!("{flag} has no effect with {words} (see snakes --help)")))
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::cli::args::{Args, Parsed, Task, parse};
-    use std::ffi::OsString;
-
-    fn parsed(words: &str) -> Result<(Args, Task), String> {
-        let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
-        match parse(arguments.map(OsString::from)) {
-            Ok(Parsed::Run(args, task)) => Ok((*args, *task)),
-            Ok(Parsed::Print(_)) => unreachable!("no help was asked for"),
-            Err(error) => Err(error.to_string()),
-        }
-    }
+    use super::Task;
+    use crate::cli::args::Parsed;
+    use crate::cli::args::parse::tests::{asked, parsed};
 
     fn help(words: &str) -> String {
-        let arguments = ["snakes"].into_iter().chain(words.split_whitespace()).chain(["--help"]);
-        match parse(arguments.map(OsString::from)) {
+        match parsed(&format!("{words} --help")) {
             Ok(Parsed::Print(help)) => help.split_whitespace().collect::<Vec<_>>().join(" "),
             _ => unreachable!("{words} has help"),
         }
@@ -281,25 +250,25 @@ mod tests {
             ("--json study", "the subcommand 'study' cannot be used with '--json'"),
             ("--resume a --seed 2", "the argument '--resume <DIR>' cannot be used with"),
         ] {
-            let message = parsed(words).expect_err(words);
+            let message = asked(words).expect_err(words).to_string();
             assert!(message.starts_with(problem) && !message.contains('\n'), "{words}: {message}");
         }
     }
 
     #[test]
     fn each_command_is_a_task_with_its_flags() {
-        let task = |words: &str| parsed(words).expect(words);
-        assert!(matches!(task("").1, Task::Window { files } if files.is_empty()));
+        let task = |words: &str| asked(words).expect(words);
+        assert!(matches!(task("").1, Task::Window(files) if files.is_empty()));
         for words in ["--no-render --seed 7 --nats nats://a", "run --seed 7 --nats nats://a"] {
             let (args, task) = task(words);
             assert!(matches!(task, Task::Run) && args.workers.nats.is_some());
             assert_eq!(args.seed().expect("a number"), 7);
         }
-        assert!(matches!(task("replay a.ron b.ron").1, Task::Window { files } if files.len() == 2));
-        assert!(matches!(task("replay a.ron --no-render --json").1, Task::CheckReplay { .. }));
+        assert!(matches!(task("replay a.ron b.ron").1, Task::Window(files) if files.len() == 2));
+        assert!(matches!(task("replay a.ron --no-render --json").1, Task::CheckReplay(_)));
         assert!(matches!(task("show settings --markdown").1, Task::Settings { as_markdown: true }));
         assert!(matches!(task("worker --nats nats://a --threads 2").1, Task::Worker));
-        assert!(matches!(task("bench a.ron --threads 2").1, Task::Bench { file: Some(_) }));
+        assert!(matches!(task("bench a.ron --threads 2").1, Task::Bench(Some(_))));
     }
 
     #[test]

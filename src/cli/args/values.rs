@@ -1,5 +1,7 @@
 //! Values of single flags, checked.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -16,9 +18,34 @@ use snakes_lab::run::evaluators::EVALUATORS;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
+/// What an error calls a whole number without another limit.
+pub const WHOLE: &str = "a whole number from 0 up";
+
 /// Reads a number; `allowed` is what the error calls one.
 pub fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
     text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
+}
+
+/// Reads the number of a flag, if that is given; `allowed` is what the error calls one.
+pub fn number_or<T: FromStr>(
+    flag: &str,
+    text: &Option<String>,
+    default: T,
+    allowed: &str,
+) -> Result<T, Invalid> {
+    text.as_deref().map_or(Ok(default), |text| number(flag, text, allowed))
+}
+
+/// Reads the whole number of a flag, if that is given.
+fn whole<T: FromStr + PartialOrd + Display + Copy>(
+    flag: &str,
+    text: &Option<String>,
+    range: RangeInclusive<T>,
+) -> Result<Option<T>, Invalid> {
+    let Some(text) = text else { return Ok(None) };
+    let allowed = format!("a whole number from {} to {}", range.start(), range.end());
+    let value = number(flag, text, &allowed)?;
+    within(flag, value, range).map(|()| Some(value))
 }
 
 /// Reads a size in pixels, such as 1280x720.
@@ -42,8 +69,7 @@ impl Args {
     /// The seed that is given, else this one.
     pub fn seed_or(&self, default: u64) -> Result<u64, CliError> {
         let allowed = "a whole number from 0 to 18446744073709551615";
-        let given = self.run.seed.seed.as_deref();
-        Ok(given.map_or(Ok(default), |text| number("--seed", text, allowed))?)
+        Ok(number_or("--seed", &self.run.seed.seed, default, allowed)?)
     }
 
     /// The duration of trials in s, if it is given.
@@ -61,17 +87,15 @@ impl Args {
     #[cfg(feature = "cluster")]
     pub fn expect_workers(&self) -> Result<usize, CliError> {
         let default = usize::from(self.local_threads()? == 0);
-        let Some(text) = &self.workers.expect_workers else { return Ok(default) };
-        let workers = number("--expect-workers", text, "a whole number from 1 to 10000")?;
-        Ok(within("--expect-workers", workers, 1..=10_000).map(|()| workers)?)
+        let given = whole("--expect-workers", &self.workers.expect_workers, 1..=10_000)?;
+        Ok(given.unwrap_or(default))
     }
 
     /// Number of threads of this computer that compute beside the workers on other machines.
     #[cfg(feature = "cluster")]
     pub fn local_threads(&self) -> Result<usize, CliError> {
-        let Some(text) = &self.workers.local_threads else { return Ok(0) };
-        let threads = number("--local-threads", text, "a whole number from 1 to 1024")?;
-        Ok(within("--local-threads", threads, THREADS_RANGE).map(|()| threads)?)
+        let given = whole("--local-threads", &self.workers.local_threads, THREADS_RANGE)?;
+        Ok(given.unwrap_or(0))
     }
 
     /// The evaluator without a window, on this computer.
@@ -96,10 +120,8 @@ impl Args {
     }
 
     fn threads_or(&self, default: usize) -> Result<usize, CliError> {
-        let Some(text) = &self.workers.threads.threads else { return Ok(default) };
-        let threads = number("--threads", text, "a whole number from 1 to 1024")?;
-        within("--threads", threads, THREADS_RANGE)?;
-        Ok(threads)
+        let given = whole("--threads", &self.workers.threads.threads, THREADS_RANGE)?;
+        Ok(given.unwrap_or(default))
     }
 
     /// The window's size in physical pixels, if it is given.
