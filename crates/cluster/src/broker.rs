@@ -7,15 +7,15 @@ use async_nats::jetstream::consumer::{AckPolicy, PullConsumer, pull};
 use async_nats::jetstream::context::ConsumerInfoErrorKind;
 use async_nats::jetstream::stream::{Config, DiscardPolicy, RetentionPolicy, StorageType, Stream};
 use async_nats::jetstream::{self, Context};
-use async_nats::{Client, ConnectOptions};
+use async_nats::{Client, ConnectOptions, Subscriber};
 use tokio::runtime::{Builder, Handle, Runtime};
 
 use super::address::BrokerOptions;
 use super::connection::{ServerConnection, Trouble};
 use super::error::ClusterError;
 use super::names::{
-    ACKNOWLEDGEMENT_WAIT, MESSAGE_AGE, RESULT_STREAM, RESULT_SUBJECTS, WORK_STREAM, WORK_SUBJECTS,
-    result_subject, worker_consumer,
+    ACKNOWLEDGEMENT_WAIT, MESSAGE_AGE, RESULT_STREAM, RESULT_SUBJECTS, RUN_NOTICES, WORK_STREAM,
+    WORK_SUBJECTS, WORKER_NOTICES, result_subject, work_subject, worker_consumer,
 };
 use snakes_core::save::load_text;
 
@@ -70,7 +70,9 @@ impl Broker {
             client,
             jetstream,
         };
-        broker.check_jetstream()?;
+        if !broker.client.server_info().jetstream {
+            return Err(ClusterError::NoJetStream { url: broker.url().to_owned() });
+        }
         let streams = broker.runtime.block_on(broker.make_streams());
         streams.map_err(|trouble| broker.refused("a stream", &trouble))?;
         Ok(broker)
@@ -79,11 +81,6 @@ impl Broker {
     /// The address.
     pub fn url(&self) -> &str {
         &self.options.url
-    }
-
-    /// The command that starts a worker for this server.
-    pub(super) fn worker_command(&self) -> String {
-        format!("snakes worker {}", self.options.flags())
     }
 
     /// The flags that name this server on a command line.
@@ -115,13 +112,6 @@ impl Broker {
         self.client.server_info().max_payload.saturating_sub(4096)
     }
 
-    fn check_jetstream(&self) -> Result<(), ClusterError> {
-        match self.client.server_info().jetstream {
-            true => Ok(()),
-            false => Err(ClusterError::NoJetStream { url: self.url().to_owned() }),
-        }
-    }
-
     /// Makes the streams that are not there.
     pub(super) async fn make_streams(&self) -> Result<(), Trouble> {
         self.work_stream().await?;
@@ -130,16 +120,32 @@ impl Broker {
 
     /// The stream of batches, which is made if it is not there.
     pub(super) async fn work_stream(&self) -> Result<Stream, Trouble> {
-        let config = stream_config(WORK_STREAM, WORK_SUBJECTS);
-        let stream = self.jetstream.get_or_create_stream(config).await;
-        stream.map_err(|error| Trouble::of(&error))
+        self.stream(WORK_STREAM, WORK_SUBJECTS).await
     }
 
     /// The stream of results, which is made if it is not there.
     pub(super) async fn result_stream(&self) -> Result<Stream, Trouble> {
-        let config = stream_config(RESULT_STREAM, RESULT_SUBJECTS);
-        let stream = self.jetstream.get_or_create_stream(config).await;
-        stream.map_err(|error| Trouble::of(&error))
+        self.stream(RESULT_STREAM, RESULT_SUBJECTS).await
+    }
+
+    async fn stream(&self, name: &str, subjects: &str) -> Result<Stream, Trouble> {
+        let config = Config {
+            name: name.to_owned(),
+            subjects: vec![subjects.to_owned()],
+            retention: RetentionPolicy::WorkQueue,
+            storage: StorageType::File,
+            discard: DiscardPolicy::New,
+            max_age: MESSAGE_AGE,
+            duplicate_window: Duration::from_secs(120),
+            ..Config::default()
+        };
+        Ok(self.jetstream.get_or_create_stream(config).await?)
+    }
+
+    /// Begins to listen to the notices of workers and of runs.
+    pub(super) async fn notices(&self) -> Result<(Subscriber, Subscriber), Trouble> {
+        let workers = self.client.subscribe(WORKER_NOTICES).await?;
+        Ok((workers, self.client.subscribe(RUN_NOTICES).await?))
     }
 
     /// A consumer, and whether it had to be made because it was not there. All workers with the same proof share one, and
@@ -148,18 +154,17 @@ impl Broker {
         &self,
         source: &PullSource,
     ) -> Result<(PullConsumer, bool), Trouble> {
-        let (stream, config) = match source {
-            PullSource::Work(proof) => (self.work_stream().await?, work_config(proof)),
-            PullSource::Results(run) => (self.result_stream().await?, result_config(run)),
+        let (stream, name) = match source {
+            PullSource::Work(proof) => (self.work_stream().await?, worker_consumer(proof)),
+            PullSource::Results(run) => (self.result_stream().await?, run.clone()),
         };
-        let name = config.durable_name.clone().unwrap_or_default();
         let is_missing = match stream.consumer_info(&name).await {
             Ok(_) => false,
             Err(error) if error.kind() == ConsumerInfoErrorKind::NotFound => true,
-            Err(error) => return Err(Trouble::of(&error)),
+            Err(error) => return Err(error.into()),
         };
-        let consumer = stream.get_or_create_consumer(&name, config).await;
-        Ok((consumer.map_err(|error| Trouble::of(&error))?, is_missing))
+        let consumer = stream.get_or_create_consumer(&name, source.config(&name)).await?;
+        Ok((consumer, is_missing))
     }
 
     pub(super) fn refused(&self, task: &'static str, trouble: &Trouble) -> ClusterError {
@@ -222,40 +227,27 @@ async fn connect(
     Ok((client, jetstream))
 }
 
-fn stream_config(name: &str, subjects: &str) -> Config {
-    Config {
-        name: name.to_owned(),
-        subjects: vec![subjects.to_owned()],
-        retention: RetentionPolicy::WorkQueue,
-        storage: StorageType::File,
-        discard: DiscardPolicy::New,
-        max_age: MESSAGE_AGE,
-        duplicate_window: Duration::from_secs(120),
-        ..Config::default()
-    }
-}
-
-/// The consumer of batches that all workers with this proof share.
-fn work_config(proof: &str) -> pull::Config {
-    pull::Config {
-        durable_name: Some(worker_consumer(proof)),
-        filter_subject: format!("snakes.work.{proof}.>"),
-        ack_policy: AckPolicy::Explicit,
-        ack_wait: ACKNOWLEDGEMENT_WAIT,
-        max_ack_pending: MOST_OUTSTANDING,
-        max_waiting: MOST_WAITING,
-        ..pull::Config::default()
-    }
-}
-
-/// The consumer of a run's results.
-fn result_config(run: &str) -> pull::Config {
-    pull::Config {
-        durable_name: Some(run.to_owned()),
-        filter_subject: result_subject(run),
-        ack_policy: AckPolicy::Explicit,
-        ack_wait: Duration::from_secs(30),
-        max_ack_pending: MOST_OUTSTANDING,
-        ..pull::Config::default()
+impl PullSource {
+    /// The consumer with this name.
+    fn config(&self, name: &str) -> pull::Config {
+        let config = pull::Config {
+            durable_name: Some(name.to_owned()),
+            ack_policy: AckPolicy::Explicit,
+            max_ack_pending: MOST_OUTSTANDING,
+            ..pull::Config::default()
+        };
+        match self {
+            Self::Work(proof) => pull::Config {
+                filter_subject: work_subject(proof, ">"),
+                ack_wait: ACKNOWLEDGEMENT_WAIT,
+                max_waiting: MOST_WAITING,
+                ..config
+            },
+            Self::Results(run) => pull::Config {
+                filter_subject: result_subject(run),
+                ack_wait: Duration::from_secs(30),
+                ..config
+            },
+        }
     }
 }

@@ -1,47 +1,33 @@
 //! A coordinator: evaluates on the workers of a server, and on threads of its own if it is told to.
 
 mod actor;
+mod common;
 mod ledger;
 mod local;
 mod traffic;
 
-use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use std::sync::atomic::{AtomicBool, AtomicU64};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, unbounded};
 
 use super::broker::Broker;
-use super::compute::Compute;
 use super::error::ClusterError;
 use super::names::check_name;
 use super::outcome::Outcome;
 use super::wire::{TaskKind, line_of, shared_hash};
 use actor::{CoordinatorCommand, run_actor};
+pub use common::CoordinatorOptions;
+use common::{Common, Status};
 use ledger::CallId;
 use snakes_core::genome::Genome;
 use snakes_core::score::{ExamCondition, ExamEnd, Trial};
 use snakes_lab::run::headless::say;
 use snakes_lab::run::{Cancelled, EvaluationResult, Evaluator, Job, RunControl, WorkersError};
-
-/// How a coordinator works.
-#[derive(Debug, Clone)]
-pub struct CoordinatorOptions {
-    /// The name of its run: letters, digits and hyphens. The same run has the same name when it is continued.
-    pub run: String,
-    /// The proof of its engine: see [`super::proof`].
-    pub proof: String,
-    /// Number of workers that it waits for before it begins.
-    pub expect_workers: usize,
-    /// Number of its own threads that compute, too.
-    pub local_threads: usize,
-    /// Computes outcomes on this computer.
-    pub compute: Arc<dyn Compute>,
-}
 
 /// Evaluates on the workers of a server.
 pub struct Coordinator {
@@ -55,34 +41,14 @@ struct Inner {
     next_call: AtomicU64,
     /// Whether as many workers as expected have been there.
     has_begun: AtomicBool,
-    status: Arc<Mutex<Status>>,
-    shared: Arc<SharedTexts>,
-    actor: Mutex<Option<thread::JoinHandle<()>>>,
-    local: Mutex<Vec<thread::JoinHandle<()>>>,
+    common: Arc<Common>,
+    /// The coordinator's thread, and its own threads that compute.
+    threads: Vec<thread::JoinHandle<()>>,
     options: CoordinatorOptions,
-    /// The command that starts a worker.
-    worker_command: String,
     /// The flags that name the server.
     flags: String,
 }
 
-/// State of the coordinator, for the calls that wait.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Status {
-    workers: usize,
-    threads: usize,
-    /// Number of results that are being checked.
-    audits: usize,
-    /// Why earlier results cannot be trusted any more.
-    taint: Option<String>,
-}
-
-/// Texts that tasks share, by hash: the latest ones.
-#[derive(Debug, Default)]
-pub struct SharedTexts(Mutex<BTreeMap<u64, (u64, Arc<str>)>>);
-
-/// Maximum number of texts that are kept after the calls that used them.
-const MOST_SHARED: usize = 256;
 /// Maximum number of calls of one batch at the same time.
 const MOST_CALLS: usize = 32;
 /// Interval at which a waiting call looks at its control.
@@ -92,26 +58,6 @@ const LONGEST_CHECK: Duration = Duration::from_secs(60);
 /// How long a coordinator waits for workers before it says so.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-impl SharedTexts {
-    /// Keeps a text; `number` grows with each call.
-    fn keep(&self, hash: u64, number: u64, text: Arc<str>) {
-        let mut texts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        texts.insert(hash, (number, text));
-        if texts.len() > MOST_SHARED {
-            let oldest = texts.iter().min_by_key(|(_, (number, _))| *number);
-            if let Some(oldest) = oldest.map(|(hash, _)| *hash) {
-                texts.remove(&oldest);
-            }
-        }
-    }
-
-    /// The text with this hash.
-    pub fn get(&self, hash: u64) -> Option<Arc<str>> {
-        let texts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        texts.get(&hash).map(|(_, text)| Arc::clone(text))
-    }
-}
-
 impl Coordinator {
     /// Connects the run with the workers on a server.
     ///
@@ -120,45 +66,43 @@ impl Coordinator {
     pub fn start(broker: Broker, options: CoordinatorOptions) -> Result<Self, ClusterError> {
         check_name("run", &options.run)?;
         let (commands, received) = tokio::sync::mpsc::unbounded_channel();
-        let status = Arc::new(Mutex::new(Status::default()));
-        let shared = Arc::new(SharedTexts::default());
-        let (worker_command, flags) = (broker.worker_command(), broker.flags());
+        let common = Arc::new(Common::new());
+        let flags = broker.flags();
         let broker = Arc::new(broker);
         let actor = actor::Actor::start(
             Arc::clone(&broker),
             &options,
-            Arc::clone(&shared),
-            Arc::clone(&status),
+            Arc::clone(&common),
             commands.clone(),
         )?;
-        let running = thread::Builder::new()
-            .name("coordinator".to_owned())
-            .spawn(move || run_actor(&broker, actor, received))?;
-        let mut local = Vec::new();
+        let thread = |name: String| thread::Builder::new().name(name);
+        let running = thread("coordinator".to_owned());
+        let mut threads = vec![running.spawn(move || run_actor(&broker, actor, received))?];
         for number in 0..options.local_threads {
-            let (commands, shared) = (commands.clone(), Arc::clone(&shared));
+            let (commands, common) = (commands.clone(), Arc::clone(&common));
             let compute = Arc::clone(&options.compute);
-            let name = format!("local-{number}");
-            let thread = thread::Builder::new().name(name);
-            local.push(thread.spawn(move || local::compute(&commands, &shared, &compute))?);
+            let local = thread(format!("local-{number}"));
+            threads.push(local.spawn(move || local::compute(&commands, &common, &compute))?);
         }
         let inner = Inner {
             commands,
             next_call: AtomicU64::new(1),
             has_begun: AtomicBool::new(false),
-            status,
-            shared,
-            actor: Mutex::new(Some(running)),
-            local: Mutex::new(local),
+            common,
+            threads,
             options,
-            worker_command,
             flags,
         };
         Ok(Self { inner: Arc::new(inner), is_single: false })
     }
 
     fn status(&self) -> Status {
-        self.inner.status.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.inner.common.status().clone()
+    }
+
+    /// Says that workers are missing, and the command that starts one.
+    fn say_that_it_waits(&self, present: &str) {
+        say(&format!("{present}; waiting (start one with: snakes worker {})", self.inner.flags));
     }
 
     /// Waits until there are as many workers as the run expects. Says how many there are, if that takes long.
@@ -176,10 +120,7 @@ impl Coordinator {
             }
             if told != Some(workers) && began.elapsed() > PATIENCE {
                 told = Some(workers);
-                say(&format!(
-                    "{workers} of {expected} workers; waiting (start one with: {})",
-                    self.inner.worker_command
-                ));
+                self.say_that_it_waits(&format!("{workers} of {expected} workers"));
             }
             thread::sleep(CONTROL_INTERVAL);
         }
@@ -205,7 +146,7 @@ impl Coordinator {
         }
         let number = self.inner.next_call.fetch_add(1, SeqCst);
         let hash = shared_hash(kind, &shared);
-        self.inner.shared.keep(hash, number, shared.into());
+        self.inner.common.texts.keep(hash, shared.into());
         let (sender, outcomes) = unbounded();
         let tasks = tasks.into_iter().map(Into::into).collect();
         self.send(CoordinatorCommand::Open { call: number, kind, shared: hash, tasks, sender });
@@ -245,10 +186,7 @@ impl Coordinator {
                     let is_alone = workers == 0 && self.inner.options.local_threads == 0;
                     if is_alone && !is_paused && !has_said && waits_since.elapsed() > PATIENCE {
                         has_said = true;
-                        say(&format!(
-                            "no worker is there; waiting (start one with: {})",
-                            self.inner.worker_command
-                        ));
+                        self.say_that_it_waits("no worker is there");
                     }
                 }
             }
@@ -271,9 +209,7 @@ impl fmt::Debug for Coordinator {
 impl Drop for Inner {
     fn drop(&mut self) {
         let _ = self.commands.send(CoordinatorCommand::End);
-        let actor = self.actor.get_mut().unwrap_or_else(PoisonError::into_inner).take();
-        let local = std::mem::take(self.local.get_mut().unwrap_or_else(PoisonError::into_inner));
-        for thread in actor.into_iter().chain(local) {
+        for thread in self.threads.drain(..) {
             let _ = thread.join();
         }
     }

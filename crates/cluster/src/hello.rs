@@ -144,20 +144,20 @@ fn text_of(bytes: &[u8]) -> Result<&str, WireError> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::wire::{WIRE_FORMAT, line_of};
 
     /// A notice of a worker with the engine of this program.
-    fn notice() -> WorkerNotice {
+    pub fn notice(worker: &str, threads: u32, proof: &str) -> WorkerNotice {
         WorkerNotice {
             format: WIRE_FORMAT,
-            worker: "w-1".to_owned(),
-            host: host_name(),
+            worker: worker.to_owned(),
+            host: "computer".to_owned(),
             engine: ENGINE_VERSION,
             processors: Processors::THIS,
-            proof: "0123456789abcdef".to_owned(),
-            threads: 4,
+            proof: proof.to_owned(),
+            threads,
             evaluations: 10,
             per_s: 2.5,
             redelivered: 0,
@@ -167,8 +167,9 @@ mod tests {
 
     #[test]
     fn a_notice_is_read_as_it_was_written_and_a_hostile_one_is_refused() {
-        let text = line_of(&notice());
-        assert_eq!(WorkerNotice::read(text.as_bytes()), Ok(notice()));
+        let notice = notice("w-1", 4, "0123456789abcdef");
+        let text = line_of(&notice);
+        assert_eq!(WorkerNotice::read(text.as_bytes()), Ok(notice));
         for (from, to, problem) in [
             ("w-1", "w.>", "worker is \"w.>\""),
             ("\"threads\":4", "\"threads\":0", "threads is 0; allowed: 1 to 1024"),

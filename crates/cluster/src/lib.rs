@@ -15,6 +15,7 @@ mod connection;
 mod coordinator;
 mod error;
 mod hello;
+mod latest;
 mod machines;
 mod names;
 mod outcome;

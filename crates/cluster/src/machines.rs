@@ -10,9 +10,7 @@ use super::broker::Broker;
 use super::connection::Trouble;
 use super::error::ClusterError;
 use super::hello::{RunNotice, WorkerNotice};
-use super::names::{
-    NOTICE_INTERVAL, RUN_NOTICES, WORKER_NOTICES, check_name, result_subject, worker_consumer,
-};
+use super::names::{NOTICE_INTERVAL, check_name, result_subject, work_subject, worker_consumer};
 use snakes_core::check::{Invalid, quoted};
 
 /// How long notices are listened to: each machine sends two in this time.
@@ -54,15 +52,8 @@ pub fn machines(broker: &Broker) -> Result<Machines, ClusterError> {
 }
 
 async fn heard(broker: &Broker) -> Result<Machines, ClusterError> {
-    let subscribed = async {
-        let workers = broker.client().subscribe(WORKER_NOTICES).await?;
-        Ok::<_, async_nats::SubscribeError>((
-            workers,
-            broker.client().subscribe(RUN_NOTICES).await?,
-        ))
-    };
     let (mut workers, mut runs) =
-        subscribed.await.map_err(|error| broker.refused("listening", &Trouble::of(&error)))?;
+        broker.notices().await.map_err(|trouble| broker.refused("listening", &trouble))?;
     let mut machines = Machines::default();
     let end = tokio::time::sleep(LISTENING);
     tokio::pin!(end);
@@ -89,9 +80,8 @@ async fn heard(broker: &Broker) -> Result<Machines, ClusterError> {
 async fn queues(broker: &Broker, machines: &mut Machines) -> Result<(), Trouble> {
     let streams = [broker.work_stream().await?, broker.result_stream().await?];
     for (stream, is_work) in streams.iter().zip([true, false]) {
-        let info = stream.info_with_subjects(">").await.map_err(|error| Trouble::of(&error))?;
-        let subjects: Vec<(String, usize)> =
-            info.try_collect().await.map_err(|error| Trouble::of(&error))?;
+        let info = stream.info_with_subjects(">").await?;
+        let subjects: Vec<(String, usize)> = info.try_collect().await?;
         for (subject, messages) in subjects {
             // A subject ends with the name of the run.
             let run = subject.rsplit('.').next().unwrap_or_default().to_owned();
@@ -101,8 +91,7 @@ async fn queues(broker: &Broker, machines: &mut Machines) -> Result<(), Trouble>
         }
     }
     // A run that was killed leaves a consumer, even if nothing waits.
-    let consumers: Vec<String> =
-        streams[1].consumer_names().try_collect().await.map_err(|error| Trouble::of(&error))?;
+    let consumers: Vec<String> = streams[1].consumer_names().try_collect().await?;
     let abandoned = consumers.into_iter().filter(|run| !machines.runs.contains_key(run));
     for run in abandoned.collect::<Vec<String>>() {
         machines.queues.entry(run).or_default();
@@ -134,13 +123,10 @@ pub fn purge(broker: &Broker, run: &str) -> Result<RunQueue, ClusterError> {
     }
     let purged = broker.runtime().block_on(async {
         let (work, results) = (broker.work_stream().await?, broker.result_stream().await?);
-        let batches = work.purge().filter(format!("snakes.work.*.{run}")).await;
+        let batches = work.purge().filter(work_subject("*", run)).await;
         let found = results.purge().filter(result_subject(run)).await;
         let _ = results.delete_consumer(run).await;
-        Ok::<_, Trouble>(RunQueue {
-            batches: batches.map_err(|error| Trouble::of(&error))?.purged,
-            results: found.map_err(|error| Trouble::of(&error))?.purged,
-        })
+        Ok::<_, Trouble>(RunQueue { batches: batches?.purged, results: found?.purged })
     });
     purged.map_err(|trouble| broker.refused("the removal", &trouble))
 }

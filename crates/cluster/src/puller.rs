@@ -72,7 +72,7 @@ impl Puller {
             Some(request) => request,
             none => {
                 let request = consumer.batch().max_messages(self.most).expires(PULL_WAIT);
-                let messages = request.messages().await.map_err(|error| Trouble::of(&error))?;
+                let messages = request.messages().await?;
                 none.insert((Instant::now(), messages))
             }
         };

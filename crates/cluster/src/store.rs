@@ -2,11 +2,10 @@
 
 use std::time::Duration;
 
-use async_nats::jetstream::context::{PublishError, PublishErrorKind};
+use async_nats::jetstream::context::PublishErrorKind;
 use async_nats::jetstream::message::PublishMessage;
 
 use super::broker::Broker;
-use super::connection::Trouble;
 
 /// Pause before the server is asked again after it refused a request.
 pub const RETRY_PAUSE: Duration = Duration::from_millis(500);
@@ -22,8 +21,11 @@ pub async fn publish_until_stored(
 ) {
     let mut renewals = broker.connection().renewals();
     loop {
+        let message = PublishMessage::build().payload(bytes.to_vec().into()).message_id(id);
+        let publish =
+            async { broker.jetstream().send_publish(subject.to_owned(), message).await?.await };
         let stored = tokio::select! {
-            stored = publish_once(broker, subject, id, bytes) => stored,
+            stored = publish => stored,
             // The answer to a message of the connection before may never come.
             _ = renewals.changed() => continue,
         };
@@ -35,18 +37,7 @@ pub async fn publish_until_stored(
             // The next attempt says whether this helped.
             let _ = broker.make_streams().await;
         }
-        broker.connection().failed(task, &Trouble::of(&error));
+        broker.connection().failed(task, &error.into());
         tokio::time::sleep(RETRY_PAUSE).await;
     }
-}
-
-async fn publish_once(
-    broker: &Broker,
-    subject: &str,
-    id: &str,
-    bytes: &[u8],
-) -> Result<(), PublishError> {
-    let message = PublishMessage::build().payload(bytes.to_vec().into()).message_id(id);
-    let sent = broker.jetstream().send_publish(subject.to_owned(), message).await?;
-    sent.await.map(drop)
 }

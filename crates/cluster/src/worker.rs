@@ -52,6 +52,8 @@ struct Workplace {
     activity: WorkerActivity,
 }
 
+/// Maximum number of trials and genomes that are kept.
+const MOST_SHARED: usize = 64;
 /// How long a stopped worker waits for its threads: then their batches are left to the server, which delivers them again.
 const LONGEST_END: Duration = Duration::from_millis(1200);
 /// How long a stopped worker tries to tell the server something.
@@ -74,7 +76,7 @@ pub fn work(
     let broker = Arc::new(broker);
     let threads = options.threads;
     let place = Arc::new(Workplace {
-        cache: SharedCache::default(),
+        cache: SharedCache::new(MOST_SHARED),
         broker,
         options,
         control: Arc::clone(control),
@@ -217,7 +219,7 @@ fn acknowledge(place: &Workplace, message: &Message, kind: AckKind) {
 
 /// The results of a batch; none if the worker was stopped, or the coordinator cannot be reached.
 fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
-    let shared = match place.cache.known(work.shared) {
+    let shared = match place.cache.get(work.shared) {
         Some(known) => known,
         None => place.unless_stopped(Duration::ZERO, place.cache.fetch(&place.broker, work))??,
     };

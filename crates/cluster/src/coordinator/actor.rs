@@ -1,7 +1,7 @@
 //! The input and output of a coordinator: one thread that feeds the ledger and does what it says.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::Sender;
@@ -10,17 +10,16 @@ use rand_chacha::ChaCha8Rng;
 use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
 use tokio::task::JoinHandle;
 
+use super::common::{Common, CoordinatorOptions};
 use super::ledger::{AuditTask, CallId, Checker, Ledger, LedgerAction};
 use super::traffic::{News, answer_shared, fetch_results, hear_notices};
-use super::{CoordinatorOptions, SharedTexts, Status};
 use crate::broker::{Broker, PullSource};
 use crate::compute::{Compute, outcome_of_texts};
 use crate::connection::Trouble;
 use crate::error::ClusterError;
 use crate::hello::{RunNotice, host_name, random_number};
 use crate::names::{
-    NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_subject, result_subject,
-    work_subject,
+    NOTICE_INTERVAL, RUN_NOTICES, SILENCE, audit_subject, result_subject, work_subject,
 };
 use crate::outcome::Outcome;
 use crate::store::publish_until_stored;
@@ -67,8 +66,7 @@ pub struct Actor {
     options: CoordinatorOptions,
     ledger: Ledger,
     calls: BTreeMap<CallId, Sender<(usize, Outcome)>>,
-    shared: Arc<SharedTexts>,
-    status: Arc<Mutex<Status>>,
+    common: Arc<Common>,
     commands: UnboundedSender<CoordinatorCommand>,
     news: Receiver<News>,
     /// When a message last came from the server.
@@ -94,21 +92,15 @@ impl Actor {
     pub fn start(
         broker: Arc<Broker>,
         options: &CoordinatorOptions,
-        shared: Arc<SharedTexts>,
-        status: Arc<Mutex<Status>>,
+        common: Arc<Common>,
         commands: UnboundedSender<CoordinatorCommand>,
     ) -> Result<Self, ClusterError> {
         let prepared = broker.runtime().block_on(async {
             let stream = broker.work_stream().await?;
-            let left = stream.purge().filter(work_subject(&options.proof, &options.run)).await;
-            left.map_err(|error| Trouble::of(&error))?;
+            stream.purge().filter(work_subject(&options.proof, &options.run)).await?;
             broker.consumer(&PullSource::Results(options.run.clone())).await?;
             // Before this run tells of itself: workers answer.
-            let heard = async |subject| {
-                let heard = broker.client().subscribe(subject).await;
-                heard.map_err(|error| Trouble::of(&error))
-            };
-            Ok((heard(WORKER_NOTICES).await?, heard(RUN_NOTICES).await?))
+            broker.notices().await
         });
         let (workers, runs) =
             prepared.map_err(|trouble: Trouble| broker.refused("the run", &trouble))?;
@@ -130,13 +122,13 @@ impl Actor {
             runtime.spawn(answer_shared(
                 Arc::clone(&broker),
                 options.run.clone(),
-                Arc::clone(&shared),
+                Arc::clone(&common),
             )),
         ];
         let calls = BTreeMap::new();
         let options = options.clone();
         let heard = Instant::now();
-        Ok(Self { broker, options, ledger, calls, shared, status, commands, news, heard, tasks })
+        Ok(Self { broker, options, ledger, calls, common, commands, news, heard, tasks })
     }
 
     fn act(&mut self, actions: Vec<LedgerAction>) {
@@ -152,10 +144,14 @@ impl Actor {
                 LedgerAction::Audit(task) => self.audit(task),
                 LedgerAction::Say(line) => say(&line),
                 LedgerAction::Taint(line) => {
-                    self.status().taint.get_or_insert(line);
+                    self.common.status().taint.get_or_insert(line);
                 }
             }
         }
+        let staff = self.ledger.staff();
+        let mut status = self.common.status();
+        (status.workers, status.threads) = (staff.workers(), staff.threads());
+        status.audits = self.ledger.audits();
     }
 
     fn publish(&mut self, batch: WorkBatch) {
@@ -183,7 +179,7 @@ impl Actor {
         match audit.checker {
             Checker::Coordinator => {
                 let compute: Arc<dyn Compute> = Arc::clone(&self.options.compute);
-                let text = self.shared.get(audit.shared).unwrap_or_default();
+                let text = self.common.texts.get(audit.shared).unwrap_or_default();
                 runtime.spawn_blocking(move || {
                     let outcome = outcome_of_texts(&compute, audit.kind, &text, &audit.task.text);
                     answer(Some(outcome.line().into()));
@@ -211,17 +207,6 @@ impl Actor {
         }
     }
 
-    fn status(&self) -> std::sync::MutexGuard<'_, Status> {
-        self.status.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn update_status(&self) {
-        let (workers, threads) = (self.ledger.staff().workers(), self.ledger.staff().threads());
-        let audits = self.ledger.audits();
-        let mut status = self.status();
-        (status.workers, status.threads, status.audits) = (workers, threads, audits);
-    }
-
     fn on_command(&mut self, command: CoordinatorCommand) -> bool {
         let now = Instant::now();
         let actions = match command {
@@ -239,12 +224,11 @@ impl Actor {
                 let _ = sender.send(self.ledger.take_for_local());
                 Vec::new()
             }
-            CoordinatorCommand::Local(key, outcome) => self.ledger.on_local(key, outcome),
+            CoordinatorCommand::Local(key, outcome) => self.ledger.deliver(key, outcome),
             CoordinatorCommand::Audited(key, line) => self.ledger.on_audit(key, line, now),
             CoordinatorCommand::End => return false,
         };
         self.act(actions);
-        self.update_status();
         true
     }
 
@@ -258,7 +242,6 @@ impl Actor {
             News::StoreLost => self.ledger.on_store_lost(now),
         };
         self.act(actions);
-        self.update_status();
     }
 
     fn on_tick(&mut self) {
@@ -268,7 +251,6 @@ impl Actor {
         }
         let actions = self.ledger.on_tick(now);
         self.act(actions);
-        self.update_status();
     }
 
     async fn tell(&self) {

@@ -57,6 +57,14 @@ struct Pending {
     copies: u8,
 }
 
+impl Pending {
+    /// The order to compute the task with this key once more.
+    fn audit(&self, key: u64, checker: Checker) -> AuditTask {
+        let task = TaskText { key, text: Arc::clone(&self.text) };
+        AuditTask { kind: self.kind, shared: self.shared, task, checker }
+    }
+}
+
 /// A batch on its way.
 #[derive(Debug)]
 struct OnItsWay {
@@ -192,7 +200,8 @@ impl Ledger {
 
     /// A worker told of itself.
     pub fn on_notice(&mut self, notice: WorkerNotice, now: Instant) -> Vec<LedgerAction> {
-        let mut actions = self.staff.on_notice(notice, &self.proof, now);
+        let lines = self.staff.on_notice(notice, &self.proof, now);
+        let mut actions: Vec<_> = lines.into_iter().map(LedgerAction::Say).collect();
         actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
         actions
@@ -256,11 +265,6 @@ impl Ledger {
         Some((key, pending.kind, pending.shared, Arc::clone(&pending.text)))
     }
 
-    /// A thread of the coordinator computed a task.
-    pub fn on_local(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
-        self.deliver(key, outcome)
-    }
-
     /// A batch is larger than the server takes: its tasks stay for the coordinator.
     pub fn on_too_large(&mut self, batch: &WorkBatch) -> Vec<LedgerAction> {
         self.batches.remove(&batch.batch);
@@ -303,20 +307,17 @@ impl Ledger {
         let mut actions = Vec::new();
         if self.rng.random_ratio(1, audits::ONE_IN) {
             let checker = self.staff.other_proven(worker, &mut self.rng);
-            let task = AuditTask {
-                kind: pending.kind,
-                shared: pending.shared,
-                task: TaskText { key, text: Arc::clone(&pending.text) },
-                checker: checker.map_or(Checker::Coordinator, Checker::Worker),
-            };
-            actions.extend(self.audits.start(task, worker, line));
+            let checker = checker.map_or(Checker::Coordinator, Checker::Worker);
+            let audit = self.audits.start(pending.audit(key, checker), worker, line);
+            actions.extend(audit.map(LedgerAction::Audit));
         }
         self.staff.count_result(worker);
         actions.extend(self.deliver(key, read));
         actions
     }
 
-    fn deliver(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
+    /// Gives the outcome of a task to the calls that wait for it.
+    pub fn deliver(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
         let Some(pending) = self.tasks.remove(&key) else { return Vec::new() };
         self.results += 1;
         self.early.clear();
@@ -333,16 +334,11 @@ impl Ledger {
                 self.staff.drop_held(&worker, held.key);
                 continue;
             };
-            let task = AuditTask {
-                kind: pending.kind,
-                shared: pending.shared,
-                task: TaskText { key: held.key, text: Arc::clone(&pending.text) },
-                checker: Checker::Coordinator,
-            };
-            // If the same task is being checked already, another one will be, soon.
-            if let Some(action) = self.audits.start(task, &worker, held.text) {
+            let audit = pending.audit(held.key, Checker::Coordinator);
+            // If this task is being checked already, another one will be, soon.
+            if let Some(audit) = self.audits.start(audit, &worker, held.text) {
                 self.staff.begin_proof(&worker);
-                actions.push(action);
+                actions.push(LedgerAction::Audit(audit));
             }
         }
         actions
@@ -361,7 +357,14 @@ impl Ledger {
             Some(Repeat(task)) => vec![LedgerAction::Audit(task)],
             Some(Equal(suspect)) => {
                 let held = self.staff.prove(&suspect);
-                held.into_iter().flat_map(|outcome| self.accept_held(&suspect, outcome)).collect()
+                let accept = |outcome: TaskText| match self.staff.standing(&suspect) {
+                    Standing::Proven => self.accept(&suspect, outcome),
+                    _ => {
+                        self.requeue(outcome.key);
+                        Vec::new()
+                    }
+                };
+                held.into_iter().flat_map(accept).collect()
             }
             Some(Wrong(workers)) => {
                 let words = "computes other bits than this machine";
@@ -371,16 +374,6 @@ impl Ledger {
         actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
         actions
-    }
-
-    fn accept_held(&mut self, worker: &str, outcome: TaskText) -> Vec<LedgerAction> {
-        match self.staff.standing(worker) {
-            Standing::Proven => self.accept(worker, outcome),
-            _ => {
-                self.requeue(outcome.key);
-                Vec::new()
-            }
-        }
     }
 
     /// Sets a worker aside: nothing that it sends counts any more, and what is held of it is computed again.

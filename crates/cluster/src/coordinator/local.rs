@@ -6,8 +6,8 @@ use std::time::Duration;
 use crossbeam_channel::bounded;
 use tokio::sync::mpsc::UnboundedSender;
 
-use super::SharedTexts;
 use super::actor::CoordinatorCommand;
+use super::common::Common;
 use crate::compute::{Compute, outcome_of_texts};
 
 /// Pause before the next question after there was no task.
@@ -16,7 +16,7 @@ const IDLE_PAUSE: Duration = Duration::from_millis(10);
 /// Computes tasks until the coordinator ends.
 pub fn compute(
     commands: &UnboundedSender<CoordinatorCommand>,
-    shared: &SharedTexts,
+    common: &Common,
     compute: &Arc<dyn Compute>,
 ) {
     loop {
@@ -28,7 +28,7 @@ pub fn compute(
             Err(_) => return,
             Ok(None) => std::thread::sleep(IDLE_PAUSE),
             Ok(Some((key, kind, of, task))) => {
-                let text = shared.get(of).unwrap_or_default();
+                let text = common.texts.get(of).unwrap_or_default();
                 let outcome = outcome_of_texts(compute, kind, &text, &task);
                 if commands.send(CoordinatorCommand::Local(key, outcome)).is_err() {
                     return;

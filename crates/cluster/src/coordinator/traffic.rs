@@ -6,7 +6,7 @@ use async_nats::Subscriber;
 use futures_util::StreamExt;
 use tokio::sync::mpsc::Sender;
 
-use super::SharedTexts;
+use super::common::Common;
 use crate::broker::{Broker, PullSource};
 use crate::hello::WorkerNotice;
 use crate::names::shared_subject;
@@ -85,12 +85,12 @@ pub async fn hear_notices(mut workers: Subscriber, mut runs: Subscriber, news: S
 }
 
 /// Answers workers that ask for what tasks share.
-pub async fn answer_shared(broker: Arc<Broker>, run: String, shared: Arc<SharedTexts>) {
+pub async fn answer_shared(broker: Arc<Broker>, run: String, common: Arc<Common>) {
     let subject = shared_subject(&run, "*");
     let Ok(mut requests) = broker.client().subscribe(subject).await else { return };
     while let Some(request) = requests.next().await {
         let hash = request.subject.rsplit('.').next().unwrap_or_default();
-        let text = hash_of("hash", hash).ok().and_then(|hash| shared.get(hash));
+        let text = hash_of("hash", hash).ok().and_then(|hash| common.texts.get(hash));
         if let (Some(reply), Some(text)) = (request.reply, text) {
             let _ = broker.client().publish(reply, pack(text.to_string()).into()).await;
         }

@@ -1,23 +1,21 @@
 //! What the tasks of recent batches share: fetched from the coordinator once.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::broker::Broker;
 use crate::compute::Shared;
+use crate::latest::Latest;
 use crate::names::shared_subject;
 use crate::packing::unpack;
 use crate::wire::{WorkBatch, hex, shared_hash};
 use snakes_lab::run::headless::say;
 
-/// Maximum number of trials and genomes that are kept.
-const CAPACITY: usize = 64;
 /// How long a coordinator may take to answer.
 const ANSWER_WAIT: Duration = Duration::from_secs(3);
 
-/// The trials and genomes that were used last, the latest at the end.
-#[derive(Debug, Default)]
-pub struct SharedCache(Mutex<Vec<(u64, Arc<Shared>)>>);
+/// The trials and genomes that were used last.
+pub type SharedCache = Latest<Arc<Shared>>;
 
 impl SharedCache {
     /// The trial or the genome that the tasks of a batch share, from its coordinator; none if that does not answer, or sends something else.
@@ -44,23 +42,5 @@ impl SharedCache {
                 None
             }
         }
-    }
-
-    /// The text with this hash.
-    pub fn known(&self, hash: u64) -> Option<Arc<Shared>> {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let at = kept.iter().position(|(of, _)| *of == hash)?;
-        let found = kept.remove(at);
-        let shared = Arc::clone(&found.1);
-        kept.push(found);
-        Some(shared)
-    }
-
-    fn keep(&self, hash: u64, shared: Arc<Shared>) {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() >= CAPACITY {
-            kept.remove(0);
-        }
-        kept.push((hash, shared));
     }
 }

@@ -58,20 +58,15 @@ impl Audits {
         self.0.len()
     }
 
-    /// Begins to check what a worker sent; none if the same task is being checked.
-    pub fn start(
-        &mut self,
-        task: AuditTask,
-        worker: &str,
-        line: Arc<str>,
-    ) -> Option<super::LedgerAction> {
+    /// Begins to check what a worker sent. Returns the check to be made; none if this task is being checked.
+    pub fn start(&mut self, task: AuditTask, worker: &str, line: Arc<str>) -> Option<AuditTask> {
         let key = task.task.key;
         if self.0.contains_key(&key) {
             return None;
         }
         let lines = vec![(worker.to_owned(), line)];
         self.0.insert(key, Audit { task: task.clone(), lines });
-        Some(super::LedgerAction::Audit(task))
+        Some(task)
     }
 
     /// The checker of a task answered with this outcome, or not at all.

@@ -6,7 +6,6 @@ use std::time::Instant;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::LedgerAction;
 use crate::hello::{WorkerNotice, own_engine};
 use crate::names::SILENCE;
 use crate::wire::TaskText;
@@ -92,13 +91,8 @@ impl Staff {
         self.0.iter().filter(is_it).map(|(name, _)| name.clone()).collect()
     }
 
-    /// A worker told of itself.
-    pub fn on_notice(
-        &mut self,
-        notice: WorkerNotice,
-        proof: &str,
-        now: Instant,
-    ) -> Vec<LedgerAction> {
+    /// A worker told of itself. Returns lines for the user.
+    pub fn on_notice(&mut self, notice: WorkerNotice, proof: &str, now: Instant) -> Vec<String> {
         let name = notice.worker.clone();
         let is_new = !self.0.contains_key(&name);
         if is_new && self.0.len() >= MOST_MEMBERS {
@@ -107,28 +101,27 @@ impl Staff {
         let is_told = self.0.len() < MOST_TOLD;
         let member = self.0.entry(name.clone()).or_insert_with(|| StaffMember::new(now));
         member.seen = now;
-        let mut actions = Vec::new();
+        let mut lines = Vec::new();
         if notice.proof != proof && member.standing != Standing::Foreign {
             member.standing = Standing::Foreign;
-            actions.push(LedgerAction::Say(format!(
+            lines.push(format!(
                 "worker {name} on {} computes with {}, this run with {}: it gets no work",
                 notice.host,
                 notice.engine_words(),
                 own_engine(proof)
-            )));
+            ));
         } else if is_new && is_told && !notice.leaves {
             let threads = notice.threads;
             let plural = if threads == 1 { "" } else { "s" };
-            let line = format!("worker {name} on {}: {threads} thread{plural}", notice.host);
-            actions.push(LedgerAction::Say(line));
+            lines.push(format!("worker {name} on {}: {threads} thread{plural}", notice.host));
             member.is_told = true;
         }
         let left = notice.leaves && member.notice.as_ref().is_some_and(|before| !before.leaves);
         if left {
-            actions.push(LedgerAction::Say(format!("worker {name} on {} left", notice.host)));
+            lines.push(format!("worker {name} on {} left", notice.host));
         }
         member.notice = Some(notice);
-        actions
+        lines
     }
 
     /// Forgets workers that have been silent for long, but not those that were set aside. Returns for each a line about its

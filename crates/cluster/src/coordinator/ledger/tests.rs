@@ -3,9 +3,8 @@
 use rand::SeedableRng;
 
 use super::*;
+use crate::hello::tests::notice;
 use crate::names::SILENCE;
-use crate::wire::WIRE_FORMAT;
-use snakes_core::{ENGINE_VERSION, Processors};
 use snakes_lab::run::EvaluationResult;
 use std::time::Duration;
 
@@ -13,22 +12,6 @@ const PROOF: &str = "0123456789abcdef";
 
 fn ledger() -> Ledger {
     Ledger::new("run", PROOF, 100_000, 1, ChaCha8Rng::seed_from_u64(1))
-}
-
-fn notice(worker: &str, threads: u32, proof: &str) -> WorkerNotice {
-    WorkerNotice {
-        format: WIRE_FORMAT,
-        worker: worker.to_owned(),
-        host: "computer".to_owned(),
-        engine: ENGINE_VERSION,
-        processors: Processors::THIS,
-        proof: proof.to_owned(),
-        threads,
-        evaluations: 0,
-        per_s: 0.0,
-        redelivered: 0,
-        leaves: false,
-    }
 }
 
 /// The right outcome of a task: a panic whose message is the task.
@@ -425,7 +408,7 @@ fn the_coordinator_s_own_threads_take_tasks_from_the_end() {
     let (key, kind, shared, text) = room.ledger.take_for_local().expect("a task");
     assert_eq!((kind, shared, &*text), (TaskKind::Score, 7, "task 2"));
     let outcome = right(&TaskText { key, text });
-    let actions = room.ledger.on_local(key, outcome);
+    let actions = room.ledger.deliver(key, outcome);
     room.act(actions);
     assert_eq!(room.right_indices(1), [2]);
 }
