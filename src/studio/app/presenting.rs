@@ -9,7 +9,6 @@ use bevy::window::{CursorOptions, MonitorSelection, PrimaryWindow, WindowMode};
 use super::apply::apply;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::scene::camera::rig::CameraRig;
-use crate::studio::scene::camera::setup::CameraSetup;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::following::Following;
@@ -24,7 +23,7 @@ const POINTER_RESTS: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 struct BeforePresenting {
     window_mode: WindowMode,
-    camera: CameraSetup,
+    camera: CameraRig,
     loops: bool,
 }
 
@@ -55,7 +54,7 @@ fn present(
     notices.set_quiet(is_presenting);
     if let Some(BeforePresenting { window_mode, camera, loops }) = before.take() {
         window.mode = window_mode;
-        rig.restore(camera);
+        rig.restore(&camera);
         if playback.loops() != loops {
             playback.toggle_loop();
         }
@@ -63,7 +62,7 @@ fn present(
     }
     *before = Some(BeforePresenting {
         window_mode: window.mode,
-        camera: rig.setup(),
+        camera: rig.clone(),
         loops: playback.loops(),
     });
     window.mode = WindowMode::BorderlessFullscreen(MonitorSelection::Current);

@@ -4,13 +4,12 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::meshes::{BALL_SIDES, to_mesh};
-use super::props::recolor;
+use super::props::themed;
 use super::text::{TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::decimals::decimals;
-use crate::studio::ui::theme::Theme;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
@@ -44,27 +43,17 @@ const CLOTH_HALF_M: f32 = 0.012;
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<BestSoFar>()
         .init_resource::<Cloth>()
-        .add_systems(Update, (look_up, plant).chain().in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+        .add_systems(Update, (look_up, plant).chain().in_set(FrameSet::Draw));
 }
 
 impl FromWorld for Cloth {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let mut material = || {
-            materials.add(StandardMaterial {
-                perceptual_roughness: 0.9,
-                reflectance: 0.1,
-                ..default()
-            })
-        };
-        Self { post: material(), cloth: material() }
+        let dull = StandardMaterial { perceptual_roughness: 0.9, reflectance: 0.1, ..default() };
+        Self {
+            post: themed(world, dull.clone(), |palette| palette.metal),
+            cloth: themed(world, dull, |palette| palette.flag),
+        }
     }
-}
-
-fn dress(theme: Res<Theme>, cloth: Res<Cloth>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let palette = theme.palette();
-    recolor(&mut materials, [(&cloth.post, palette.metal), (&cloth.cloth, palette.flag)]);
 }
 
 /// Reads the best distance from the run's champions.

@@ -4,7 +4,6 @@
 
 pub mod mouse;
 pub mod rig;
-pub mod setup;
 pub mod view;
 
 use bevy::camera::visibility::RenderLayers;

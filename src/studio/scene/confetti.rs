@@ -6,6 +6,7 @@
 use bevy::prelude::*;
 
 use super::landing::{FINISH_M, finish_y_m};
+use super::props::in_scene;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -82,35 +83,19 @@ fn throw(
         let Some(landed_s) = lane.landed_s(now_s) else { continue };
         let since_s = now_s - landed_s;
         if since_s < FLIGHT_S {
-            let stairs = &lane.trial().stairs;
-            draw(
-                stairs,
-                lane.number(),
-                lane.offset(),
-                since_s as f32,
-                theme.palette(),
-                &mut gizmos,
-            );
+            draw(&lane, since_s as f32, theme.palette(), &mut gizmos);
         }
     }
 }
 
 /// Draws the pieces of a lane, some seconds after its landing.
-fn draw(
-    stairs: &Stairs,
-    lane: usize,
-    offset: Vec3,
-    since_s: f32,
-    palette: &Palette,
-    gizmos: &mut Gizmos<Pieces>,
-) {
+fn draw(lane: &Lane, since_s: f32, palette: &Palette, gizmos: &mut Gizmos<Pieces>) {
     let opacity = ((FLIGHT_S as f32 - since_s) / 0.5).clamp(0.0, 1.0);
     for piece in 0..PIECES {
-        let [red, green, blue, _] = palette.lane_color(piece as usize).to_array();
-        let color = Color::srgb_u8(red, green, blue).with_alpha(opacity);
-        let (at, along) = piece_at(stairs, lane, piece, since_s);
-        let half = along * (PIECE_M / 2.0);
-        gizmos.line(offset + at - half, offset + at + half, color);
+        let color = in_scene(palette.lane_color(piece as usize)).with_alpha(opacity);
+        let (at, along) = piece_at(&lane.trial().stairs, lane.number(), piece, since_s);
+        let (at, half) = (lane.offset() + at, along * (PIECE_M / 2.0));
+        gizmos.line(at - half, at + half, color);
     }
 }
 

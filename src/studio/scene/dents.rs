@@ -5,12 +5,11 @@
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 
-use super::meshes::to_mesh;
-use super::props::recolor;
+use super::meshes::to_fading_mesh;
+use super::props::themed;
 use super::surface_look::SurfaceLook;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
 use snakes_core::world::{Pose, Stairs};
 use snakes_lab::mesh::MeshBuilder;
 
@@ -53,22 +52,15 @@ const ABOVE_M: f32 = 0.014;
 const POINTS: usize = 9;
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Patch>()
-        .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+    app.init_resource::<Patch>().add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
 
 impl FromWorld for Patch {
     fn from_world(world: &mut World) -> Self {
         let mesh = world.resource_mut::<Assets<Mesh>>().add(patch());
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let material = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
-        Self { mesh, material: materials.add(material) }
+        let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
+        Self { mesh, material: themed(world, veil, |palette| palette.dent) }
     }
-}
-
-fn dress(theme: Res<Theme>, patch: Res<Patch>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    recolor(&mut materials, [(&patch.material, theme.palette().dent)]);
 }
 
 /// A square of one metre that fades out towards its edges.
@@ -80,17 +72,15 @@ fn patch() -> Mesh {
         let at = Vec2::new(column as f32, row as f32) / CELLS as f32 - Vec2::splat(0.5);
         [at.extend(0.0), Vec3::Z]
     });
-    let color = |at: &Vec3| {
+    to_fading_mesh(solid, |at| {
         // Round at the corners, dark up to half of the way.
         let out = libm::powf(
             libm::powf((at.x * 2.0).abs(), 4.0) + libm::powf((at.y * 2.0).abs(), 4.0),
             0.25,
         );
         let opacity = ((1.0 - out) / 0.5).clamp(0.0, 1.0);
-        [1.0, 1.0, 1.0, opacity * opacity * (3.0 - 2.0 * opacity)]
-    };
-    let colors: Vec<[f32; 4]> = solid.positions.iter().map(color).collect();
-    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+        opacity * opacity * (3.0 - 2.0 * opacity)
+    })
 }
 
 /// Spawns the hidden patches of a new lane with a soft surface.

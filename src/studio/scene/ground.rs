@@ -5,9 +5,7 @@ use bevy::light::NotShadowCaster;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
-use super::props::recolor;
-use crate::studio::schedule::FrameSet;
-use crate::studio::ui::theme::Theme;
+use super::props::themed;
 
 /// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of this one.
 const GROUND_HALF_M: f32 = 600.0;
@@ -26,26 +24,18 @@ struct Earth {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Earth>()
-        .add_systems(Startup, set_up)
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+    app.init_resource::<Earth>().add_systems(Startup, set_up);
 }
 
 impl FromWorld for Earth {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let ground = materials.add(StandardMaterial {
-            perceptual_roughness: 1.0,
-            reflectance: 0.1,
-            ..default()
-        });
-        let grid = materials.add(StandardMaterial {
-            unlit: true,
-            // The grid is translucent, so that a line in the shadow is darker than the shadow.
-            alpha_mode: AlphaMode::Blend,
-            ..default()
-        });
-        Self { ground, grid }
+        let dull = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.1, ..default() };
+        // The grid is translucent, so that a line in the shadow is darker than the shadow.
+        let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
+        Self {
+            ground: themed(world, dull, |palette| palette.ground),
+            grid: themed(world, veil, |palette| palette.grid),
+        }
     }
 }
 
@@ -54,11 +44,6 @@ fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<E
     // The ground has nothing below it to shade. As a caster it would draw saw-teeth along the foot of every wall.
     commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone()), NotShadowCaster));
     commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(earth.grid.clone())));
-}
-
-fn dress(theme: Res<Theme>, earth: Res<Earth>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let palette = theme.palette();
-    recolor(&mut materials, [(&earth.ground, palette.ground), (&earth.grid, palette.grid)]);
 }
 
 /// Lines on the ground, one tread apart in both directions, which make distances visible. The grid fades out towards

@@ -7,11 +7,11 @@
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
+use super::cache::SceneCache;
 use super::meshes::{BALL_SIDES, to_mesh};
-use super::props::recolor;
+use super::props::themed;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
 use snakes_core::schema::PerPart;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
@@ -50,48 +50,26 @@ struct Fittings {
     white: Handle<StandardMaterial>,
 }
 
-/// The meshes of the last stairs that were built.
-#[derive(Debug, Default)]
-struct LastFittings(Option<(Stairs, [Handle<Mesh>; 3])>);
-
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Fittings>()
-        .add_systems(Update, build.in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+    app.init_resource::<Fittings>().add_systems(Update, build.in_set(FrameSet::Draw));
 }
 
 impl FromWorld for Fittings {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let mut material = || {
-            let (perceptual_roughness, reflectance) = (0.8, 0.2);
-            materials.add(StandardMaterial { perceptual_roughness, reflectance, ..default() })
-        };
-        Self { wood: material(), wall: material(), white: material() }
+        let dull = StandardMaterial { perceptual_roughness: 0.8, reflectance: 0.2, ..default() };
+        Self {
+            wood: themed(world, dull.clone(), |palette| palette.wood),
+            wall: themed(world, dull.clone(), |palette| palette.wall),
+            white: themed(world, dull, |palette| palette.white),
+        }
     }
-}
-
-fn dress(
-    theme: Res<Theme>,
-    fittings: Res<Fittings>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let palette = theme.palette();
-    recolor(
-        &mut materials,
-        [
-            (&fittings.wood, palette.wood),
-            (&fittings.wall, palette.wall),
-            (&fittings.white, palette.white),
-        ],
-    );
 }
 
 /// Spawns the fittings of a new lane.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     fittings: Res<Fittings>,
-    mut last: Local<LastFittings>,
+    mut last: Local<SceneCache<Stairs, [Handle<Mesh>; 3]>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
@@ -100,12 +78,9 @@ fn build(
         if stairs.steps == 0 {
             continue;
         }
-        let [wood, wall, cheques] = match &last.0 {
-            Some((of, meshes)) if of == stairs => meshes.clone(),
-            _ => [railing(stairs), wall(stairs), cheques(stairs)]
-                .map(|solid| meshes.add(to_mesh(solid))),
-        };
-        last.0 = Some((stairs.clone(), [wood.clone(), wall.clone(), cheques.clone()]));
+        let [wood, wall, cheques] = last.get(stairs, 1, || {
+            [railing(stairs), wall(stairs), cheques(stairs)].map(|solid| meshes.add(to_mesh(solid)))
+        });
         commands.entity(entity).with_children(|parent| {
             parent.spawn((Mesh3d(wood), MeshMaterial3d(fittings.wood.clone())));
             parent.spawn((Mesh3d(wall), MeshMaterial3d(fittings.wall.clone())));

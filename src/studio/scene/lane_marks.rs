@@ -4,11 +4,11 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::meshes::to_mesh;
-use super::props::recolor;
+use super::props::{in_scene, themed};
 use super::stairs::{STRIP_ASIDE_M, strip_y_m};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
+use crate::studio::ui::theme::Palette;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
@@ -30,15 +30,17 @@ const STRIPE_HEIGHT_M: f32 = 0.013;
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<LaneColors>()
         .add_systems(Update, build.in_set(FrameSet::Draw))
-        .add_systems(PostUpdate, show.before(TransformSystems::Propagate))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+        .add_systems(PostUpdate, show.before(TransformSystems::Propagate));
 }
 
 impl FromWorld for LaneColors {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         let plain = StandardMaterial { perceptual_roughness: 0.7, reflectance: 0.2, ..default() };
-        Self((0..COLORS).map(|_| materials.add(plain.clone())).collect())
+        let material = |number| {
+            let color = move |palette: &Palette| in_scene(palette.lane_color(number));
+            themed(world, plain.clone(), color)
+        };
+        Self((0..COLORS).map(material).collect())
     }
 }
 
@@ -47,18 +49,6 @@ impl LaneColors {
     pub fn of(&self, number: usize) -> Handle<StandardMaterial> {
         self.0[number % self.0.len()].clone()
     }
-}
-
-fn dress(
-    theme: Res<Theme>,
-    colors: Res<LaneColors>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let of_lane = |(number, handle)| {
-        let [red, green, blue, _] = theme.palette().lane_color(number).to_array();
-        (handle, Color::srgb_u8(red, green, blue))
-    };
-    recolor(&mut materials, colors.0.iter().enumerate().map(of_lane));
 }
 
 /// Spawns the stripes of a new lane.

@@ -21,6 +21,13 @@ pub(crate) fn to_mesh(solid: MeshBuilder) -> Mesh {
         .with_inserted_indices(Indices::U32(solid.indices))
 }
 
+/// The mesh of a body with an opacity at each vertex, which depends on its place.
+pub(crate) fn to_fading_mesh(solid: MeshBuilder, opacity: impl Fn(&Vec3) -> f32) -> Mesh {
+    let color = |at: &Vec3| [1.0, 1.0, 1.0, opacity(at)];
+    let colors: Vec<[f32; 4]> = solid.positions.iter().map(color).collect();
+    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+}
+
 /// A mesh each of whose vertices follows the two bones next to it, by their distances along y. `bones_m` has the bones'
 /// places on the y axis at rest, in metres, the highest first.
 pub(crate) fn to_mesh_along(solid: MeshBuilder, bones_m: &[f32]) -> Mesh {

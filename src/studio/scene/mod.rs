@@ -1,6 +1,7 @@
 //! The scene: its light. Each other part is in a file of its own. All colours come from the theme.
 
 pub mod best_flag;
+mod cache;
 pub mod camera;
 pub mod confetti;
 pub mod dents;
@@ -9,6 +10,7 @@ pub mod landing;
 pub mod lane_marks;
 pub mod limb;
 pub mod meshes;
+mod mipmaps;
 pub mod name_tags;
 pub mod overlays;
 pub mod props;
@@ -33,7 +35,7 @@ use bevy::render::renderer::RenderAdapterInfo;
 use super::schedule::FrameSet;
 use super::ui::theme::Theme;
 
-use props::{Props, recolor};
+use props::Props;
 use quality::Quality;
 
 /// The scene of the window: all that is drawn, with the camera and the mouse.
@@ -68,7 +70,10 @@ pub(super) fn drawing(app: &mut App) {
         .add_plugins((snake::plugin, overlays::plugin))
         .add_systems(Startup, set_up)
         .add_systems(Update, fit_shadows.in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+        .add_systems(
+            Update,
+            (dress, props::recolor).in_set(FrameSet::Draw).run_if(resource_changed::<Theme>),
+        );
 }
 
 /// Ratio of the shadows' reach to the distance of the camera's target, so that they cover its surroundings.
@@ -77,9 +82,6 @@ const SHADOWS_BEYOND: f32 = 1.7;
 const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
 /// Ratio between steps of the shadows' reach. Steps keep shadows from crawling while the camera moves.
 const SHADOW_STEP: f32 = 1.3;
-
-/// Opacity of a ghost's limbs.
-const GHOST_ALPHA: f32 = 0.18;
 
 fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
     let size = Quality::for_adapter(&adapter).shadow_map_pixels;
@@ -125,25 +127,14 @@ fn shadows_end_m(camera: &Transform) -> f32 {
     nearest_m * libm::powf(SHADOW_STEP, steps)
 }
 
-/// Applies the colours of the theme.
+/// Applies the theme to light and fog.
 fn dress(
     theme: Res<Theme>,
-    props: Res<Props>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
     mut suns: Query<&mut DirectionalLight>,
     mut fogs: Query<&mut DistanceFog>,
     mut commands: Commands,
 ) {
     let palette = theme.palette();
-    recolor(
-        &mut materials,
-        [
-            (&props.red, palette.red_limb),
-            (&props.blue, palette.blue_limb),
-            (&props.red_ghost, palette.red_limb.with_alpha(GHOST_ALPHA)),
-            (&props.blue_ghost, palette.blue_limb.with_alpha(GHOST_ALPHA)),
-        ],
-    );
     for mut sun in &mut suns {
         sun.color = palette.sun;
         sun.illuminance = palette.sun_lux;

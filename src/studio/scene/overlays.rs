@@ -1,8 +1,8 @@
 //! Overlays of the scene: forces, torques, trail, fitness line.
 
 use bevy::prelude::*;
-use bevy_egui::egui::Color32;
 
+use super::props::in_scene;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -203,12 +203,6 @@ fn bent_arrow(
     // The head is wider than the lines.
     let tip_m = 0.16 + lines as f32 * LINES_APART_M;
     gizmos.arrow(before, end, color).with_tip_length(tip_m);
-}
-
-/// Converts a panel colour for the scene.
-fn in_scene(color: Color32) -> Color {
-    let [red, green, blue, _] = color.to_array();
-    Color::srgb_u8(red, green, blue)
 }
 
 /// Middle of the fitness line, in the coordinates of its lane, in metres.

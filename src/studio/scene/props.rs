@@ -1,7 +1,51 @@
-//! Meshes and materials that the parts of the scene share.
+//! Meshes and materials that the parts of the scene share, and colours of the theme.
 
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
+use bevy_egui::egui::Color32;
+
+use crate::studio::ui::theme::{Palette, Theme};
+
+/// Materials whose colours follow the theme, each with its colour.
+#[derive(Resource, Default)]
+pub(crate) struct ThemedMaterials(Vec<(Handle<StandardMaterial>, Box<ColorOfTheme>)>);
+
+/// The colour of a material in a theme.
+type ColorOfTheme = dyn Fn(&Palette) -> Color + Send + Sync;
+
+/// Adds a material whose colour follows the theme.
+pub(crate) fn themed(
+    world: &mut World,
+    material: StandardMaterial,
+    color: impl Fn(&Palette) -> Color + Send + Sync + 'static,
+) -> Handle<StandardMaterial> {
+    let handle = world.resource_mut::<Assets<StandardMaterial>>().add(material);
+    let mut themed = world.get_resource_or_init::<ThemedMaterials>();
+    themed.0.push((handle.clone(), Box::new(color)));
+    handle
+}
+
+/// Gives the materials the colours of the theme.
+pub(super) fn recolor(
+    theme: Res<Theme>,
+    themed: Res<ThemedMaterials>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+) {
+    for (handle, color) in &themed.0 {
+        if let Some(mut material) = materials.get_mut(handle) {
+            material.base_color = color(theme.palette());
+        }
+    }
+}
+
+/// A colour of the panels for the scene.
+pub(crate) fn in_scene(color: Color32) -> Color {
+    let [red, green, blue, _] = color.to_array();
+    Color::srgb_u8(red, green, blue)
+}
+
+/// Opacity of a ghost's limbs.
+const GHOST_ALPHA: f32 = 0.18;
 
 /// Shared meshes and materials.
 #[derive(Resource, Debug)]
@@ -14,7 +58,7 @@ pub(crate) struct Props {
     pub blue: Handle<StandardMaterial>,
     /// The cube for ghosts: its faces have their own brightness, because the materials of ghosts have no light.
     pub ghost_cube: Handle<Mesh>,
-    /// The same materials for ghosts, translucent. Where thirty ghosts overlap, each pixel is drawn a hundred times, which
+    /// Materials of the limbs of ghosts, translucent. Where thirty ghosts overlap, each pixel is drawn a hundred times, which
     /// has to be cheap.
     pub red_ghost: Handle<StandardMaterial>,
     pub blue_ghost: Handle<StandardMaterial>,
@@ -25,22 +69,17 @@ impl FromWorld for Props {
         let mut meshes = world.resource_mut::<Assets<Mesh>>();
         let [cube, ghost_cube] =
             [Cuboid::from_length(1.0).mesh().build(), shaded_cube()].map(|mesh| meshes.add(mesh));
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        // The theme sets the colours.
-        let mut material = |alpha_mode| {
-            // Little reflectance keeps the red and the blue of the report under a bright sky.
-            let (perceptual_roughness, reflectance) = (0.5, 0.25);
-            materials.add(StandardMaterial {
-                perceptual_roughness,
-                reflectance,
-                alpha_mode,
-                unlit: alpha_mode != AlphaMode::Opaque,
-                ..default()
-            })
-        };
-        let [red, blue] = [AlphaMode::Opaque; 2].map(&mut material);
-        let [red_ghost, blue_ghost] = [AlphaMode::Blend; 2].map(&mut material);
-        Self { cube, red, blue, ghost_cube, red_ghost, blue_ghost }
+        // Little reflectance keeps the red and the blue of the report under a bright sky.
+        let limb = StandardMaterial { perceptual_roughness: 0.5, reflectance: 0.25, ..default() };
+        let ghost = StandardMaterial { alpha_mode: AlphaMode::Blend, unlit: true, ..limb.clone() };
+        Self {
+            cube,
+            red: themed(world, limb.clone(), |palette| palette.red_limb),
+            blue: themed(world, limb, |palette| palette.blue_limb),
+            ghost_cube,
+            red_ghost: themed(world, ghost.clone(), |of| of.red_limb.with_alpha(GHOST_ALPHA)),
+            blue_ghost: themed(world, ghost, |of| of.blue_limb.with_alpha(GHOST_ALPHA)),
+        }
     }
 }
 
@@ -54,18 +93,6 @@ fn shaded_cube() -> Mesh {
     };
     let colors: Vec<[f32; 4]> = normals.unwrap_or_default().iter().map(shade).collect();
     mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
-}
-
-/// Gives materials the colours of the theme.
-pub(crate) fn recolor<'h>(
-    materials: &mut Assets<StandardMaterial>,
-    colors: impl IntoIterator<Item = (&'h Handle<StandardMaterial>, Color)>,
-) {
-    for (handle, color) in colors {
-        if let Some(mut material) = materials.get_mut(handle) {
-            material.base_color = color;
-        }
-    }
 }
 
 /// A transform that scales the unit cube to a box.

@@ -7,12 +7,12 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 
+use super::cache::SceneCache;
 use super::lane_marks::{LaneColors, LaneMark};
 use super::limb::LimbShape;
-use super::props::{Props, recolor};
+use super::props::{Props, themed};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
 use snakes_core::world::{JointPlan, Pose};
 
 /// Index of a part in its lane's snake.
@@ -30,9 +30,9 @@ struct LimbMeshes {
     bind_poses: Handle<SkinnedMeshInverseBindposes>,
 }
 
-/// Cache of meshes by shape, shared by snakes of the same build.
+/// Meshes by shape, shared by snakes of the same build.
 #[derive(Resource, Debug, Default)]
-struct Shapes(Vec<(LimbShape, LimbMeshes)>);
+struct Shapes(SceneCache<LimbShape, LimbMeshes>);
 
 /// Materials of the limbs' details.
 #[derive(Resource, Debug)]
@@ -44,48 +44,21 @@ struct Trim {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Shapes>()
         .init_resource::<Trim>()
-        .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+        .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
 
 /// Maximum number of cached shapes. Tuning a snake's size creates many.
 const MAX_SHAPES: usize = 64;
 
-impl Shapes {
-    fn of(
-        &mut self,
-        shape: LimbShape,
-        meshes: &mut Assets<Mesh>,
-        bind_poses: &mut Assets<SkinnedMeshInverseBindposes>,
-    ) -> LimbMeshes {
-        if let Some((_, known)) = self.0.iter().find(|(of, _)| *of == shape) {
-            return known.clone();
-        }
-        if self.0.len() == MAX_SHAPES {
-            self.0.remove(0);
-        }
-        let [block, white, dark, collar] =
-            [shape.block(), shape.white(), shape.dark(), shape.collar()]
-                .map(|solid| meshes.add(shape.mesh_of(solid)));
-        let bind_poses = bind_poses.add(shape.bind_poses());
-        let new = LimbMeshes { block, white, dark, collar, bind_poses };
-        self.0.push((shape, new.clone()));
-        new
-    }
-}
-
 impl FromWorld for Trim {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         let white = StandardMaterial { perceptual_roughness: 0.4, ..default() };
         let dark = StandardMaterial { perceptual_roughness: 0.35, metallic: 0.4, ..default() };
-        Self { white: materials.add(white), dark: materials.add(dark) }
+        Self {
+            white: themed(world, white, |palette| palette.white),
+            dark: themed(world, dark, |palette| palette.metal),
+        }
     }
-}
-
-fn dress(theme: Res<Theme>, trim: Res<Trim>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let palette = theme.palette();
-    recolor(&mut materials, [(&trim.white, palette.white), (&trim.dark, palette.metal)]);
 }
 
 /// Spawns the limbs of a new lane.
@@ -137,7 +110,13 @@ fn build(
                 has_own_hinge: body.is_branching() && body.joint_before(limb).is_some_and(bends),
                 parts: parts.len(),
             };
-            let shapes = shapes.of(shape, &mut meshes, &mut bind_poses);
+            let shapes = shapes.0.get(&shape, MAX_SHAPES, || {
+                let [block, white, dark, collar] =
+                    [shape.block(), shape.white(), shape.dark(), shape.collar()]
+                        .map(|solid| meshes.add(shape.mesh_of(solid)));
+                let bind_poses = bind_poses.add(shape.bind_poses());
+                LimbMeshes { block, white, dark, collar, bind_poses }
+            });
             // A rigid limb's meshes are its part's; those of a soft limb follow all of its parts, wherever their own place is.
             let joints = bones.clone();
             let skin = (bones.len() > 1).then(|| {
@@ -197,7 +176,6 @@ mod tests {
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()
             .init_resource::<Assets<SkinnedMeshInverseBindposes>>()
-            .init_resource::<Theme>()
             .init_resource::<Props>()
             .init_resource::<LaneColors>()
             .add_plugins(plugin);

@@ -4,6 +4,7 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 use bevy::render::render_resource::Face;
 
+use super::cache::SceneCache;
 use super::meshes::to_tiled_mesh;
 use super::surface_material::SurfaceMaterials;
 use super::surface_texture::TILE_M;
@@ -28,10 +29,6 @@ const OTHER_STEP: f32 = 0.86;
 #[derive(Resource, Debug)]
 struct Caster(Handle<StandardMaterial>);
 
-/// The meshes of the last stairs that were built: lanes side by side mostly have the same.
-#[derive(Debug, Default)]
-struct LastStairs(Option<(Stairs, Handle<Mesh>)>);
-
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Caster>().add_systems(Update, build.in_set(FrameSet::Draw));
 }
@@ -51,7 +48,7 @@ fn build(
     theme: Res<Theme>,
     caster: Res<Caster>,
     mut surfaces: ResMut<SurfaceMaterials>,
-    mut last: Local<LastStairs>,
+    mut last: Local<SceneCache<Stairs, Handle<Mesh>>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut images: ResMut<Assets<Image>>,
@@ -71,11 +68,9 @@ fn build(
         if trial.stairs.steps == 0 {
             continue;
         }
-        let mesh = match &last.0 {
-            Some((stairs, mesh)) if *stairs == trial.stairs => mesh.clone(),
-            _ => meshes.add(to_tiled_mesh(solid(&trial.stairs), TILE_M)),
-        };
-        last.0 = Some((trial.stairs.clone(), mesh.clone()));
+        // Lanes side by side mostly have the same stairs.
+        let mesh =
+            last.get(&trial.stairs, 1, || meshes.add(to_tiled_mesh(solid(&trial.stairs), TILE_M)));
         commands.entity(entity).with_children(|parent| {
             parent.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(on_stairs), NotShadowCaster));
             parent.spawn((Mesh3d(mesh), MeshMaterial3d(caster.0.clone()), NotShadowReceiver));

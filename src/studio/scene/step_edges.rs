@@ -5,11 +5,10 @@ use std::f32::consts::PI;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::meshes::to_mesh;
-use super::props::{Props, box_transform, recolor};
+use super::meshes::{to_fading_mesh, to_mesh};
+use super::props::{Props, box_transform, themed};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
@@ -40,31 +39,20 @@ const GLOW_ON_NOSING_M: f32 = 0.1;
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Strips>()
-        .add_systems(Update, (build, light).chain().in_set(FrameSet::Draw))
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+        .add_systems(Update, (build, light).chain().in_set(FrameSet::Draw));
 }
 
 impl FromWorld for Strips {
     fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
         let dark = StandardMaterial { perceptual_roughness: 0.8, ..default() };
         let lit = StandardMaterial { unlit: true, ..default() };
-        let glow = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
-        let [dark, lit, glow] = [dark, lit, glow].map(|material| materials.add(material));
-        Self { dark, lit, glow }
+        let glow = StandardMaterial { alpha_mode: AlphaMode::Blend, ..lit.clone() };
+        Self {
+            dark: themed(world, dark, |palette| palette.step_edge),
+            lit: themed(world, lit, |palette| palette.step_edge_lit),
+            glow: themed(world, glow, |palette| palette.step_edge_lit),
+        }
     }
-}
-
-fn dress(theme: Res<Theme>, strips: Res<Strips>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let palette = theme.palette();
-    recolor(
-        &mut materials,
-        [
-            (&strips.dark, palette.step_edge),
-            (&strips.lit, palette.step_edge_lit),
-            (&strips.glow, palette.step_edge_lit),
-        ],
-    );
 }
 
 /// Spawns the strips of a new lane.
@@ -129,10 +117,7 @@ fn glow(stairs: &Stairs) -> Mesh {
     let out_m = OUT_M / 2.0;
     solid.sheet(Vec3::new(0.0, back_m / 2.0, out_m), half, Vec3::Y * back_m / 2.0);
     solid.sheet(Vec3::new(0.0, -out_m, -down_m / 2.0), half, Vec3::Z * down_m / 2.0);
-    let opacity = |at: &Vec3| if at.y > out_m || at.z < -out_m { 0.0 } else { GLOW_OPACITY };
-    let colors: Vec<[f32; 4]> =
-        solid.positions.iter().map(|at| [1.0, 1.0, 1.0, opacity(at)]).collect();
-    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    to_fading_mesh(solid, |at| if at.y > out_m || at.z < -out_m { 0.0 } else { GLOW_OPACITY })
 }
 
 /// Opacity of the glow at the edge.

@@ -2,6 +2,7 @@
 
 use bevy::prelude::*;
 
+use super::cache::SceneCache;
 use super::surface_look::SurfaceLook;
 use super::surface_texture::Grain;
 use crate::studio::schedule::FrameSet;
@@ -11,8 +12,8 @@ use snakes_core::world::Surface;
 /// Cache of materials and textures by their look.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SurfaceMaterials {
-    materials: Vec<(SurfaceLook, Handle<StandardMaterial>)>,
-    textures: Vec<(Grain, Handle<Image>)>,
+    materials: SceneCache<[u8; 11], (SurfaceLook, Handle<StandardMaterial>)>,
+    textures: SceneCache<Grain, Handle<Image>>,
 }
 
 /// Maximum number of cached materials and textures: more than lanes show at once. A slider that is dragged makes many.
@@ -33,36 +34,20 @@ impl SurfaceMaterials {
         images: &mut Assets<Image>,
     ) -> Handle<StandardMaterial> {
         let look = SurfaceLook::of(surface);
-        let key = look.key();
-        if let Some((_, known)) = self.materials.iter().find(|(of, _)| of.key() == key) {
-            return known.clone();
-        }
-        let texture = self.texture(Grain::from(&look), images);
-        let material = materials.add(StandardMaterial {
-            base_color: look.tint(theme.palette()),
-            base_color_texture: Some(texture),
-            // Zero is a mirror, whose highlight is smaller than a pixel.
-            perceptual_roughness: look.roughness.max(0.08),
-            reflectance: look.gloss,
-            ..default()
+        let (_, material) = self.materials.get(&look.key(), MAX_CACHED, || {
+            let grain = Grain::from(&look);
+            let texture = self.textures.get(&grain, MAX_CACHED, || images.add(grain.draw()));
+            let material = materials.add(StandardMaterial {
+                base_color: look.tint(theme.palette()),
+                base_color_texture: Some(texture),
+                // Zero is a mirror, whose highlight is smaller than a pixel.
+                perceptual_roughness: look.roughness.max(0.08),
+                reflectance: look.gloss,
+                ..default()
+            });
+            (look, material)
         });
-        if self.materials.len() == MAX_CACHED {
-            self.materials.remove(0);
-        }
-        self.materials.push((look, material.clone()));
         material
-    }
-
-    fn texture(&mut self, grain: Grain, images: &mut Assets<Image>) -> Handle<Image> {
-        if let Some((_, known)) = self.textures.iter().find(|(of, _)| *of == grain) {
-            return known.clone();
-        }
-        if self.textures.len() == MAX_CACHED {
-            self.textures.remove(0);
-        }
-        let new = images.add(grain.draw());
-        self.textures.push((grain, new.clone()));
-        new
     }
 }
 
@@ -72,7 +57,7 @@ fn dress(
     surfaces: Res<SurfaceMaterials>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    for (look, handle) in &surfaces.materials {
+    for (look, handle) in surfaces.materials.values() {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color = look.tint(theme.palette());
         }
@@ -95,6 +80,7 @@ mod tests {
         assert_ne!(of(1.0), of(0.1));
         let seen: Vec<_> = (0..400).map(|part| of(0.02 + part as f32 * 0.4)).collect();
         assert_ne!(seen[0], seen[399]);
-        assert!(surfaces.materials.len() <= MAX_CACHED && surfaces.textures.len() <= MAX_CACHED);
+        assert!(surfaces.materials.values().count() <= MAX_CACHED);
+        assert!(surfaces.textures.values().count() <= MAX_CACHED);
     }
 }

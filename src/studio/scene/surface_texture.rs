@@ -3,11 +3,11 @@
 //! A texture only darkens the colour of its material, as a factor in linear light. All of its shapes are several pixels wide and it has mipmaps, so
 //! that nothing shimmers in the distance. It is the same for the same look on every machine.
 
-use bevy::asset::RenderAssetUsages;
-use bevy::image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::image::{ImageAddressMode, ImageFilterMode, ImageSamplerDescriptor};
 use bevy::prelude::*;
-use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy::render::render_resource::TextureFormat;
 
+use super::mipmaps::Channel;
 use super::surface_look::{SurfaceLook, mix};
 
 /// Side of the square that a texture covers, in metres.
@@ -74,40 +74,9 @@ impl Grain {
 
     /// Draws the texture with all its mipmaps.
     pub fn draw(self) -> Image {
-        let mut level: Vec<f32> =
-            (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE)).collect();
-        let (mut data, mut side, mut levels) = (Vec::new(), SIDE, 0);
-        loop {
-            levels += 1;
-            data.extend(level.iter().flat_map(|value| {
-                let gray = (value * 255.0).round() as u8;
-                [gray, gray, gray, u8::MAX]
-            }));
-            if side == 1 {
-                break;
-            }
-            let half = side / 2;
-            level = (0..half * half)
-                .map(|at| {
-                    let first = at / half * 2 * side + at % half * 2;
-                    (level[first]
-                        + level[first + 1]
-                        + level[first + side]
-                        + level[first + side + 1])
-                        / 4.0
-                })
-                .collect();
-            side = half;
-        }
-        let mut image = Image::new_uninit(
-            Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: 1 },
-            TextureDimension::D2,
-            TextureFormat::Rgba8Unorm,
-            RenderAssetUsages::RENDER_WORLD,
-        );
-        image.texture_descriptor.mip_level_count = levels;
-        image.data = Some(data);
-        image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        let values = (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE));
+        let brightness = Channel { width: SIDE, values: values.collect() };
+        let sampler = ImageSamplerDescriptor {
             address_mode_u: ImageAddressMode::Repeat,
             address_mode_v: ImageAddressMode::Repeat,
             mag_filter: ImageFilterMode::Linear,
@@ -115,8 +84,9 @@ impl Grain {
             mipmap_filter: ImageFilterMode::Linear,
             anisotropy_clamp: 4,
             ..default()
-        });
-        image
+        };
+        let pixel = |gray| [gray, gray, gray, u8::MAX];
+        brightness.into_image(SIDE.ilog2() + 1, TextureFormat::Rgba8Unorm, sampler, pixel)
     }
 }
 

@@ -8,9 +8,7 @@ mod atlas;
 use bevy::prelude::*;
 
 use super::meshes::to_mesh;
-use super::props::recolor;
-use crate::studio::schedule::FrameSet;
-use crate::studio::ui::theme::Theme;
+use super::props::themed;
 use snakes_lab::mesh::MeshBuilder;
 
 use atlas::{Atlas, BASELINE, CELL, MARGIN};
@@ -26,37 +24,25 @@ pub(crate) struct TextMeshes {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<TextMeshes>()
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
+    app.init_resource::<TextMeshes>();
 }
 
 impl FromWorld for TextMeshes {
     fn from_world(world: &mut World) -> Self {
         let (atlas, picture) = Atlas::draw();
         let picture = world.resource_mut::<Assets<Image>>().add(picture);
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        let mut paint = || {
-            materials.add(StandardMaterial {
-                base_color_texture: Some(picture.clone()),
-                unlit: true,
-                alpha_mode: AlphaMode::Blend,
-                ..default()
-            })
+        let letters = StandardMaterial {
+            base_color_texture: Some(picture),
+            unlit: true,
+            alpha_mode: AlphaMode::Blend,
+            ..default()
         };
-        Self { atlas, paint: paint(), on_flag: paint() }
+        Self {
+            atlas,
+            paint: themed(world, letters.clone(), |palette| palette.paint),
+            on_flag: themed(world, letters, |palette| palette.flag_text),
+        }
     }
-}
-
-fn dress(
-    theme: Res<Theme>,
-    lettering: Res<TextMeshes>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let palette = theme.palette();
-    recolor(
-        &mut materials,
-        [(&lettering.paint, palette.paint), (&lettering.on_flag, palette.flag_text)],
-    );
 }
 
 /// Builds one mesh from several texts.
@@ -121,12 +107,10 @@ impl TextMeshBuilder<'_> {
     /// Adds a rectangle in the plane of a place, with a part of the atlas, whose y runs downwards.
     fn rectangle(&mut self, on_plane: Rect, part: Rect, place: TextPlacement) {
         let TextPlacement { middle, right, up } = place;
-        let (x, y) = ([on_plane.min.x, on_plane.max.x], [on_plane.min.y, on_plane.max.y]);
-        self.solid.patch(1, 1, |column, row| {
-            [middle + right * x[column] + up * y[row], right.cross(*up)]
-        });
-        let (u, v) = ([part.min.x, part.max.x], [part.max.y, part.min.y]);
-        self.uvs.extend(v.into_iter().flat_map(|v| u.map(|u| [u, v])));
+        let (at, half) = (on_plane.center(), on_plane.half_size());
+        self.solid.sheet(middle + right * at.x + up * at.y, right * half.x, up * half.y);
+        let Rect { min, max } = part;
+        self.uvs.extend([[min.x, max.y], [max.x, max.y], [min.x, min.y], [max.x, min.y]]);
         self.colors.extend([[1.0, 1.0, 1.0, self.opacity]; 4]);
     }
 

@@ -11,7 +11,7 @@ const FOCUS_M: f32 = 12.0;
 const TURNED_RAD: f32 = 0.05;
 
 /// State of the camera.
-#[derive(Resource, Debug)]
+#[derive(Resource, Debug, Clone)]
 pub(crate) struct CameraRig {
     pub(super) camera_mode: CameraMode,
     /// The target view.
@@ -61,6 +61,21 @@ impl CameraRig {
         } else {
             // The free camera keeps its current view.
             self.view = self.shown;
+        }
+    }
+
+    /// Returns to an earlier mode and view, after the presenting mode has moved the camera by itself. If the stage has one lane
+    /// instead of several meanwhile, or the other way round, only the mode comes back, because the view would not suit them.
+    pub fn restore(&mut self, before: &Self) {
+        self.take(before.camera_mode);
+        let is_free = before.camera_mode == CameraMode::Free;
+        if !is_free && (before.lanes > 1) != (self.lanes > 1) {
+            return;
+        }
+        (self.view, self.shown, self.lane) = (before.view, before.view, before.lane);
+        if is_free {
+            // A free camera stands where it stood; a following one is with its snake at once.
+            self.anchor = before.anchor;
         }
     }
 
@@ -115,6 +130,33 @@ impl CameraRig {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_free_camera_comes_back_to_its_place() {
+        let mut rig = CameraRig { anchor: Some(Vec3::new(0.0, -7.0, 0.5)), ..CameraRig::default() };
+        rig.take(CameraMode::Free);
+        rig.view.yaw_rad = 0.3;
+        rig.shown = rig.view;
+        let (before, place) = (rig.clone(), rig.place());
+        rig.take(CameraMode::Follow);
+        rig.anchor = Some(Vec3::new(0.0, 20.0, 5.0));
+        rig.restore(&before);
+        assert_eq!((rig.place(), rig.camera_mode()), (place, CameraMode::Free));
+        assert!(!rig.follows);
+    }
+
+    #[test]
+    fn a_turned_camera_follows_again_with_the_same_view_unless_other_lanes_are_on_stage() {
+        let mut rig = CameraRig::default();
+        rig.view.yaw_rad = 0.3;
+        let before = rig.clone();
+        rig.take(CameraMode::Follow);
+        rig.restore(&before);
+        assert_eq!(rig.view, before.view);
+        rig.lanes = 3;
+        rig.restore(&before);
+        assert_eq!(rig.view, CameraView::of(CameraMode::Follow, 3));
+    }
 
     #[test]
     fn a_view_turned_by_hand_is_no_longer_the_one_from_the_side_or_from_above() {

@@ -1,10 +1,11 @@
 //! The texture with all characters.
 
 use ab_glyph::{Font, FontRef, GlyphId, ScaleFont};
-use bevy::asset::RenderAssetUsages;
-use bevy::image::{ImageFilterMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::image::{ImageFilterMode, ImageSamplerDescriptor};
 use bevy::prelude::*;
-use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy::render::render_resource::TextureFormat;
+
+use crate::studio::scene::mipmaps::Channel;
 
 /// Side length of a character's cell, in pixels.
 pub const CELL: f32 = CELL_PIXELS as f32;
@@ -23,7 +24,7 @@ const FONT_PIXELS: f32 = 52.0;
 /// Extra boldness in pixels on all sides. The panels' font is too light for paint on the ground.
 const BOLDER: f32 = 1.7;
 /// Number of mipmaps. In the last one a cell has four pixels; with more, neighbours would blend.
-const SIZES: usize = 5;
+const SIZES: u32 = 5;
 
 /// Metrics of the atlas.
 #[derive(Debug, Clone)]
@@ -33,17 +34,11 @@ pub struct Atlas {
     digit_height: f32,
 }
 
-/// Coverage of each pixel.
-struct Coverage {
-    width: usize,
-    pixels: Vec<f32>,
-}
-
 impl Atlas {
     /// Renders the atlas.
     pub fn draw() -> (Self, Image) {
         let (width, height) = (COLUMNS * CELL_PIXELS, ROWS * CELL_PIXELS);
-        let mut all = Coverage { width, pixels: vec![0.0; width * height] };
+        let mut all = Channel { width, values: vec![0.0; width * height] };
         let mut atlas = Self { advances: vec![0.0; COLUMNS * ROWS], digit_height: FONT_PIXELS };
         // The font is part of the program, and a test checks it.
         if let Ok(font) = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT) {
@@ -53,11 +48,19 @@ impl Atlas {
             for (index, letter) in (FIRST..LAST).enumerate() {
                 let letter = font.glyph_id(char::from(letter as u8));
                 atlas.advances[index] = font.h_advance(letter) + BOLDER;
-                all.put(index, &letter_alone(font.font(), letter));
+                put(&mut all, index, &letter_alone(font.font(), letter));
             }
         }
-        all.put(LAST - FIRST, &[1.0; CELL_PIXELS * CELL_PIXELS]);
-        (atlas, all.into_image())
+        put(&mut all, LAST - FIRST, &[1.0; CELL_PIXELS * CELL_PIXELS]);
+        let sampler = ImageSamplerDescriptor {
+            mipmap_filter: ImageFilterMode::Linear,
+            // Text on the ground is seen at a low angle, which needs anisotropic filtering.
+            anisotropy_clamp: 4,
+            ..ImageSamplerDescriptor::linear()
+        };
+        // White pixels, whose alpha is their coverage.
+        let pixel = |opacity| [255, 255, 255, opacity];
+        (atlas, all.into_image(SIZES, TextureFormat::Rgba8UnormSrgb, sampler, pixel))
     }
 
     /// Advance width of a character, in pixels.
@@ -128,56 +131,12 @@ fn pixel_at(x: i32, y: i32) -> Option<usize> {
     (side.contains(&x) && side.contains(&y)).then(|| y as usize * CELL_PIXELS + x as usize)
 }
 
-impl Coverage {
-    fn put(&mut self, index: usize, letter: &[f32]) {
-        let (left, top) = (index % COLUMNS * CELL_PIXELS, index / COLUMNS * CELL_PIXELS);
-        for (row, line) in letter.chunks(CELL_PIXELS).enumerate() {
-            let start = (top + row) * self.width + left;
-            self.pixels[start..start + CELL_PIXELS].copy_from_slice(line);
-        }
-    }
-
-    /// The next mipmap: each pixel is the mean of four.
-    fn halved(&self) -> Self {
-        let width = self.width / 2;
-        let height = self.pixels.len() / self.width / 2;
-        let mean = |pixel: usize| {
-            let corner = pixel / width * 2 * self.width + pixel % width * 2;
-            let four = [0, 1, self.width, self.width + 1].map(|next| self.pixels[corner + next]);
-            four.iter().sum::<f32>() / 4.0
-        };
-        Self { width, pixels: (0..width * height).map(mean).collect() }
-    }
-
-    /// White pixels with coverage as alpha, for all mipmaps.
-    fn into_image(self) -> Image {
-        let (width, height) = (self.width as u32, (self.pixels.len() / self.width) as u32);
-        let bytes = |of: &Self| {
-            let opacities = of.pixels.iter().map(|covered| (covered * 255.0).round() as u8);
-            opacities.flat_map(|opacity| [255, 255, 255, opacity]).collect::<Vec<u8>>()
-        };
-        let mut image = Image::new(
-            Extent3d { width, height, depth_or_array_layers: 1 },
-            TextureDimension::D2,
-            bytes(&self),
-            TextureFormat::Rgba8UnormSrgb,
-            RenderAssetUsages::RENDER_WORLD,
-        );
-        let mut all = image.data.take().unwrap_or_default();
-        let mut size = self;
-        for _ in 1..SIZES {
-            size = size.halved();
-            all.extend(bytes(&size));
-        }
-        image.data = Some(all);
-        image.texture_descriptor.mip_level_count = SIZES as u32;
-        image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-            mipmap_filter: ImageFilterMode::Linear,
-            // Text on the ground is seen at a low angle, which needs anisotropic filtering.
-            anisotropy_clamp: 4,
-            ..ImageSamplerDescriptor::linear()
-        });
-        image
+/// Puts the coverage of a character into its cell.
+fn put(all: &mut Channel, index: usize, letter: &[f32]) {
+    let (left, top) = (index % COLUMNS * CELL_PIXELS, index / COLUMNS * CELL_PIXELS);
+    for (row, line) in letter.chunks(CELL_PIXELS).enumerate() {
+        let start = (top + row) * all.width + left;
+        all.values[start..start + CELL_PIXELS].copy_from_slice(line);
     }
 }
 

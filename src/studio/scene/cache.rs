@@ -1,0 +1,31 @@
+//! Meshes, materials and textures that were made last, so that lanes which look alike share them.
+
+/// Values by key, the oldest first.
+#[derive(Debug)]
+pub(crate) struct SceneCache<K, V>(Vec<(K, V)>);
+
+impl<K, V> Default for SceneCache<K, V> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<K: Clone + PartialEq, V: Clone> SceneCache<K, V> {
+    /// The value of a key. `make` makes it unless it is kept, in the place of the oldest one if there are `most` values.
+    pub fn get(&mut self, key: &K, most: usize, make: impl FnOnce() -> V) -> V {
+        if let Some((_, known)) = self.0.iter().find(|(of, _)| of == key) {
+            return known.clone();
+        }
+        if self.0.len() == most {
+            self.0.remove(0);
+        }
+        let new = make();
+        self.0.push((key.clone(), new.clone()));
+        new
+    }
+
+    /// All values.
+    pub fn values(&self) -> impl Iterator<Item = &V> {
+        self.0.iter().map(|(_, value)| value)
+    }
+}
