@@ -125,7 +125,8 @@ fn recover(error: &RenderError, studio: &mut World, _: &mut World) -> RenderErro
     RenderErrorPolicy::StopRendering
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
 

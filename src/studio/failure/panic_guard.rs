@@ -74,21 +74,15 @@ fn reason(info: &PanicHookInfo<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::{RunPlan, Settings};
-    use snakes_core::save::{ExistingRun, SavesFolder};
+    use crate::studio::state::current_run::small_run;
+    use snakes_core::save::SavesFolder;
     use snakes_lab::run::{BackgroundRun, LocalPool, RunEvent, RunSource};
     use std::time::Duration;
 
     #[test]
     fn a_crash_names_the_run_and_the_run_can_continue() {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut settings = Settings::default();
-        settings.evolution.population = 6;
-        settings.evolution.generations = 10_000;
-        settings.trial.duration_s = 0.5;
-        let plan = RunPlan::new("test", 1, settings);
-        let saves = SavesFolder::find(Some(folder.path()));
-        let source = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
+        let source = small_run(&SavesFolder::find(Some(folder.path())), 1, 10_000);
         let run_folder = RunInProgress::default();
         run_folder.lock().expect("no panic").replace(source.folder.clone());
         let mut last = 0;

@@ -17,23 +17,22 @@ pub(crate) fn export(
     let ChartExport { figure, name, format, is_of_run } = export;
     let folder = saves.exports();
     folder.prepare().map_err(|error| error.to_string())?;
-    match format {
+    let (path, stored) = match format {
         ChartFormat::Png => {
-            let path = folder.free_name(name, "png");
             let picture = match is_of_run {
                 true => plot::figure(&titled(figure, &run())),
                 false => plot::figure(figure),
             };
             let picture = picture.map_err(|error| error.to_string())?;
-            store_picture(&path, &picture).map_err(|error| error.to_string())?;
-            Ok(path)
+            let path = folder.free_name(name, "png");
+            (path.clone(), store_picture(&path, &picture))
         }
         ChartFormat::Csv => {
             let path = folder.free_name(name, "csv");
-            store_csv(&path, &figure.table()).map_err(|error| error.to_string())?;
-            Ok(path)
+            (path.clone(), store_csv(&path, &figure.table()))
         }
-    }
+    };
+    stored.map(|()| path).map_err(|error| error.to_string())
 }
 
 /// A figure whose title has the name of its run: the window shows that elsewhere.

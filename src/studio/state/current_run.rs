@@ -1,7 +1,7 @@
 //! The run in the background: started, paused, reset; its reports are kept for the panels.
 
 mod compared_runs;
-mod events;
+pub mod events;
 mod individuals;
 mod live_changes;
 mod next_run;
@@ -9,7 +9,7 @@ mod run_commands;
 mod shared_run;
 mod whole_generation;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -17,17 +17,20 @@ use bevy::prelude::*;
 
 use super::milestones::Milestones;
 use super::run_context::RunContext;
-use snakes_core::evolve::{Champion, RunPlan, Settings};
+use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
 use snakes_core::save::{ExistingRun, RunSummary};
-use snakes_lab::run::{BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource};
-
-use individuals::Ancestors;
+use snakes_lab::run::{
+    Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
+};
 
 pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
 
 /// Number of generations whose best ten are kept.
 const REMEMBERED_GENERATIONS: usize = 200;
+
+/// Individuals with descendants, by place.
+type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
 
 /// Status of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,10 +84,6 @@ pub(crate) struct CurrentRun {
     is_lent: bool,
     /// Folder of a run that was reset; its contents are deleted when the run starts again.
     discarded: Option<PathBuf>,
-}
-
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<CurrentRun>().add_plugins(events::plugin);
 }
 
 impl FromWorld for CurrentRun {
@@ -384,5 +383,6 @@ impl CurrentRun {
 mod fixtures;
 #[cfg(test)]
 pub(crate) use fixtures::{
-    bodies_run, compared_run, explored_run, landed_run, prepared_run, species_run,
+    bodies_run, climber, compared_run, explored_run, landed_run, prepared_run, small_run,
+    species_run,
 };

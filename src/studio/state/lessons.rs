@@ -14,10 +14,10 @@ use bevy::prelude::*;
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
 use crate::studio::commands::LessonCommand;
+use crate::studio::stage::Show;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::RunPlan;
 use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
@@ -55,8 +55,7 @@ struct Current {
 #[derive(Debug)]
 struct Own {
     next: RunPlan,
-    champions: Vec<StagedChampion>,
-    mode: StageMode,
+    on_show: Show,
     history: UndoHistory,
     pace: Pace,
 }
@@ -147,7 +146,7 @@ impl Lessons {
         &mut self,
         index: usize,
         run: &mut CurrentRun,
-        Show { champions, mode }: Show,
+        on_show: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         if index >= LESSONS.len() {
@@ -169,7 +168,7 @@ impl Lessons {
                 run.pause()?;
                 run.lend(true);
                 let (next, history) = (run.next_plan().clone(), history.lend());
-                Own { next, champions, mode, history, pace }
+                Own { next, on_show, history, pace }
             }
         };
         run.set_next_plan(own.next.clone())?;
@@ -226,7 +225,7 @@ impl Lessons {
             }
             Pace::Running | Pace::OneGeneration | Pace::Held => {}
         }
-        Ok(Some(Show { champions: own.champions, mode: own.mode }))
+        Ok(Some(own.on_show))
     }
 
     /// Selects a scene and shows its snakes. Its runs start once the reader has guessed.

@@ -7,7 +7,7 @@ mod batch_jobs;
 mod examination;
 mod item;
 mod load;
-mod poll;
+pub mod poll;
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,6 @@ use examination::Examination;
 
 pub(crate) use item::LibraryItem;
 pub(crate) use load::founder_of;
-pub(crate) use poll::plugin;
 
 /// Entries of the saves folder, and the operations that are under way or can be undone.
 #[derive(Resource, Debug)]
@@ -206,6 +205,11 @@ impl Library {
     /// The saves folder.
     pub fn folder(&self) -> &Path {
         self.saves.path()
+    }
+
+    /// The progress of an exam that is under way, in words, and its finished share, 0 to 1.
+    pub fn exam_under_way(&self) -> Option<(String, f32)> {
+        self.examination.as_ref().map(Examination::progress)
     }
 
     fn look_again(&self) {

@@ -92,12 +92,7 @@ pub(crate) fn leaders(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::{explored_run, prepared_run};
-    use snakes_core::save::shipped_champion;
-
-    fn saved(index: usize) -> StagedChampion {
-        StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")
-    }
+    use crate::studio::state::current_run::{climber, explored_run, prepared_run};
 
     #[test]
     fn of_many_generations_some_race_at_equal_distances() {
@@ -109,17 +104,20 @@ mod tests {
 
     #[test]
     fn joining_twice_removes_and_an_eleventh_lane_is_refused() {
-        let mut on_show = vec![saved(0)];
+        let mut on_show = vec![climber(0)];
         for index in 1..10 {
             on_show =
-                with_one_more(on_show, saved(index)).expect("not full").expect("new").champions;
+                with_one_more(on_show, climber(index)).expect("not full").expect("new").champions;
         }
         assert_eq!(on_show.len(), 10);
-        let full = with_one_more(on_show.clone(), saved(10)).expect_err("full");
+        let full = with_one_more(on_show.clone(), climber(10)).expect_err("full");
         assert!(full.contains("At most 10 snakes"), "{full}");
-        let fewer = with_one_more(on_show, saved(3)).expect("fine").expect("one less");
+        let fewer = with_one_more(on_show, climber(3)).expect("fine").expect("one less");
         assert_eq!(fewer.champions.len(), 9);
-        assert!(with_one_more(vec![saved(0)], saved(0)).expect("fine").is_none(), "the last stays");
+        assert!(
+            with_one_more(vec![climber(0)], climber(0)).expect("fine").is_none(),
+            "the last stays"
+        );
     }
 
     #[test]

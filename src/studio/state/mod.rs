@@ -32,10 +32,10 @@ pub(super) fn plugin(app: &mut App) {
     app.insert_resource(Time::<Fixed>::from_hz(RESULTS_HZ));
     app.add_plugins((
         undo::plugin,
-        current_run::plugin,
+        current_run::events::plugin,
         following::plugin,
         stopped_run::plugin,
-        library::plugin,
+        library::poll::plugin,
         files::plugin,
         lessons::plugin,
         shares::plugin,

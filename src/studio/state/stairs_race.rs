@@ -1,7 +1,7 @@
 //! Race of one champion over many staircases, in lanes side by side.
 
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{MAX_LANES, Show, StageMode};
+use crate::studio::stage::{MAX_LANES, Show};
 use snakes_core::save::built_in_stairs;
 
 /// The champion on its own stairs and on each of the built-in ones.
@@ -21,19 +21,18 @@ pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
     if champions.len() < 2 {
         return Err("The snake on the stage fits no other stairs.".to_owned());
     }
-    Ok(Show { champions, mode: StageMode::Race })
+    Ok(Show::race(champions))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::stage::StageMode;
+    use crate::studio::state::current_run::climber;
 
     #[test]
     fn a_race_has_the_own_stairs_and_all_built_in_ones() {
-        let loaded = shipped_champion().expect("well formed");
-        let champion = StagedChampion::from_file(&loaded, 0, "climber");
-        let show = stairs_race(&champion).expect("it fits");
+        let show = stairs_race(&climber(0)).expect("it fits");
         assert_eq!(show.mode, StageMode::Race);
         let labels: Vec<&str> = show.champions.iter().map(StagedChampion::label).collect();
         assert_eq!(labels.len(), MAX_LANES, "{labels:?}");

@@ -50,42 +50,34 @@ fn offer_text(run: &RunSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::state::current_run::small_run;
     use crate::studio::state::options::Options;
-    use snakes_core::evolve::{RunPlan, Settings};
-    use snakes_core::save::{ExistingRun, SavesFolder};
-    use snakes_lab::run::{LocalPool, RunControl, RunSource};
+    use snakes_core::save::SavesFolder;
+    use snakes_lab::run::{LocalPool, RunControl};
 
     #[test]
     fn a_stopped_run_is_offered_by_name_and_place_after_the_start() {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
-        let mut settings = Settings::default();
-        settings.evolution.population = 4;
-        settings.trial.duration_s = 0.5;
-        let source = |seed, generations| {
-            let mut settings = settings.clone();
-            settings.evolution.generations = generations;
-            let plan = RunPlan::new("test", seed, settings);
-            RunSource::in_saves(&saves, plan, ExistingRun::Keep)
-        };
-        let mut earlier = source(1, 3).open("a test").expect("opened");
+        let mut earlier = small_run(&saves, 1, 3).open("a test").expect("opened");
         let pool = LocalPool::new(1).expect("threads");
         let report = earlier.experiment.run_generation(&pool, &RunControl::default());
         let report = report.expect("not cancelled");
         earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
         drop(earlier);
-        assert_eq!(source(1, 3).with_unused_seed(&saves).plan.seed, 2, "its own seed is used");
+        let next = small_run(&saves, 1, 3).with_unused_seed(&saves);
+        assert_eq!(next.plan.seed, 2, "its own seed is used");
 
         // The run of the session is too long to end, and to say so, during the test.
-        let options =
-            Options { offers_stopped_run: true, ..Options::of_test(source(2, 10_000), saves) };
+        let run = small_run(&saves, 2, 10_000);
+        let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
         let context = RunContext::new(&options);
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(context.clone()))
             .insert_resource(context)
             .init_resource::<Notices>()
             .add_plugins(bevy::time::TimePlugin)
-            .add_plugins((crate::studio::state::current_run::plugin, plugin));
+            .add_plugins((crate::studio::state::current_run::events::plugin, plugin));
         let began = std::time::Instant::now();
         while app.world().resource::<Notices>().len() == 0 && began.elapsed().as_secs() < 30 {
             app.update();

@@ -1,8 +1,8 @@
 //! Sweep: one setting of the world at five values, in five lanes side by side.
 
 use super::wording::world_in_words;
+use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode};
 use snakes_core::evolve::{Settings, fields, with_fields_and_engine};
 use snakes_core::schema::{NumberRange, SettingKind, SettingValue, list};
 use snakes_core::score::Trial;
@@ -51,7 +51,7 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
     if champions.len() < 2 {
         return Err(format!("The snake on the stage fits no other value of {label}."));
     }
-    Ok(Show { champions, mode: StageMode::Race })
+    Ok(Show::race(champions))
 }
 
 /// The values of a sweep, ascending: ratios of the present value where the slider is logarithmic, else spread evenly
@@ -106,16 +106,13 @@ fn settings_of(trial: &Trial) -> Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::stage::StageMode;
+    use crate::studio::state::current_run::climber;
     use snakes_core::world::PhysicsEngine;
-
-    fn champion() -> StagedChampion {
-        StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
-    }
 
     #[test]
     fn a_sweep_shows_five_values_of_one_setting_and_names_them() {
-        let show = sweep(&champion(), "trial.surface.friction").expect("a number");
+        let show = sweep(&climber(0), "trial.surface.friction").expect("a number");
         let labels: Vec<&str> = show.champions.iter().map(StagedChampion::label).collect();
         assert_eq!(
             labels,
@@ -129,7 +126,7 @@ mod tests {
 
     #[test]
     fn every_number_of_the_world_gives_several_worlds_or_a_reason() {
-        let champion = champion();
+        let champion = climber(0);
         for listed in list(&settings_of(champion.trial())) {
             match sweep(&champion, &listed.path) {
                 Ok(show) => {
@@ -145,9 +142,9 @@ mod tests {
 
     #[test]
     fn softness_is_swept_in_rapier() {
-        let mut trial = champion().trial().clone();
+        let mut trial = climber(0).trial().clone();
         trial.physics.engine = PhysicsEngine::Lanes;
-        let in_lanes = champion().in_world(&trial, "lanes".to_owned());
+        let in_lanes = climber(0).in_world(&trial, "lanes".to_owned());
         let show = sweep(&in_lanes, "trial.agent.youngs_modulus_pa").expect("soft snakes");
         let engines = show.champions.iter().map(|staged| staged.trial().physics.engine);
         assert!(engines.eq(show.champions.iter().map(|_| PhysicsEngine::Rapier)));

@@ -152,8 +152,7 @@ fn take_turns(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::{explored_run, prepared_run};
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::{climber, explored_run, prepared_run};
 
     #[test]
     fn the_champions_of_all_generations_come_in_turn_without_end() {
@@ -190,8 +189,7 @@ mod tests {
 
     #[test]
     fn what_was_chosen_stays_until_the_presenter_goes_on() {
-        let loaded = shipped_champion().expect("well formed");
-        let opened = StagedChampion::from_file(&loaded, 0, "mine");
+        let opened = climber(0);
         let (run, following) = (prepared_run(), Following::default());
         let goes_on = |turns: &Turns, mode: &StageMode| {
             turns.goes_on(&run, &following, (mode, Some(&opened)))

@@ -3,6 +3,8 @@
 //! A change acts on the latest copy, which starts over from the moment of the change. A copy that stays beside the next
 //! one no longer changes.
 
+use std::fmt::Display;
+
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
@@ -67,13 +69,18 @@ impl ChangedStage<'_> {
             return Ok(what_if_of(champions, before, beside, current));
         }
         let changed = original.in_world_from(self.moment, trial, label);
-        changed.check().map_err(|reason| {
-            format!("The snake on the stage stays in its world, because it does not fit the new one: {reason}")
-        })?;
+        changed.check().map_err(unsuited)?;
         champions.push(changed);
         let current = champions.len() - 1;
         Ok(what_if_of(champions, before, beside, current))
     }
+}
+
+/// Why a snake does not change its world, in a sentence.
+pub(super) fn unsuited(reason: impl Display) -> String {
+    format!(
+        "The snake on the stage stays in its world, because it does not fit the new one: {reason}"
+    )
 }
 
 /// A what-if, or the original alone if nothing stands beside it.
@@ -193,4 +200,4 @@ pub(crate) fn kept_lane(
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -54,6 +54,12 @@ fn app() -> App {
     app
 }
 
+/// Sets the friction of the next run.
+fn set(friction: &str) -> Command {
+    let (field, text) = ("trial.surface.friction".to_owned(), friction.to_owned());
+    Command::Plan(PlanCommand::SetField { field, text })
+}
+
 /// Sends one command per frame and returns the friction of the next run.
 fn friction_after(app: &mut App, commands: &[Command]) -> f32 {
     for command in commands {
@@ -66,12 +72,6 @@ fn friction_after(app: &mut App, commands: &[Command]) -> f32 {
 #[test]
 fn settings_are_undone_and_redone_drag_by_drag() {
     let mut app = app();
-    let set = |text: &str| {
-        Command::Plan(PlanCommand::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: text.to_owned(),
-        })
-    };
     let first = friction_after(&mut app, &[]);
     // A drag that pauses twice.
     assert_eq!(friction_after(&mut app, &[set("0.5"), set("0.4"), set("0.3")]), 0.3);
@@ -92,10 +92,7 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
     app.world_mut().spawn(Lane::new(staged, 0));
     let mut tried = |friction: &str, act: &dyn Fn(&mut Playback)| {
         act(&mut app.world_mut().resource_mut::<Playback>());
-        app.world_mut().write_message(Command::Plan(PlanCommand::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: friction.to_owned(),
-        }));
+        app.world_mut().write_message(set(friction));
         app.world_mut().resource_mut::<UndoHistory>().settle();
         app.update();
         let show = app.world_mut().resource_mut::<Messages<Show>>().drain().last();
@@ -149,11 +146,7 @@ fn a_preset_a_seed_and_a_group_of_settings_are_one_undo_step_each() {
 #[test]
 fn a_rejected_command_is_no_undo_step() {
     let mut app = app();
-    let wrong = Command::Plan(PlanCommand::SetField {
-        field: "trial.surface.friction".to_owned(),
-        text: "-1".to_owned(),
-    });
-    friction_after(&mut app, &[wrong, Command::Run(RunCommand::SetThreads(0))]);
+    friction_after(&mut app, &[set("-1"), Command::Run(RunCommand::SetThreads(0))]);
     assert_eq!(app.world().resource::<UndoHistory>().next(UndoDirection::Back), None);
     assert_eq!(app.world().resource::<Notices>().len(), 2);
 }
@@ -164,12 +157,6 @@ fn a_lesson_leaves_the_own_run_untouched() {
     let friction = friction_after(&mut app, &[]);
     let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
     let number = |app: &App| app.world().resource::<CurrentRun>().number();
-    let set = |text: &str| {
-        Command::Plan(PlanCommand::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: text.to_owned(),
-        })
-    };
     friction_after(&mut app, &[set("0.5")]);
     let (own, run) = (plan(&app), number(&app));
     friction_after(
@@ -233,11 +220,7 @@ fn show_after(app: &mut App, show: Show, command: Command) -> Option<Show> {
 fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
     let mut app = app();
     let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
-    let change = Command::Plan(PlanCommand::SetField {
-        field: "trial.surface.friction".to_owned(),
-        text: "0.25".to_owned(),
-    });
-    let what_if = show_after(&mut app, Show::solo(staged), change).expect("a what-if");
+    let what_if = show_after(&mut app, Show::solo(staged), set("0.25")).expect("a what-if");
     show_after(&mut app, what_if, Command::Run(RunCommand::Reset)).expect("the kept change");
     let said = app.world().resource::<Notices>().last();
     assert_eq!(said, Some("The new run has the change that was tried: friction 0.25."));

@@ -1,17 +1,13 @@
 //! Tests of the editor of bodies.
 
 use super::*;
-use crate::studio::state::current_run::prepared_run;
+use crate::studio::state::current_run::{climber, prepared_run};
 use snakes_core::save::shipped_champion;
 use snakes_core::world::PhysicsEngine;
 
-fn climber() -> StagedChampion {
-    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
-}
-
 fn editing() -> (BodyEditor, CurrentRun) {
     let (mut editor, mut run) = (BodyEditor::default(), prepared_run());
-    editor.apply(&BodyCommand::Edit, Some(&climber()), &mut run).expect("a gait");
+    editor.apply(&BodyCommand::Edit, Some(&climber(0)), &mut run).expect("a gait");
     (editor, run)
 }
 

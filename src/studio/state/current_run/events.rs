@@ -8,8 +8,10 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::save::ExistingRun;
 use snakes_lab::run::{OpenedRun, RunEvent};
 
-pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Startup, start_at_once).add_systems(FixedUpdate, take_in);
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<CurrentRun>()
+        .add_systems(Startup, start_at_once)
+        .add_systems(FixedUpdate, take_in);
 }
 
 /// Evolution starts with the program.
@@ -96,25 +98,17 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
 mod tests {
     use super::*;
     use crate::studio::schedule::RESULTS_HZ;
-    use crate::studio::state::current_run::{RunStatus, prepared_run};
+    use crate::studio::state::current_run::{RunStatus, prepared_run, small_run};
     use crate::studio::state::options::Options;
     use crate::studio::state::run_context::RunContext;
     use bevy::time::TimeUpdateStrategy;
-    use snakes_core::evolve::{RunPlan, Settings};
     use snakes_core::save::SavesFolder;
-    use snakes_lab::run::RunSource;
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
     /// A studio without a window whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
-        let mut settings = Settings::default();
-        settings.evolution.population = 6;
-        settings.evolution.generations = 3;
-        settings.trial.duration_s = 0.5;
-        let plan = RunPlan::new("test", 1, settings);
-        let run = RunSource::in_saves(saves, plan, ExistingRun::Keep);
-        let options = Options::of_test(run, saves.clone());
+        let options = Options::of_test(small_run(saves, 1, 3), saves.clone());
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(RunContext::new(&options)))
             .init_resource::<Notices>()

@@ -1,7 +1,8 @@
-//! Runs for tests of panels.
+//! Runs and champions for tests.
 
 use super::*;
 use crate::studio::commands::{Command, RunCommand};
+use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::options::Options;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::{RunPlan, StrategyKind};
@@ -9,6 +10,20 @@ use snakes_core::genome::ControllerKind;
 use snakes_core::save::{Rung, SavesFolder, shipped_champion, store_csv};
 use snakes_core::score::evaluate;
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
+
+/// The built-in champion, as the file with this number.
+pub fn climber(file: usize) -> StagedChampion {
+    StagedChampion::from_file(&shipped_champion().expect("well formed"), file, "climber")
+}
+
+/// A run of 6 snakes for 0.5 s each, which may be saved in this folder.
+pub fn small_run(saves: &SavesFolder, seed: u64, generations: u32) -> RunSource {
+    let mut settings = Settings::default();
+    settings.evolution.population = 6;
+    settings.evolution.generations = generations;
+    settings.trial.duration_s = 0.5;
+    RunSource::in_saves(saves, RunPlan::new("test", seed, settings), ExistingRun::Keep)
+}
 
 /// A run with the report's settings that has not started.
 pub fn prepared_run() -> CurrentRun {

@@ -1,29 +1,19 @@
 //! Looks up individuals of the current run by their place.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::CurrentRun;
 use snakes_core::evolve::{Champion, IndividualId, Origin, Parents};
 use snakes_core::genome::Genome;
 use snakes_core::score::{Evaluation, Trial, evaluate};
-use snakes_lab::run::{Ancestor, caught};
-
-/// Individuals with descendants, by place.
-pub(super) type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
+use snakes_lab::run::{Ancestor, Generation, caught};
 
 impl CurrentRun {
     /// An individual of the latest generation, a champion, or an individual with descendants; `None` if it is not kept.
     /// An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
-        let genome = self.genome_of(place)?;
-        let trial = self.trial_of(place);
-        let evaluation = match self.evaluation_of(place) {
-            Some(evaluation) => evaluation,
-            None => caught(|| evaluate(&genome, &trial)).ok()?,
-        };
-        let origin = self.origin(place.generation, place.individual);
-        Some(Champion { genome: (*genome).clone(), trial, evaluation, chosen_by: None, origin })
+        let genome = (*self.genome_of(place)?).clone();
+        self.found(place, genome, self.trial_of(place), self.evaluation_of(place))
     }
 
     /// A member of the Pareto front of distance and energy.
@@ -31,13 +21,9 @@ impl CurrentRun {
         let mut members = self.exploration()?.front.members();
         let member =
             members.find(|is| (is.generation, is.individual) == (generation, individual))?;
-        Some(Champion {
-            genome: member.genome.clone(),
-            trial: self.trial_in(generation),
-            evaluation: member.evaluation,
-            chosen_by: None,
-            origin: self.origin(generation, individual),
-        })
+        let (genome, trial) = (member.genome.clone(), self.trial_in(generation));
+        let place = IndividualId { generation, individual };
+        self.found(place, genome, trial, Some(member.evaluation))
     }
 
     /// The elite of an archive cell. The archive keeps genes and fitness; the evaluation is computed again.
@@ -45,9 +31,7 @@ impl CurrentRun {
         let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
         let trial = self.trial_in(elite.generation);
         let genome = elite.genes.genome(&self.settings().genome, trial.genome_shape());
-        let evaluation = caught(|| evaluate(&genome, &trial)).ok()?;
-        let origin = self.origin(elite.generation, elite.individual);
-        Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
+        self.found(elite.id(), genome, trial, None)
     }
 
     /// The agent of stairs that evolved. The tree keeps its genes; the evaluation is computed again.
@@ -55,18 +39,39 @@ impl CurrentRun {
         let tree = self.exploration()?.stairs.as_ref()?;
         let node = tree.nodes.get(node as usize)?;
         let agent = node.agent.as_ref()?;
-        let trial = node.trial(&self.settings().trial);
-        let evaluation = caught(|| evaluate(&agent.genome, &trial)).ok()?;
-        let origin = self.origin(agent.generation, agent.individual);
-        let genome = agent.genome.clone();
+        let (generation, individual) = (agent.generation, agent.individual);
+        let place = IndividualId { generation, individual };
+        self.found(place, agent.genome.clone(), node.trial(&self.settings().trial), None)
+    }
+
+    /// An individual of this run. An unknown evaluation is computed again; `None` if the simulation panics.
+    pub(super) fn found(
+        &self,
+        place: IndividualId,
+        genome: Genome,
+        trial: Trial,
+        known: Option<Evaluation>,
+    ) -> Option<Champion> {
+        let evaluation = match known {
+            Some(evaluation) => evaluation,
+            None => caught(|| evaluate(&genome, &trial)).ok()?,
+        };
+        let IndividualId { generation, individual } = place;
+        let (preset, seed) = (self.preset().to_owned(), self.seed());
+        let origin = Origin { preset, seed, generation, individual };
         Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
+    }
+
+    /// The latest generation with all its individuals, if it has this number.
+    pub(super) fn latest(&self, number: u32) -> Option<&Generation> {
+        let latest = self.exploration()?.generation.as_deref()?;
+        (latest.number == number).then_some(latest)
     }
 
     /// The trial in which an individual was evaluated: where stairs evolve, on its own, if they are known.
     pub(super) fn trial_of(&self, place: IndividualId) -> Trial {
         let trial = self.trial_in(place.generation);
-        let latest = self.exploration().and_then(|explored| explored.generation.as_ref());
-        let latest = latest.filter(|latest| latest.number == place.generation);
+        let latest = self.latest(place.generation);
         let own = latest.and_then(|latest| latest.stairs.get(place.individual as usize));
         let of_champion = || Some(self.champion_at(place)?.trial.clone());
         own.map(|own| own.on(&trial)).or_else(of_champion).unwrap_or(trial)
@@ -83,14 +88,9 @@ impl CurrentRun {
         }
     }
 
-    pub(super) fn origin(&self, generation: u32, individual: u32) -> Origin {
-        Origin { preset: self.preset().to_owned(), seed: self.seed(), generation, individual }
-    }
-
     /// The genome of an individual, if it is kept.
     pub fn genome_of(&self, place: IndividualId) -> Option<Arc<Genome>> {
-        let exploration = self.exploration()?;
-        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|latest| latest.genomes.get(place.individual as usize));
         let of_ancestor = || self.ancestor(place)?.genome.as_ref();
         let of_champion = || {
@@ -102,8 +102,7 @@ impl CurrentRun {
 
     /// The parents of an individual, if they are kept.
     pub fn parents_of(&self, place: IndividualId) -> Option<Parents> {
-        let exploration = self.exploration()?;
-        let latest = exploration.generation.as_ref().filter(|of| of.number == place.generation);
+        let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|of| of.parents.get(place.individual as usize)).copied();
         of_latest.or_else(|| Some(self.ancestor(place)?.parents))
     }
@@ -124,8 +123,7 @@ impl CurrentRun {
     }
 
     fn evaluation_of(&self, place: IndividualId) -> Option<Evaluation> {
-        let latest = self.exploration()?.generation.as_ref();
-        let latest = latest.filter(|latest| latest.number == place.generation);
+        let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|of| of.evaluations.get(place.individual as usize));
         of_latest.copied().or_else(|| Some(self.champion_at(place)?.evaluation))
     }

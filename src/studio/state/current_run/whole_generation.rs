@@ -6,7 +6,7 @@ use super::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::milestones::{GenerationMember, Milestone, members_to_show};
-use snakes_core::evolve::{Champion, IndividualId};
+use snakes_core::evolve::IndividualId;
 use snakes_lab::run::GenerationReport;
 
 impl CurrentRun {
@@ -17,18 +17,17 @@ impl CurrentRun {
 
     /// Notes a finished generation if it is better than all before it.
     pub(super) fn note_milestone(&mut self, report: &GenerationReport) {
-        let latest = self.exploration.as_ref().and_then(|explored| explored.generation.as_ref());
-        let snakes = latest.filter(|of| of.number == report.generation);
-        self.milestones.note(report, snakes.map(|snakes| &**snakes));
+        let explored = self.exploration.as_deref();
+        let latest = explored.and_then(|explored| explored.generation.as_deref());
+        self.milestones.note(report, latest.filter(|of| of.number == report.generation));
     }
 
     /// A generation for the stage: all its snakes if they are kept, else its best alone; none if it is unknown or all
     /// its snakes were disqualified.
     pub fn whole_generation(&self, number: u32) -> Option<Show> {
         let milestone = self.milestones().iter().find(|milestone| milestone.generation == number);
-        let latest = self.exploration().and_then(|explored| explored.generation.as_ref());
-        let latest = latest.filter(|latest| latest.number == number);
-        let (kept, size) = match (milestone.filter(|milestone| milestone.is_whole()), latest) {
+        let whole = milestone.filter(|milestone| milestone.is_whole());
+        let (kept, size) = match (whole, self.latest(number)) {
             (Some(milestone), _) => (Arc::clone(&milestone.members), milestone.size),
             (None, Some(latest)) => (members_to_show(latest), latest.genomes.len() as u32),
             (None, None) => (Arc::default(), 0),
@@ -37,17 +36,14 @@ impl CurrentRun {
             let champion = self.champion_of(number)?;
             return Some(Show::solo(StagedChampion::from_run(champion, self.number())));
         }
-        let champion = |member: &GenerationMember| Champion {
-            genome: (*member.genome).clone(),
-            trial: self
-                .trial_of(IndividualId { generation: number, individual: member.individual }),
-            evaluation: member.evaluation,
-            chosen_by: None,
-            origin: self.origin(number, member.individual),
+        let staged = |member: &GenerationMember| {
+            let place = IndividualId { generation: number, individual: member.individual };
+            let (genome, trial) = ((*member.genome).clone(), self.trial_of(place));
+            let champion = self.found(place, genome, trial, Some(member.evaluation))?;
+            Some(StagedChampion::from_run(&champion, self.number()))
         };
-        let champions = kept.iter().map(champion);
-        let staged = champions.map(|champion| StagedChampion::from_run(&champion, self.number()));
-        Some(Show { champions: staged.collect(), mode: StageMode::Generation { number, size } })
+        let champions = kept.iter().filter_map(staged).collect();
+        Some(Show { champions, mode: StageMode::Generation { number, size } })
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use super::*;
+use crate::studio::stage::StageMode;
 use crate::studio::state::current_run::prepared_run;
 use snakes_core::evolve::Champion;
 use snakes_core::save::load_preset;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::Library;
 use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
+use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::{MAX_LANES, Show};
@@ -99,13 +100,13 @@ impl Library {
                 let act = move |path: PathBuf| import(&saves, &path).into();
                 self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act)?;
             }
-            LibraryCommand::Examine(places) => {
-                let paths = places.iter().filter_map(SavePlace::path);
-                self.examine(paths.map(ToOwned::to_owned).collect())?;
+            LibraryCommand::Examine(_) if self.examination.is_some() => {
+                return Err("An exam is in progress: wait for it, or cancel it".to_owned());
             }
+            LibraryCommand::Examine(places) => self.examination = Examination::begin(places)?,
             LibraryCommand::Cancel => {
                 self.cancel();
-                self.cancel_exam();
+                self.examination.iter().for_each(Examination::cancel);
             }
         }
         Ok(None)

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Library, name_of};
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::library::SavePlace;
 use snakes_core::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
 use snakes_core::score::ExamSuite;
 use snakes_lab::run::exam::{exam_trials, examine};
@@ -27,75 +27,61 @@ pub(super) struct Examination {
 type ExamOutcome = Option<Result<String, String>>;
 
 impl Examination {
-    /// The champion that is being examined, in words, and the finished share of the whole, 0 to 1.
-    fn progress(&self) -> (String, f32) {
-        let index = self.work.done().min(self.names.len() - 1);
-        let done = self.control.done().min(self.trials);
-        let words = format!("Examining {}: {done} of {} trials", self.names[index], self.trials);
-        let share = (index as f32 + done as f32 / self.trials as f32) / self.names.len() as f32;
-        (words, share)
-    }
-}
-
-impl Library {
-    /// Begins to examine the champions in these files with all suites.
+    /// Begins to examine the champions at these places with all suites; those that come with the program are left out. None
+    /// without any champion.
     ///
     /// # Errors
-    /// A file cannot be read, its champion is another engine's, an exam is under way, or no thread can be started.
-    pub(super) fn examine(&mut self, paths: Vec<PathBuf>) -> Result<(), String> {
-        if self.examination.is_some() {
-            return Err("An exam is in progress: wait for it, or cancel it".to_owned());
-        }
-        let load = |path: PathBuf| {
+    /// A file cannot be read, its champion is another engine's, or no thread can be started.
+    pub fn begin(places: &[SavePlace]) -> Result<Option<Self>, String> {
+        let load = |(place, path): (&SavePlace, PathBuf)| {
             let loaded = load_champion(&path).map_err(|error| error.to_string())?;
-            if !loaded.is_of_this_engine() {
-                let name = name_of(&path);
-                let engine = &loaded.engine;
-                return Err(format!("{name} moves differently here: engine {engine} recorded it"));
+            let (name, engine) = (place.name(), &loaded.engine);
+            match loaded.is_of_this_engine() {
+                true => Ok((name, (path, loaded))),
+                false => Err(format!("{name} moves differently here: engine {engine} recorded it")),
             }
-            Ok((path, loaded))
         };
-        let champions = paths.into_iter().map(load).collect::<Result<Vec<_>, String>>()?;
-        let Some((_, first)) = champions.first() else { return Ok(()) };
+        let files = places.iter().filter_map(|place| Some((place, place.path()?.to_owned())));
+        let champions = files.map(load).collect::<Result<Vec<_>, String>>()?;
+        let (names, champions): (Vec<String>, Vec<_>) = champions.into_iter().unzip();
+        let Some((_, first)) = champions.first() else { return Ok(None) };
         let trials = exam_trials(&first.champion, &ExamSuite::USUAL);
-        let names = champions.iter().map(|(path, _)| name_of(path)).collect();
         let control = Arc::new(RunControl::default());
         let shared = Arc::clone(&control);
         let work = BackgroundTask::start_counted(champions.len(), move |progress| {
             examined(champions, &shared, progress)
         });
         let work = work.map_err(|error| format!("The exam could not be started: {error}"))?;
-        self.examination = Some(Examination { names, trials, control, work });
-        Ok(())
+        Ok(Some(Self { names, trials, control, work }))
     }
 
-    /// The progress of an exam that is under way, in words, and its finished share, 0 to 1.
-    pub fn exam_under_way(&self) -> Option<(String, f32)> {
-        self.examination.as_ref().map(Examination::progress)
+    /// The champion that is being examined, in words, and the finished share of the whole, 0 to 1.
+    pub fn progress(&self) -> (String, f32) {
+        let index = self.work.done().min(self.names.len() - 1);
+        let done = self.control.done().min(self.trials);
+        let words = format!("Examining {}: {done} of {} trials", self.names[index], self.trials);
+        let share = (index as f32 + done as f32 / self.trials as f32) / self.names.len() as f32;
+        (words, share)
     }
 
-    /// Stops an exam. The results of the champions that are finished are kept.
-    pub(super) fn cancel_exam(&self) {
-        if let Some(examination) = &self.examination {
-            examination.control.cancel();
+    /// Stops the exam. The results of the champions that are finished are kept.
+    pub fn cancel(&self) {
+        self.control.cancel();
+    }
+
+    /// Reports the results, once and as soon as they are there. Returns whether they are.
+    pub fn report(&self, notices: &mut Notices) -> bool {
+        let Some(result) = self.work.poll() else { return false };
+        match result {
+            Ok(outcomes) => self.report_outcomes(outcomes, notices),
+            Err(problem) => notices.problem(format!("The exam ended with an error: {problem}")),
         }
+        true
     }
 
-    /// Reports the results of an exam that is finished.
-    pub(super) fn take_in_exam(&mut self, notices: &mut Notices) {
-        let Some(result) = self.examination.as_ref().and_then(|exam| exam.work.poll()) else {
-            return;
-        };
-        let names = self.examination.take().map(|exam| exam.names).unwrap_or_default();
-        self.look_again();
-        let outcomes = match result {
-            Ok(outcomes) => outcomes,
-            Err(problem) => {
-                return notices.problem(format!("The exam ended with an error: {problem}"));
-            }
-        };
+    fn report_outcomes(&self, outcomes: Vec<ExamOutcome>, notices: &mut Notices) {
         let (mut finished, mut cancelled) = (Vec::new(), 0);
-        for (name, outcome) in names.into_iter().zip(outcomes) {
+        for (name, outcome) in self.names.iter().zip(outcomes) {
             match outcome {
                 Some(Ok(results)) => finished.push((name, results)),
                 Some(Err(problem)) => notices.problem(problem),

@@ -80,7 +80,10 @@ impl Library {
     /// Takes in what was read and done meanwhile.
     pub(super) fn take_in(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
         self.take_in_batches(history, notices);
-        self.take_in_exam(notices);
+        if self.examination.as_ref().is_some_and(|exam| exam.report(notices)) {
+            self.examination = None;
+            self.look_again();
+        }
         if let Some(loaded) = self.loading.as_ref().and_then(BackgroundTask::poll) {
             self.loading = None;
             self.loaded = Some(loaded.flatten());

@@ -1,23 +1,20 @@
 //! The states of the connection, and the run that follows them.
 
 use super::*;
+use crate::studio::state::current_run::small_run;
 use crate::studio::state::options::Options;
 use crate::studio::state::run_context::RunContext;
 use snakes_cluster::RunQueue;
-use snakes_core::evolve::{RunPlan, Settings};
-use snakes_core::save::{ExistingRun, SavesFolder};
-use snakes_lab::run::{LocalPool, RunSource};
+use snakes_core::save::SavesFolder;
+use snakes_lab::run::LocalPool;
 use std::sync::Arc;
 
 /// A run that is held before its first generation, and the folder of its saves.
 fn held_run() -> (tempfile::TempDir, CurrentRun) {
     let folder = tempfile::tempdir().expect("a folder");
     let saves = SavesFolder::find(Some(folder.path()));
-    let mut settings = Settings::default();
-    settings.evolution.population = 6;
-    settings.trial.duration_s = 0.5;
-    let run = RunSource::in_saves(&saves, RunPlan::new("test", 1, settings), ExistingRun::Keep);
-    let mut run = CurrentRun::new(RunContext::new(&Options::of_test(run, saves)));
+    let options = Options::of_test(small_run(&saves, 1, 3), saves);
+    let mut run = CurrentRun::new(RunContext::new(&options));
     run.start().and_then(|()| run.pause()).expect("started");
     (folder, run)
 }

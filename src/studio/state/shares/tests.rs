@@ -1,12 +1,7 @@
 //! The champions that are shared from the stage, and the command of the process that writes their file.
 
 use super::*;
-use crate::studio::stage::staged_champion::StagedChampion;
-use snakes_core::save::shipped_champion;
-
-fn staged() -> StagedChampion {
-    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
-}
+use crate::studio::state::current_run::climber;
 
 fn look() -> ShareLook {
     let overlays = vec![Overlay::Trail, Overlay::Wireframe, Overlay::Torques];
@@ -35,7 +30,7 @@ fn the_ending_is_added_if_it_is_missing() {
 
 #[test]
 fn a_champion_in_a_changed_world_is_shared_with_its_result_there() {
-    let found = staged();
+    let found = climber(0);
     let (name, champion) = shared(&found).expect("shared").evaluated();
     assert_eq!((name.as_str(), &champion), ("climber", found.champion()));
     let mut icy = found.trial().clone();
@@ -70,7 +65,7 @@ fn a_race_that_the_file_cannot_hold_is_refused_instead_of_shortened() {
             "A .xml file holds one snake, and 2 are on the stage. Leave the race with the one that you want.",
         ),
     ] {
-        let race = vec![staged(); found];
+        let race = vec![climber(0); found];
         let refused = Shares::default().begin(format, Path::new("race"), &race, &look());
         assert_eq!(refused, Err(problem.to_owned()));
     }
@@ -81,6 +76,6 @@ fn a_file_that_exists_under_the_added_ending_is_not_replaced() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("climb.csv"), "mine").expect("written");
     let path = folder.path().join("climb");
-    let refused = Shares::default().begin(ExportFormat::Csv, &path, &[staged()], &look());
+    let refused = Shares::default().begin(ExportFormat::Csv, &path, &[climber(0)], &look());
     assert_eq!(refused, Err("climb.csv exists already; choose another name.".to_owned()));
 }

@@ -2,13 +2,9 @@
 
 use super::*;
 use crate::studio::stage::StageMode;
+use crate::studio::state::current_run::climber;
 use snakes_core::save::shipped_champion;
 use snakes_core::score::Trial;
-
-/// The built-in champion.
-fn staged() -> StagedChampion {
-    StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
-}
 
 /// A made-up exam in which no snake lands.
 fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
@@ -27,7 +23,7 @@ fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
 #[test]
 fn an_exam_shows_its_progress_and_can_be_cancelled() {
     let (mut exams, mut notices) = (StairsExams::default(), Notices::default());
-    let staged = staged();
+    let staged = climber(0);
     assert!(exams.apply(&ExamCommand::Examine, Some(&staged)).expect("begun").is_none());
     let progress = exams.progress().expect("under way");
     assert_eq!((progress.name.as_str(), progress.trials), ("climber", 100));
@@ -44,7 +40,7 @@ fn an_exam_shows_its_progress_and_can_be_cancelled() {
 #[test]
 fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
     let mut exams = StairsExams::default();
-    let staged = staged();
+    let staged = climber(0);
     let own = &staged.champion().trial;
     exams.keep(staged.champion().clone(), vec![made_up(ExamSuite::Stairs, own)]);
     // The fourth rise and the first tread.
@@ -74,7 +70,7 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
 #[test]
 fn only_the_latest_exams_are_kept() {
     let mut exams = StairsExams::default();
-    let staged = staged();
+    let staged = climber(0);
     let champion = |duration_s| {
         let mut champion = staged.champion().clone();
         champion.trial.duration_s = duration_s;

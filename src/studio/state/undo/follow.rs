@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::studio::stage::{Show, StageMode};
-use crate::studio::state::what_if::ChangedStage;
+use crate::studio::state::what_if::{ChangedStage, unsuited};
 use crate::studio::state::wording::world_in_words;
 use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
 use snakes_core::score::Trial;
@@ -26,8 +26,7 @@ pub(crate) fn followed(
         StageMode::WhatIf { before, .. } => (first.clone(), Some(&**before)),
         StageMode::Solo | StageMode::Generation { .. } => (first.simulated(), None),
     };
-    let trial = taken_over(shown.trial(), original.trial(), begins, from, to)
-        .map_err(|reason| unsuited(&reason))?;
+    let trial = taken_over(shown.trial(), original.trial(), begins, from, to).map_err(unsuited)?;
     if trial == *shown.trial() {
         return Ok(None);
     }
@@ -35,16 +34,10 @@ pub(crate) fn followed(
     if begins.is_none() && first.is_changed() {
         // After a change was kept, its lane is alone, and undo changes its world in place.
         let restored = original.in_world(&trial, label);
-        restored.check().map_err(|reason| unsuited(&reason.to_string()))?;
+        restored.check().map_err(unsuited)?;
         return Ok(Some(Show::solo(restored)));
     }
     stage.with_world(from, &trial, label).map(Some)
-}
-
-fn unsuited(reason: &str) -> String {
-    format!(
-        "The snake on the stage stays in its world, because it does not fit the new one: {reason}"
-    )
 }
 
 /// The world on the stage with the differences between two plans applied. A setting that returns to its value from the
@@ -101,51 +94,30 @@ fn stays_with_a_preset(field: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use crate::studio::state::current_run::{CurrentRun, prepared_run};
-    use crate::studio::state::what_if::{WorldChange, another_beside, dropped, what_if};
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::{climber, prepared_run};
+    use crate::studio::state::what_if::tests::{changed, changed_by, labels, solo, stage};
+    use crate::studio::state::what_if::{WorldChange, another_beside, dropped};
 
-    /// The stage with these champions, whose changes are tried from the start.
-    fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {
-        ChangedStage { on_show, mode, moment: None }
-    }
-
-    fn saved() -> StagedChampion {
-        StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "climber")
-    }
-
-    /// Changes a field. Returns the earlier plan and the resulting stage.
-    fn change(
-        run: &mut CurrentRun,
-        on_show: &[StagedChampion],
-        mode: &StageMode,
-        field: &str,
-        text: &str,
-    ) -> (RunPlan, Show) {
-        let before = run.next_plan().clone();
-        let show = what_if(run, stage(on_show, mode), &WorldChange::Fields(vec![(field, text)]));
-        (before, show.expect("allowed").expect("it matters"))
+    /// The stage after a step from one plan to another, which must affect it.
+    fn step(show: &Show, from: &RunPlan, to: &RunPlan) -> Show {
+        followed(stage(show), from, to).expect("fits").expect("the world differs")
     }
 
     #[test]
     fn undo_reverts_the_changed_lane_step_by_step() {
         let mut run = prepared_run();
-        let (start, first) =
-            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
-        let (one, second) = change(&mut run, &first.champions, &first.mode, "stairs.rise_m", "0.7");
-        let two = run.next_plan().clone();
-        let back = followed(stage(&second.champions, &second.mode), &two, &one);
-        let back = back.expect("fits").expect("the rise differs");
+        let start = run.next_plan().clone();
+        let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let one = run.next_plan().clone();
+        let second = changed(&mut run, &first, "stairs.rise_m", "0.7");
+        let back = step(&second, run.next_plan(), &one);
         assert_eq!(back.champions[1].trial(), first.champions[1].trial());
         assert_eq!(back.champions[1].label(), "friction 0.3");
-        let end = followed(stage(&back.champions, &back.mode), &one, &start);
-        let end = end.expect("fits").expect("the friction differs");
+        let end = step(&back, &one, &start);
         assert_eq!((end.champions.len(), &end.mode), (1, &StageMode::Solo));
-        assert_eq!(end.champions[0].trial(), saved().trial());
+        assert_eq!(end.champions[0].trial(), climber(0).trial());
         // Redo.
-        let forth = followed(stage(&end.champions, &end.mode), &start, &one);
-        let forth = forth.expect("fits").expect("the friction differs");
+        let forth = step(&end, &start, &one);
         assert_eq!(forth.champions[1].trial(), first.champions[1].trial());
         assert_eq!(forth.mode, StageMode::what_if(start));
     }
@@ -153,95 +125,68 @@ mod tests {
     #[test]
     fn a_lane_that_stays_is_left_alone_by_undo() {
         let mut run = prepared_run();
-        let (start, tried) =
-            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
+        let start = run.next_plan().clone();
+        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
         let fixed = another_beside(&run, tried.champions, &tried.mode).expect("there is a copy");
-        let (one, three) = change(&mut run, &fixed.champions, &fixed.mode, "surface.friction", "2");
-        let labels = |show: &Show| -> Vec<String> {
-            show.champions.iter().map(|staged| staged.label().to_owned()).collect()
-        };
+        let one = run.next_plan().clone();
+        let three = changed(&mut run, &fixed, "surface.friction", "2");
         assert_eq!(labels(&three), ["climber", "friction 0.3", "friction 2"]);
         let two = run.next_plan().clone();
-        let back = followed(stage(&three.champions, &three.mode), &two, &one);
-        let back = back.expect("fits").expect("the friction differs");
+        let back = step(&three, &two, &one);
         assert_eq!(labels(&back), ["climber", "friction 0.3"]);
         // Further back the next run has the world of the original, and the copy still stays.
-        let first = followed(stage(&back.champions, &back.mode), &one, &start);
-        let first = first.expect("fits").expect("another lane is current");
+        let first = step(&back, &one, &start);
         assert_eq!(labels(&first), ["climber", "friction 0.3"]);
         let StageMode::WhatIf { current, .. } = first.mode else { panic!("a what-if") };
         assert_eq!(current, 0);
-        let forth = followed(stage(&first.champions, &first.mode), &start, &two);
-        let forth = forth.expect("fits").expect("the friction differs");
+        let forth = step(&first, &start, &two);
         assert_eq!(labels(&forth), ["climber", "friction 0.3", "friction 2"]);
     }
 
     #[test]
-    fn the_engine_of_a_champion_stays_when_a_preset_is_undone_and_redone() {
+    fn a_preset_is_undone_and_redone_and_the_engine_of_the_champion_stays() {
         let mut run = prepared_run();
         let start = run.next_plan().clone();
-        let ice = WorldChange::Preset("ice");
-        let tried = what_if(&mut run, stage(&[saved()], &StageMode::Solo), &ice);
-        let tried = tried.expect("allowed").expect("another world");
-        let changed = run.next_plan().clone();
-        let back = followed(stage(&tried.champions, &tried.mode), &changed, &start);
-        let back = back.expect("fits").expect("the world differs");
-        let forth = followed(stage(&back.champions, &back.mode), &start, &changed);
-        let forth = forth.expect("fits").expect("the world differs");
+        let tried = changed_by(&mut run, &solo(), &WorldChange::Preset("ice"));
+        let back = step(&tried, run.next_plan(), &start);
+        assert_eq!((back.champions.len(), back.champions[0].trial()), (1, climber(0).trial()));
+        let forth = step(&back, &start, run.next_plan());
         assert_eq!(forth.champions[1].trial(), tried.champions[1].trial());
-        assert_eq!(forth.champions[1].trial().physics.engine, saved().trial().physics.engine);
-        assert_ne!(changed.settings.trial.physics.engine, saved().trial().physics.engine);
+        let own = climber(0).trial().physics.engine;
+        assert_eq!(forth.champions[1].trial().physics.engine, own);
+        assert_ne!(run.next_settings().trial.physics.engine, own);
     }
 
     #[test]
     fn undoing_a_discard_shows_the_change_again() {
         let mut run = prepared_run();
-        let (_, tried) = change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
-        let changed = run.next_plan().clone();
+        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let with_change = run.next_plan().clone();
         let alone = dropped(&mut run, &tried.champions, &tried.mode).expect("allowed");
-        let alone = alone.expect("the original");
-        let again = followed(stage(&alone.champions, &alone.mode), run.next_plan(), &changed);
-        let again = again.expect("fits").expect("the friction differs");
+        let again = step(&alone.expect("the original"), run.next_plan(), &with_change);
         assert_eq!(again.champions[1].label(), "friction 0.3");
     }
 
     #[test]
     fn undoing_a_kept_change_leaves_one_lane() {
         let mut run = prepared_run();
-        let (start, tried) =
-            change(&mut run, &[saved()], &StageMode::Solo, "surface.friction", "0.3");
-        let kept = tried.champions[1].clone();
-        let back = followed(stage(&[kept], &StageMode::Solo), run.next_plan(), &start);
-        let back = back.expect("fits").expect("the friction differs");
+        let start = run.next_plan().clone();
+        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let kept = Show::solo(tried.champions[1].clone());
+        let back = step(&kept, run.next_plan(), &start);
         assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));
-        assert_eq!(
-            back.champions[0].trial().surface.friction,
-            start.settings.trial.surface.friction
-        );
+        let friction = start.settings.trial.surface.friction;
+        assert_eq!(back.champions[0].trial().surface.friction, friction);
     }
 
     #[test]
     fn a_separate_ground_is_removed_as_a_whole() {
         let mut run = prepared_run();
-        let (start, tried) =
-            change(&mut run, &[saved()], &StageMode::Solo, "ground.friction", "0.1");
-        let plan = run.next_plan().clone();
-        let back = followed(stage(&tried.champions, &tried.mode), &plan, &start);
-        let back = back.expect("fits").expect("the ground differs");
-        assert_eq!(back.champions[0].trial().ground, saved().trial().ground);
+        let start = run.next_plan().clone();
+        let tried = changed(&mut run, &solo(), "ground.friction", "0.1");
+        let back = step(&tried, run.next_plan(), &start);
+        assert_eq!(back.champions[0].trial().ground, climber(0).trial().ground);
         assert_eq!(back.mode, StageMode::Solo);
-    }
-
-    #[test]
-    fn undoing_a_preset_restores_the_world() {
-        let mut run = prepared_run();
-        let before = run.next_plan().clone();
-        let show =
-            what_if(&mut run, stage(&[saved()], &StageMode::Solo), &WorldChange::Preset("ice"));
-        let show = show.expect("allowed").expect("another world");
-        let back = followed(stage(&show.champions, &show.mode), run.next_plan(), &before);
-        let back = back.expect("fits").expect("another world");
-        assert_eq!((back.champions.len(), back.champions[0].trial()), (1, saved().trial()));
     }
 
     #[test]
@@ -249,11 +194,11 @@ mod tests {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
         run.set_population(9).expect("allowed");
-        let shown = followed(stage(&[saved()], &StageMode::Solo), &before, run.next_plan());
+        let shown = followed(stage(&solo()), &before, run.next_plan());
         assert!(shown.expect("fits").is_none());
         run.set_field("surface.friction", "0.3").expect("allowed");
-        let race = [saved(), saved()];
-        let shown = followed(stage(&race, &StageMode::Race), &before, run.next_plan());
+        let race = Show::race(vec![climber(0), climber(1)]);
+        let shown = followed(stage(&race), &before, run.next_plan());
         assert!(shown.expect("fits").is_none());
     }
 }

@@ -1,52 +1,81 @@
 //! Copies beside the original: made, left beside the next, kept and discarded.
 
 use super::*;
-use crate::studio::state::current_run::prepared_run;
+use crate::studio::state::current_run::{climber, prepared_run};
 use snakes_core::save::library::{SavePlace, load_entry};
-use snakes_core::save::shipped_champion;
 use snakes_core::world::PhysicsEngine;
 
-/// The stage with these champions, whose changes are tried from the start.
-fn stage<'a>(on_show: &'a [StagedChampion], mode: &'a StageMode) -> ChangedStage<'a> {
-    ChangedStage { on_show, mode, moment: None }
+/// The built-in champion alone.
+pub(in crate::studio::state) fn solo() -> Show {
+    Show::solo(climber(0))
 }
 
-fn saved(index: usize) -> StagedChampion {
-    StagedChampion::from_file(&shipped_champion().expect("well formed"), index, "climber")
+/// A stage whose changes are tried from the start.
+pub(in crate::studio::state) fn stage(show: &Show) -> ChangedStage<'_> {
+    ChangedStage { on_show: &show.champions, mode: &show.mode, moment: None }
+}
+
+fn field<'a>(field: &'a str, text: &'a str) -> WorldChange<'a> {
+    WorldChange::Fields(vec![(field, text)])
+}
+
+/// Applies a change to a stage, which it must affect.
+pub(in crate::studio::state) fn changed_by(
+    run: &mut CurrentRun,
+    show: &Show,
+    change: &WorldChange,
+) -> Show {
+    what_if(run, stage(show), change).expect("allowed").expect("it matters")
+}
+
+/// Applies a change of a field: see [`changed_by`].
+pub(in crate::studio::state) fn changed(
+    run: &mut CurrentRun,
+    show: &Show,
+    name: &str,
+    text: &str,
+) -> Show {
+    changed_by(run, show, &field(name, text))
+}
+
+/// The built-in champion with a copy that is changed after this number of steps.
+fn changed_at(step: u32, name: &str, text: &str) -> Show {
+    let mut rollout = climber(0).rollout();
+    while rollout.step() < step {
+        assert!(rollout.advance());
+    }
+    let on_show = solo();
+    let stage = ChangedStage { moment: Some(&rollout), ..stage(&on_show) };
+    let shown = what_if(&mut prepared_run(), stage, &field(name, text));
+    shown.expect("allowed").expect("it matters")
+}
+
+pub(in crate::studio::state) fn labels(show: &Show) -> Vec<&str> {
+    show.champions.iter().map(StagedChampion::label).collect()
 }
 
 #[test]
 fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
     let mut run = prepared_run();
     let plan = run.next_plan().clone();
-    let field = |field, text| WorldChange::Fields(vec![(field, text)]);
-    let first =
-        what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &field("surface.friction", "0.3"))
-            .expect("allowed")
-            .expect("it matters");
-    assert_eq!(first.champions[1].label(), "friction 0.3");
-    let second =
-        what_if(&mut run, stage(&first.champions, &first.mode), &field("stairs.rise_m", "0.7"))
-            .expect("allowed")
-            .expect("it matters");
-    let [original, changed] = &second.champions[..] else { panic!("two lanes") };
-    assert!(!original.is_changed() && changed.is_changed());
-    assert_eq!(changed.label(), "rise 0.7, friction 0.3");
-    let ground = field("ground.friction", "1");
-    let third = what_if(&mut run, stage(&second.champions, &second.mode), &ground);
-    let third = third.expect("allowed").expect("it matters");
-    assert_eq!(third.champions[1].label(), "separate ground, rise 0.7 and 1 more");
-    assert_eq!(changed.trial().surface.friction, 0.3);
-    assert_eq!(changed.trial().duration_s, original.trial().duration_s, "nothing else");
+    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+    assert_eq!(labels(&first)[1], "friction 0.3");
+    let second = changed(&mut run, &first, "stairs.rise_m", "0.7");
+    let [original, copy] = &second.champions[..] else { panic!("two lanes") };
+    assert!(!original.is_changed() && copy.is_changed());
+    assert_eq!(copy.label(), "rise 0.7, friction 0.3");
+    let third = changed(&mut run, &second, "ground.friction", "1");
+    assert_eq!(labels(&third)[1], "separate ground, rise 0.7 and 1 more");
+    assert_eq!(copy.trial().surface.friction, 0.3);
+    assert_eq!(copy.trial().duration_s, original.trial().duration_s, "nothing else");
     let kept = kept(&second.champions, &second.mode).expect("kept");
-    assert_eq!(kept.champions[0].trial(), changed.trial());
+    assert_eq!(kept.champions[0].trial(), copy.trial());
     let shown = dropped(&mut run, &second.champions, &second.mode);
     let shown = shown.expect("allowed").expect("the original");
     assert_eq!(shown.champions[0].trial(), original.trial());
     assert_eq!(*run.next_plan(), plan, "as it was before the first change");
     // Other settings changed meanwhile stay.
-    what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &field("surface.friction", "0.3"))
-        .expect("allowed");
+    changed(&mut run, &solo(), "surface.friction", "0.3");
     run.set_seed(77).expect("allowed");
     run.set_population(9).expect("allowed");
     dropped(&mut run, &second.champions, &second.mode).expect("allowed");
@@ -57,87 +86,52 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
 #[test]
 fn a_second_change_names_the_first_one_that_was_kept() {
     let mut run = prepared_run();
-    let change = |field, text| WorldChange::Fields(vec![(field, text)]);
-    let first = change("surface.friction", "0.3");
-    let first = what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &first);
-    let first = first.expect("allowed").expect("it matters");
+    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
     let kept = kept(&first.champions, &first.mode).expect("kept");
-    let second = change("stairs.rise_m", "0.7");
-    let second = what_if(&mut run, stage(&kept.champions, &kept.mode), &second);
-    let second = second.expect("allowed").expect("it matters");
-    let labels: Vec<&str> = second.champions.iter().map(StagedChampion::label).collect();
-    assert_eq!(labels, ["friction 0.3", "rise 0.7, friction 0.3"]);
+    let second = changed(&mut run, &kept, "stairs.rise_m", "0.7");
+    assert_eq!(labels(&second), ["friction 0.3", "rise 0.7, friction 0.3"]);
 }
 
 #[test]
 fn a_world_that_the_genome_does_not_fit_is_refused_with_the_reason() {
     let mut run = prepared_run();
-    let limbs = WorldChange::Fields(vec![("agent.limbs", "7")]);
-    let refusal = what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &limbs);
+    let refusal = what_if(&mut run, stage(&solo()), &field("agent.limbs", "7"));
     let refusal = refusal.expect_err("refused");
     assert!(refusal.contains("joints is 4 joints") && refusal.contains("7 limbs"), "{refusal}");
-    let preset =
-        what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &WorldChange::Preset("ice"));
-    let preset = preset.expect("allowed").expect("another world");
-    assert_eq!(preset.champions[1].label(), "ice");
+    let preset = changed_by(&mut run, &solo(), &WorldChange::Preset("ice"));
+    assert_eq!(labels(&preset)[1], "ice");
 }
 
 #[test]
 fn the_engine_of_a_champion_changes_only_where_its_body_demands_it() {
     let mut run = prepared_run();
-    let solo = StageMode::Solo;
-    let ice = WorldChange::Preset("ice");
     let engine_of = |show: &Show| show.champions[1].trial().physics.engine;
     for name in ["climber", "crawler"] {
         let (loaded, _) = load_entry(&SavePlace::Shipped(name)).expect("built in");
-        let original = StagedChampion::from_file(&loaded, 0, name);
-        let shown = what_if(&mut run, stage(&[original], &solo), &ice);
-        let shown = shown.expect("allowed").expect("another world");
+        let original = Show::solo(StagedChampion::from_file(&loaded, 0, name));
+        let shown = changed_by(&mut run, &original, &WorldChange::Preset("ice"));
         assert_eq!(engine_of(&shown), PhysicsEngine::Rapier, "{name}");
         assert_eq!(run.next_settings().trial.physics.engine, PhysicsEngine::Lanes);
     }
-    let in_lanes = changed(&mut run, stage(&[saved(0)], &solo), Trial::ENGINE_FIELD, "lanes");
+    let in_lanes = changed(&mut run, &solo(), Trial::ENGINE_FIELD, "lanes");
     let kept = kept(&in_lanes.champions, &in_lanes.mode).expect("kept");
     // The next run has rapier already.
     run.set_preset("squishy").expect("shipped");
-    let soft = changed(&mut run, stage(&kept.champions, &kept.mode), "youngs_modulus_pa", "90000");
+    let soft = changed(&mut run, &kept, "youngs_modulus_pa", "90000");
     assert_eq!(engine_of(&soft), PhysicsEngine::Rapier);
 }
 
 #[test]
 fn settings_outside_the_world_do_not_affect_the_stage() {
     let mut run = prepared_run();
-    let parents = WorldChange::Fields(vec![("evolution.population", "7")]);
-    let shown = what_if(&mut run, stage(&[saved(0)], &StageMode::Solo), &parents).expect("allowed");
-    assert!(shown.is_none());
+    let shown = what_if(&mut run, stage(&solo()), &field("evolution.population", "7"));
+    assert!(shown.expect("allowed").is_none());
     assert_eq!(run.next_settings().evolution.population, 7);
-}
-
-/// Applies a change of a field to a stage, which it must affect.
-fn changed(run: &mut CurrentRun, stage: ChangedStage, field: &str, text: &str) -> Show {
-    let shown = what_if(run, stage, &WorldChange::Fields(vec![(field, text)]));
-    shown.expect("allowed").expect("it matters")
-}
-
-fn labels(show: &Show) -> Vec<&str> {
-    show.champions.iter().map(StagedChampion::label).collect()
-}
-
-/// The shipped champion's rollout after this number of steps.
-fn moment(step: u32) -> Rollout {
-    let mut rollout = saved(0).rollout();
-    while rollout.step() < step {
-        assert!(rollout.advance());
-    }
-    rollout
 }
 
 #[test]
 fn a_change_is_tried_from_the_moment_on_and_kept_from_the_start() {
-    let mut run = prepared_run();
-    let (on_show, moment) = ([saved(0)], moment(312));
-    let stage = ChangedStage { moment: Some(&moment), ..stage(&on_show, &StageMode::Solo) };
-    let show = changed(&mut run, stage, "surface.friction", "0.3");
+    let show = changed_at(312, "surface.friction", "0.3");
     let copy = &show.champions[1];
     assert_eq!((copy.changes_at_step(), copy.label()), (Some(312), "friction 0.3"));
     assert_eq!(copy.caption(), "What if: friction 0.3, from 5.20 s on (climber)");
@@ -149,10 +143,7 @@ fn a_change_is_tried_from_the_moment_on_and_kept_from_the_start() {
 
 #[test]
 fn a_state_that_does_not_fit_starts_from_the_beginning_and_says_why() {
-    let mut run = prepared_run();
-    let (on_show, moment) = ([saved(0)], moment(700));
-    let stage = ChangedStage { moment: Some(&moment), ..stage(&on_show, &StageMode::Solo) };
-    let show = changed(&mut run, stage, "stairs.rise_m", "0.7");
+    let show = changed_at(700, "stairs.rise_m", "0.7");
     let copy = &show.champions[1];
     let reason = "from the start, because the snake has already reached the stairs";
     assert_eq!(copy.beginning_in_words().as_deref(), Some(reason));
@@ -162,10 +153,9 @@ fn a_state_that_does_not_fit_starts_from_the_beginning_and_says_why() {
 #[test]
 fn a_value_set_back_ends_the_what_if() {
     let mut run = prepared_run();
-    let on_show = [saved(0)];
-    let first = changed(&mut run, stage(&on_show, &StageMode::Solo), "surface.friction", "0.3");
-    let own = saved(0).trial().surface.friction.to_string();
-    let back = changed(&mut run, stage(&first.champions, &first.mode), "surface.friction", &own);
+    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+    let own = climber(0).trial().surface.friction.to_string();
+    let back = changed(&mut run, &first, "surface.friction", &own);
     assert_eq!((labels(&back), &back.mode), (vec!["climber"], &StageMode::Solo));
 }
 
@@ -173,28 +163,23 @@ fn a_value_set_back_ends_the_what_if() {
 fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     let mut run = prepared_run();
     let start = run.next_plan().clone();
-    let on_show = [saved(0)];
-    let ice = changed(&mut run, stage(&on_show, &StageMode::Solo), "surface.friction", "0.3");
+    let ice = changed(&mut run, &solo(), "surface.friction", "0.3");
     let fixed = another_beside(&run, ice.champions, &ice.mode).expect("a copy");
-    assert!(
-        another_beside(&run, fixed.champions.clone(), &fixed.mode).is_err(),
-        "it stays already"
-    );
+    let again = another_beside(&run, fixed.champions.clone(), &fixed.mode);
+    assert!(again.is_err(), "it stays already");
     // The further lane has the changes of the latest one, too.
-    let both = changed(&mut run, stage(&fixed.champions, &fixed.mode), "stairs.rise_m", "0.7");
+    let both = changed(&mut run, &fixed, "stairs.rise_m", "0.7");
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 0.3"]);
     // Another value replaces the lane that does not stay.
-    let both = changed(&mut run, stage(&both.champions, &both.mode), "surface.friction", "2");
+    let both = changed(&mut run, &both, "surface.friction", "2");
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 2"]);
     let after_both = run.next_plan().clone();
 
     let kept = kept_lane(&mut run, &both.champions, &both.mode, 1).expect("allowed");
     assert_eq!(labels(&kept.expect("a lane")), ["friction 0.3"]);
     let world = &run.next_settings().trial;
-    assert_eq!(
-        (world.surface.friction, world.stairs.rise_m.clone()),
-        (0.3, start.settings.trial.stairs.rise_m.clone())
-    );
+    assert_eq!(world.surface.friction, 0.3);
+    assert_eq!(world.stairs.rise_m, start.settings.trial.stairs.rise_m);
 
     run.set_next_plan(after_both).expect("allowed");
     let kept = kept_lane(&mut run, &both.champions, &both.mode, 2).expect("allowed");
@@ -212,16 +197,15 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
 #[test]
 fn five_lanes_are_the_most() {
     let mut run = prepared_run();
-    let on_show = [saved(0)];
-    let mut show = changed(&mut run, stage(&on_show, &StageMode::Solo), "surface.friction", "0.2");
+    let mut show = changed(&mut run, &solo(), "surface.friction", "0.2");
     for friction in ["0.3", "0.4", "0.5"] {
         show = another_beside(&run, show.champions, &show.mode).expect("there is room");
-        show = changed(&mut run, stage(&show.champions, &show.mode), "surface.friction", friction);
+        show = changed(&mut run, &show, "surface.friction", friction);
     }
     assert_eq!(show.champions.len(), 5);
     let refusal = another_beside(&run, show.champions.clone(), &show.mode).expect_err("full");
     assert!(refusal.contains("no room"), "{refusal}");
-    show = changed(&mut run, stage(&show.champions, &show.mode), "surface.friction", "0.6");
+    show = changed(&mut run, &show, "surface.friction", "0.6");
     let expected = ["climber", "friction 0.2", "friction 0.3", "friction 0.4", "friction 0.6"];
     assert_eq!(labels(&show), expected, "the latest still changes");
 }
