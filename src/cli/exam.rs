@@ -77,7 +77,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let mut each = files.iter().zip(champions);
     let result = each.try_for_each(|(file, loaded)| examine_one(file, loaded));
     if result.is_err() {
-        // What is finished took minutes.
+        // The finished rows took minutes.
         if !rows.is_empty() {
             print(&table(&suites, &rows))?;
         }

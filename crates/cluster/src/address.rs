@@ -86,7 +86,7 @@ fn check_address(address: &str) -> Result<(), Invalid> {
     if host.filter(is_one).is_some() {
         return Ok(());
     }
-    // The same host in the right form.
+    // An offer: this host in the right form.
     let host = address.rsplit_once("://").map_or(address, |(_, host)| host);
     let host = host.trim_end_matches('/');
     let better = if host.contains(':') { host.to_owned() } else { format!("{host}:4222") };

@@ -1,4 +1,4 @@
-//! What workers and coordinators tell of themselves once a second.
+//! Notices that workers and coordinators send about themselves once a second.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use snakes_core::{ENGINE_VERSION, Processors};
 /// The largest notice, in bytes.
 const LARGEST_NOTICE: usize = 4096;
 
-/// What a worker tells of itself.
+/// Notice of a worker about itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorkerNotice {
@@ -40,7 +40,7 @@ pub struct WorkerNotice {
     pub leaves: bool,
 }
 
-/// What a coordinator tells of its run.
+/// Notice of a coordinator about its run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunNotice {

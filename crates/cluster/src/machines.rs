@@ -1,4 +1,4 @@
-//! Who is there: the workers and runs on a server, and what waits in its queues.
+//! The workers and runs on a server, and the batches and results that wait in its queues.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
@@ -16,7 +16,7 @@ use snakes_core::check::{Invalid, quoted};
 /// How long notices are listened to: each machine sends two in this time.
 const LISTENING: Duration = Duration::from_millis(2 * NOTICE_INTERVAL.as_millis() as u64 + 200);
 
-/// What waits on the server for one run.
+/// Numbers of messages that wait on the server for one run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct RunQueue {
     /// Batches that no worker has finished.
@@ -32,7 +32,7 @@ pub struct Machines {
     pub workers: BTreeMap<String, WorkerNotice>,
     /// The runs with a coordinator, by name.
     pub runs: BTreeMap<String, RunNotice>,
-    /// What waits, by the name of the run.
+    /// The queues, by the name of the run.
     pub queues: BTreeMap<String, RunQueue>,
     /// Number of batches that workers have, by the proof of their engine.
     pub in_work: BTreeMap<String, u64>,

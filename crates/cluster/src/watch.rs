@@ -35,7 +35,7 @@ pub struct WatchedRun {
     pub local_threads: usize,
 }
 
-/// What a watch tells.
+/// News from a watch.
 #[derive(Debug, Clone)]
 pub enum WatchNews {
     /// The server is connected.
@@ -187,7 +187,7 @@ impl Watcher {
     /// Waits until no run uses a coordinator any more.
     fn end(mut self) {
         self.replaced.extend(self.current.take().and_then(|(_, coordinator)| coordinator));
-        // What was sent and not received refers to them, too.
+        // News that nobody has received refer to them, too.
         drop((self.news, self.asked));
         while !self.replaced.is_empty() {
             self.replaced.retain(|coordinator| Arc::strong_count(coordinator) > 1);

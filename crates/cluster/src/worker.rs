@@ -36,11 +36,11 @@ pub struct WorkerOptions {
     pub threads: usize,
     /// The proof of its engine: see [`super::proof`].
     pub proof: String,
-    /// What computes the outcomes.
+    /// Computes the outcomes.
     pub compute: Arc<dyn Compute>,
 }
 
-/// What the threads of a worker share.
+/// State that the threads of a worker share.
 #[derive(Debug)]
 struct Workplace {
     broker: Arc<Broker>,

@@ -18,7 +18,7 @@ use snakes_lab::run::evaluators::EVALUATORS;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
-/// What an error calls a whole number without another limit.
+/// The words of an error for a whole number without another limit.
 pub const WHOLE: &str = "a whole number from 0 up";
 
 /// Reads a number; `allowed` is what the error calls one.

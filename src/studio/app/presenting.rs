@@ -19,7 +19,7 @@ use crate::studio::workspace::Workspace;
 /// Time after which a resting pointer is hidden.
 const POINTER_RESTS: Duration = Duration::from_secs(2);
 
-/// What the presenting mode changes, as it was before.
+/// State from before the presenting mode, which changes it.
 #[derive(Debug)]
 struct BeforePresenting {
     window_mode: WindowMode,

@@ -222,7 +222,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     }
 }
 
-/// What has to be in view, kept from frame to frame, so that no frame allocates.
+/// Points that have to be in view, kept from frame to frame, so that no frame allocates.
 #[derive(Debug, Default)]
 struct InView {
     points: Vec<Vec3>,

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::meshes::{to_fading_mesh, to_mesh};
+use super::meshes::to_fading_mesh;
 use super::props::{Props, box_transform, themed};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;

@@ -162,7 +162,7 @@ impl Edited {
     /// Begins to evaluate the snake for its preview. A body that is not allowed has none; the panel says why.
     fn begin_preview(&mut self, notices: &mut Notices) {
         self.changed_at = None;
-        // What follows is another step.
+        // The next change is another step.
         self.last_set = None;
         self.ready = None;
         let Ok(champion) = self.unevaluated() else { return };

@@ -38,12 +38,12 @@ pub(crate) enum LinkState {
     Failed(String),
 }
 
-/// What is known of a connected server.
+/// Knowledge about a connected server.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct KnownServer {
     /// The proof of the engine of this program.
     pub proof: String,
-    /// What was listed last.
+    /// The machines that were listed last.
     pub machines: Option<Machines>,
     /// Why the server did not answer the latest request, in a line.
     pub problem: Option<String>,

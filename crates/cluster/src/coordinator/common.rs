@@ -1,4 +1,4 @@
-//! What the calls of a coordinator, its thread, and its own threads that compute have in common.
+//! State that the calls of a coordinator share with its thread and with its own threads that compute.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

@@ -20,7 +20,7 @@ use snakes_lab::run::headless::say;
 /// Maximum number of results that are fetched at once.
 const MOST_FETCHED: usize = 256;
 
-/// What arrived from the server.
+/// A message that arrived from the server.
 pub enum News {
     /// Results of a batch.
     Results(ResultBatch),

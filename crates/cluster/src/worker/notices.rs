@@ -1,4 +1,4 @@
-//! What a worker tells and hears beside its batches: notices once a second, and requests to check a result.
+//! Messages of a worker beside its batches: notices once a second, and answers to requests to check a result.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What the tasks of recent batches share: fetched from the coordinator once.
+//! Trials and genomes that the tasks of recent batches share: fetched from the coordinator once.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -15,7 +15,7 @@ pub(crate) struct Question {
     pub text: &'static str,
     /// Quantity that decides the answer.
     pub asks: Asks,
-    /// What the result shows; hidden before it.
+    /// The finding that the result shows; hidden before it.
     pub finding: &'static str,
 }
 

@@ -47,7 +47,7 @@ pub(super) const PROTECTION: Lesson = Lesson {
 
 /// Settings of a run with protection: small enough for a lesson.
 const PROTECTED: [(&str, &str); 7] = of_runs("age");
-/// The same without protection.
+/// Settings of that run without protection.
 const UNPROTECTED: [(&str, &str); 7] = of_runs("none");
 
 const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 7] {

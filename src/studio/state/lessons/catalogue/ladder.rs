@@ -43,6 +43,6 @@ const FLIGHTS: [[(&str, &str); 2]; 2] = [
 
 /// Settings of the run that learns on the stairs themselves.
 const DIRECT: [(&str, &str); 2] = [("generations", "54"), ("champion_trials", "0")];
-/// The same with a ladder.
+/// Settings of the run that reaches these stairs by a ladder.
 const BY_LADDER: [(&str, &str); 3] =
     [("generations", "54"), ("champion_trials", "0"), ("ladder.first_rise_m", "0.1")];
