@@ -37,11 +37,6 @@ impl ShownChampion {
         }
     }
 
-    /// Whether this is the given individual of the current run.
-    pub(crate) fn is(self, generation: u32, individual: u32) -> bool {
-        self == Self::Found { generation, individual }
-    }
-
     /// Its place in the current run, if it is of that.
     pub(crate) fn place(self) -> Option<IndividualId> {
         match self {
