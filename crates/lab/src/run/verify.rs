@@ -20,8 +20,8 @@ use snakes_core::schema::is_default;
 use snakes_core::world::PhysicsEngine;
 use snakes_core::{ENGINE_VERSION, Processors};
 
-use cases::cases;
-use drawn_points::drawn_points;
+pub use cases::golden_plans;
+use drawn_points::{DRAWN_POINTS, hash_of_drawn_points};
 
 /// A case with at most this many evaluations is short.
 const SHORT_BUDGET: u64 = 12;
@@ -74,12 +74,10 @@ pub enum VerifyError {
     Cancelled(#[from] Cancelled),
 }
 
-/// The runs whose bits are compared, with their descriptions.
-///
-/// # Errors
-/// An embedded preset or a case is broken, which a test rules out.
-pub fn golden_plans() -> Result<Vec<(String, RunPlan)>, VerifyError> {
-    cases()
+impl Trajectory {
+    fn of(what: String, hash: u64) -> Self {
+        Self { what, hash: format!("{hash:016x}") }
+    }
 }
 
 impl Trajectories {
@@ -121,7 +119,7 @@ impl Trajectories {
         let reference = Self::reference()?;
         let is_short = |(_, plan): &&(String, RunPlan)| plan.budget() <= SHORT_BUDGET;
         let mut trajectories = Vec::new();
-        let cases = cases()?;
+        let cases = golden_plans()?;
         let in_lanes = |(_, plan): &&(String, RunPlan)| is_in_lanes(plan);
         let of_rapier = cases.iter().filter(|case| is_short(case) && !in_lanes(case));
         let of_rapier = of_rapier.take(SHORT_CASES);
@@ -129,7 +127,7 @@ impl Trajectories {
         for (what, plan) in of_rapier.chain(of_lanes) {
             trajectories.push(trajectory(what.clone(), plan.clone(), evaluator, control)?);
         }
-        trajectories.push(drawn_points());
+        trajectories.push(Trajectory::of(DRAWN_POINTS.to_owned(), hash_of_drawn_points()));
         match trajectories.iter().find(|found| !reference.trajectories.contains(found)) {
             Some(other) => Err(VerifyError::OtherBits(other.what.clone())),
             None => Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories }),
@@ -145,14 +143,14 @@ impl Trajectories {
         control: &RunControl,
         mut progress: impl FnMut(usize, usize),
     ) -> Result<Self, VerifyError> {
-        let cases = cases()?;
+        let cases = golden_plans()?;
         let all = cases.len() + 1;
         let mut trajectories = Vec::with_capacity(all);
         for (index, (what, plan)) in cases.into_iter().enumerate() {
             progress(index, all);
             trajectories.push(trajectory(what, plan, evaluator, control)?);
         }
-        trajectories.push(drawn_points());
+        trajectories.push(Trajectory::of(DRAWN_POINTS.to_owned(), hash_of_drawn_points()));
         progress(all, all);
         Ok(Self { engine: ENGINE_VERSION, processors: Processors::THIS, trajectories })
     }
@@ -169,7 +167,7 @@ fn trajectory(
     while !experiment.is_over() {
         experiment.run_generation(evaluator, control)?;
     }
-    Ok(Trajectory { what, hash: format!("{:016x}", experiment.run_hash()) })
+    Ok(Trajectory::of(what, experiment.run_hash()))
 }
 
 fn is_in_lanes(plan: &RunPlan) -> bool {
@@ -187,7 +185,7 @@ mod tests {
         let mut report = load_preset("report").expect("well formed").settings;
         report.trial.ground = Some(report.trial.surface.clone());
         let unchanged = fields(&report);
-        let cases = cases().expect("allowed");
+        let cases = golden_plans().expect("allowed");
         let changed = |(path, value): &(String, String)| {
             cases.iter().any(|(_, plan)| {
                 fields(&plan.settings).iter().any(|(p, v)| p == path && v != value)
@@ -203,7 +201,11 @@ mod tests {
             .filter(|field| !changed(field) && is_written(&field.0))
             .map(|(path, _)| path)
             .collect();
-        assert_eq!(missing, Vec::<&String>::new(), "add a case to src/run/verify/cases.rs");
+        assert_eq!(
+            missing,
+            Vec::<&String>::new(),
+            "add a case to crates/lab/src/run/verify/cases.rs"
+        );
     }
 
     #[test]
@@ -233,7 +235,7 @@ mod tests {
 
     #[test]
     fn the_references_of_all_processors_agree_in_lanes() {
-        let cases = cases().expect("well formed");
+        let cases = golden_plans().expect("well formed");
         let is_of_lanes =
             |what: &String| cases.iter().any(|(case, plan)| case == what && is_in_lanes(plan));
         let of_lanes = |processors| -> Vec<Trajectory> {

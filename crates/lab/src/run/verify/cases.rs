@@ -384,8 +384,11 @@ const CASES: &[Case] = &[
 /// Presets in lanes whose worlds are computed in rapier, too.
 const ALSO_IN_RAPIER: [&str; 4] = ["climb", "rubber", "mud", "trampoline"];
 
-/// All runs with their descriptions: the cases, each kind of fitness, each shipped preset.
-pub(super) fn cases() -> Result<Vec<(String, RunPlan)>, VerifyError> {
+/// The runs whose bits are compared, with their descriptions: the cases, each kind of fitness, each shipped preset.
+///
+/// # Errors
+/// An embedded preset or a case is broken, which a test rules out.
+pub fn golden_plans() -> Result<Vec<(String, RunPlan)>, VerifyError> {
     let presets = shipped_presets()?;
     let sized = |settings: &mut Settings, population, generations| {
         settings.evolution.population = population;

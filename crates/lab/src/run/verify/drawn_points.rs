@@ -6,7 +6,6 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::Trajectory;
 use snakes_core::evolve::Settings;
 use snakes_core::rng::{Purpose, stream};
 
@@ -23,8 +22,11 @@ const RANGES: [(f32, f32); 9] = [
     (0.0, 3.0),
 ];
 
-/// Twenty streams: the default settings' point, then four drawn ones.
-pub fn drawn_points() -> Trajectory {
+/// Name of the points.
+pub const DRAWN_POINTS: &str = "100 points of the search for settings";
+
+/// Hash over twenty streams: the default settings' point, then four drawn ones.
+pub fn hash_of_drawn_points() -> u64 {
     let mut hash = Xxh3Default::new();
     let mut add = |value: f32| hash.update(&value.to_bits().to_le_bytes());
     let start = default_point();
@@ -35,8 +37,7 @@ pub fn drawn_points() -> Trajectory {
             RANGES.iter().for_each(|&(least, most)| add(drawn(least, most, &mut rng)));
         }
     }
-    let what = "100 points of the search for settings".to_owned();
-    Trajectory { what, hash: format!("{:016x}", hash.digest()) }
+    hash.digest()
 }
 
 fn default_point() -> [f32; 9] {
