@@ -50,7 +50,7 @@ fuzz_target!(|text: &str| {
                 let strategy = resume(plan, generation % 100, &knowledge.strategy);
                 let children = strategy.expect("it passed the same check").ask();
                 for child in children {
-                    assert_eq!(plan.settings.trial.check_genome(&child), Ok(()));
+                    assert_eq!(plan.settings.trial.check_genome(&child.genome), Ok(()));
                 }
             }
             Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),

@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use snakes_core::evolve::{Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
+use snakes_core::evolve::{Candidate, Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
 use snakes_core::genome::{Genome, Segment};
 use snakes_core::score::{Evaluation, FITNESS_RANGE, Scored};
 use snakes_core::world::Disqualification;
@@ -31,7 +31,7 @@ pub struct Search {
 struct SearchState {
     strategy: Box<dyn Strategy>,
     /// The generation that was asked for and not told yet.
-    asked: Option<Vec<Genome>>,
+    asked: Option<Vec<Candidate>>,
     finished: u32,
     evaluated: u64,
 }
@@ -39,11 +39,12 @@ struct SearchState {
 impl SearchState {
     /// The genomes of the generation in progress.
     fn genomes(&mut self) -> Vec<Genome> {
-        self.asked.get_or_insert_with(|| self.strategy.ask()).clone()
+        let asked = self.asked.get_or_insert_with(|| self.strategy.ask());
+        asked.iter().map(|candidate| candidate.genome.clone()).collect()
     }
 
-    /// The same, if they were asked for.
-    fn asked(&self, use_of_them: &str) -> PyResult<&[Genome]> {
+    /// The candidates of the generation in progress, if they were asked for.
+    fn asked(&self, use_of_them: &str) -> PyResult<&[Candidate]> {
         self.asked.as_deref().ok_or_else(|| {
             let message = format!("{use_of_them} without ask: call ask() or evaluate() first");
             PyRuntimeError::new_err(message)
@@ -61,13 +62,13 @@ impl Search {
     /// for.
     fn learn(&self, scored: Vec<Scored>, hashes: Option<&[u64]>) -> PyResult<()> {
         let mut state = self.state()?;
-        let genomes = state.asked("tell")?.to_vec();
-        if scored.len() != genomes.len() {
-            let allowed = format!("{}, as many as were asked for", genomes.len());
+        let candidates = state.asked("tell")?.to_vec();
+        if scored.len() != candidates.len() {
+            let allowed = format!("{}, as many as were asked for", candidates.len());
             return Err(refused("number of results", scored.len(), &allowed));
         }
-        let mut pairs = genomes.iter().zip(hashes.unwrap_or_default());
-        if let Some(index) = pairs.position(|(genome, hash)| genome.hash() != *hash) {
+        let mut pairs = candidates.iter().zip(hashes.unwrap_or_default());
+        if let Some(index) = pairs.position(|(candidate, hash)| candidate.genome.hash() != *hash) {
             let field = format!("results[{index}]");
             let allowed = "results of the genomes that were asked for, in their order";
             return Err(refused(&field, "of another genome", allowed));
@@ -78,12 +79,12 @@ impl Search {
         let strategy = &mut state.strategy;
         caught(|| {
             strategy.learn(episodes);
-            strategy.tell(&genomes, &evaluations);
+            strategy.tell(&candidates, &evaluations);
         })
         .map_err(crashed)?;
         state.asked = None;
         state.finished += 1;
-        state.evaluated += genomes.len() as u64;
+        state.evaluated += candidates.len() as u64;
         Ok(())
     }
 }
@@ -184,16 +185,16 @@ impl Search {
 
     /// A snake of the generation that was asked for, as a champion.
     fn champion(&self, py: Python<'_>, index: &Bound<'_, PyAny>) -> PyResult<Champion> {
-        let (mut genomes, generation) = {
+        let (mut candidates, generation) = {
             let state = self.state()?;
             (state.asked("champion")?.to_vec(), state.finished + 1)
         };
-        let last = (genomes.len() as u64).saturating_sub(1);
+        let last = (candidates.len() as u64).saturating_sub(1);
         let index = whole("index", index, 0..=last)?;
-        if genomes.is_empty() {
+        if candidates.is_empty() {
             return Err(refused("index", index, "nothing: the generation is empty"));
         }
-        let genome = genomes.swap_remove(index as usize);
+        let genome = candidates.swap_remove(index as usize).genome;
         let (preset, seed) = (self.plan.preset.clone(), self.plan.seed);
         let origin = Origin { preset, seed, generation, individual: index as u32 };
         evaluated(py, genome, self.plan.trial_in(generation), origin)

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 use snakes_core::evolve::{
-    Champion, Founder, Origin, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
+    Candidate, Champion, Founder, Origin, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
 };
-use snakes_core::genome::{Genome, GenomeSpace};
+use snakes_core::genome::GenomeSpace;
 use snakes_core::save::champion_text;
 use snakes_core::score::{Evaluation, Scored, score};
 
@@ -18,7 +18,7 @@ pub struct Evolution {
     plan: RunPlan,
     strategy: Box<dyn Strategy>,
     generation: u32,
-    genomes: Vec<Genome>,
+    candidates: Vec<Candidate>,
     scored: Vec<Scored>,
     best: Option<Champion>,
     /// The best fitness of each finished generation.
@@ -53,26 +53,25 @@ impl Evolution {
         let plan = plan.starting_from(Founder::new("page", champion.genome));
         let plan = plan.map_err(|error| error.to_string())?;
         let strategy = begin(&plan);
-        let genomes = strategy.ask();
+        let candidates = strategy.ask();
         let (scored, history) = (Vec::new(), Vec::new());
-        Ok(Self { plan, strategy, generation: 1, genomes, scored, best: None, history })
+        Ok(Self { plan, strategy, generation: 1, candidates, scored, best: None, history })
     }
 
     /// Evaluates the next individual, and lets the search learn after the last one of a generation.
     pub fn next(&mut self) -> Value {
         let index = self.scored.len();
-        let genome = &self.genomes[index];
+        let candidate = &self.candidates[index];
         let trial = self.plan.trial_in(self.generation);
-        let scored = score(genome, &trial);
+        let scored = score(&candidate.genome, &trial);
         let evaluation = scored.evaluation;
         self.scored.push(scored);
-        let is_candidate =
-            evaluation.disqualified.is_none() && self.strategy.may_be_champion(index);
-        let is_better = is_candidate
+        let is_better = evaluation.disqualified.is_none()
+            && candidate.may_be_champion
             && self.best.as_ref().is_none_or(|best| evaluation.fitness > best.evaluation.fitness);
         if is_better {
             self.best = Some(Champion {
-                genome: genome.clone(),
+                genome: candidate.genome.clone(),
                 trial,
                 evaluation,
                 chosen_by: None,
@@ -84,7 +83,7 @@ impl Evolution {
                 },
             });
         }
-        if self.scored.len() == self.genomes.len() {
+        if self.scored.len() == self.candidates.len() {
             self.finish_generation();
         }
         let mut state = self.state();
@@ -98,9 +97,9 @@ impl Evolution {
         let best = ranking(&evaluations).first().map(|&index| evaluations[index].fitness);
         self.history.extend(best);
         self.strategy.learn(episodes);
-        self.strategy.tell(&self.genomes, &evaluations);
+        self.strategy.tell(&self.candidates, &evaluations);
         self.generation += 1;
-        self.genomes = self.strategy.ask();
+        self.candidates = self.strategy.ask();
     }
 
     /// The progress so far.
@@ -108,7 +107,7 @@ impl Evolution {
         json!({
             "generation": self.generation,
             "individual": self.scored.len(),
-            "population": self.genomes.len(),
+            "population": self.candidates.len(),
             "history": self.history,
             "best": self.best.as_ref().map(|best| best.evaluation.fitness),
             "meaning": self.best.as_ref().map(Champion::reached),

@@ -132,7 +132,7 @@ fn the_core_of_a_page_computes_the_golden_trajectories() {
     let mut expected = vec!["411cfb816946c8fb".to_owned()];
     for (_, plan) in &plans {
         let trial = plan.trial_in(1);
-        let genome = begin(plan).ask().swap_remove(0);
+        let genome = begin(plan).ask().swap_remove(0).genome;
         let evaluation = evaluate(&genome, &trial);
         let origin =
             Origin { preset: "golden".to_owned(), seed: plan.seed, generation: 1, individual: 0 };

@@ -1,8 +1,9 @@
 //! Evolution: the settings and the plan of a run, and the strategies that search.
 //!
-//! A strategy is asked for genomes and told their evaluations. It sees neither the world, nor a thread, nor a clock.
+//! A strategy is asked for candidates and told their evaluations. It sees neither the world, nor a thread, nor a clock.
 
 mod archives;
+mod candidate;
 mod champion;
 mod parents;
 mod plan;
@@ -15,6 +16,7 @@ pub use archives::{
     Archive, ArchiveAxis, AxisScale, Descriptor, Elite, EliteGenes, Front, FrontMember,
     body_archive, body_cell, feasible_cells,
 };
+pub use candidate::{Candidate, OwnStairs};
 pub use champion::{Champion, Origin};
 pub use parents::{IndividualId, Parents};
 pub use plan::{
@@ -29,4 +31,4 @@ pub use settings::{
 };
 pub use stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};
-pub use strategy::{OwnStairs, Strategy, StrategyState, ranking};
+pub use strategy::{Strategy, StrategyState, ranking};

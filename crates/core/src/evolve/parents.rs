@@ -9,14 +9,6 @@ pub struct IndividualId {
     pub individual: u32,
 }
 
-impl IndividualId {
-    /// The ids of some individuals of a generation.
-    pub(super) fn all(generation: u32, individuals: &[usize]) -> Vec<Self> {
-        let id = |&individual: &usize| Self { generation, individual: individual as u32 };
-        individuals.iter().map(id).collect()
-    }
-}
-
 /// The parents of an individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parents {

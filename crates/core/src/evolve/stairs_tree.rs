@@ -75,11 +75,26 @@ impl Agent {
     /// # Errors
     /// Its genes do not fit.
     pub fn check(&self, plan: &RunPlan) -> Result<(), Invalid> {
-        check_genome(&self.genome, plan)
+        plan.check_genome(&self.genome)
     }
 }
 
 impl StairsNode {
+    /// The first stairs of a run, without an agent.
+    pub(super) fn root(stairs: StairsGenome) -> Self {
+        Self {
+            stairs,
+            parent: None,
+            born: 0,
+            archived: None,
+            solved: None,
+            is_new_challenge: false,
+            agent: None,
+            score: 0.0,
+            trials: 0,
+        }
+    }
+
     /// Checks that these stairs can be number `index`, from 0, of a run that has come to this round.
     ///
     /// # Errors
@@ -129,14 +144,4 @@ const MOST_SCORE: f32 = 10.0;
 /// It is negative, or greater than any share.
 pub fn check_score(field: &str, score: f32) -> Result<(), Invalid> {
     within(field, score, 0.0..=MOST_SCORE)
-}
-
-/// Checks that a genome fits the plan of a run.
-///
-/// # Errors
-/// It has another shape, or a gene out of its range.
-pub fn check_genome(genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
-    let trial = &plan.settings.trial;
-    plan.settings.genome.check_genome(genome, trial.genome_shape())?;
-    trial.check_genome(genome)
 }

@@ -1,21 +1,18 @@
 //! The interface of all strategies, and how a generation is ranked.
 
-use std::sync::Arc;
-
 use ron::ser::{PrettyConfig, to_string_pretty};
 use ron::value::RawValue;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::archives::Archive;
-use super::parents::{IndividualId, Parents};
+use super::candidate::Candidate;
+use super::parents::IndividualId;
 use super::plan::RunPlan;
 use super::stairs_tree::StairsTree;
 use crate::check::Invalid;
-use crate::genome::{Genome, StairsGenome};
 use crate::learn::Episode;
-use crate::score::{Evaluation, Trial};
-use crate::world::Stairs;
+use crate::score::Evaluation;
 
 /// A way to search, one generation at a time.
 ///
@@ -36,20 +33,14 @@ pub trait Strategy: Send {
     where
         Self: Sized;
 
-    /// The genomes of the next generation, in the order of their indices. Asking twice gives the same.
-    fn ask(&self) -> Vec<Genome>;
+    /// The candidates of the next generation, in the order of their indices. Asking twice gives the same.
+    fn ask(&self) -> Vec<Candidate>;
 
-    /// Number of individuals in the next generation.
+    /// Number of candidates in the next generation.
     fn population(&self) -> usize;
 
-    /// The stairs of each genome that `ask` returns, in the same order, for a strategy whose stairs evolve; empty if all are
-    /// evaluated in the trial of the run.
-    fn stairs(&self) -> Vec<OwnStairs> {
-        Vec::new()
-    }
-
-    /// Learns from the evaluations of the genomes that the last `ask` returned, in the same order.
-    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]);
+    /// Learns from the candidates that the last `ask` returned and their evaluations, in the same order.
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]);
 
     /// Forgets the values of all generations so far, with which those of later ones cannot be compared, because a ladder may
     /// put them on other stairs. A search that ends when its values no longer change would end too early.
@@ -60,14 +51,9 @@ pub trait Strategy: Send {
         false
     }
 
-    /// Learns from the episodes of the genomes that the last `ask` returned, in the same order, before it is told their
+    /// Learns from the episodes of the candidates that the last `ask` returned, in the same order, before it is told their
     /// evaluations. An evaluation that failed has none.
     fn learn(&mut self, _episodes: Vec<Option<Episode>>) {}
-
-    /// Whether an individual of the generation that `ask` returns may become a champion.
-    fn may_be_champion(&self, _individual: usize) -> bool {
-        true
-    }
 
     /// Everything it has learned: together with settings, seed and the number of finished generations, enough to
     /// continue bit for bit.
@@ -76,9 +62,6 @@ pub trait Strategy: Send {
     /// Adopts the settings of a plan in which some have changed that
     /// [`may_change_during_run`](super::may_change_during_run) allows. They apply from the next generation on.
     fn apply_settings(&mut self, plan: &RunPlan);
-
-    /// The parents of the genomes that `ask` returns, in the same order.
-    fn parents(&self) -> Vec<Parents>;
 
     /// The individuals that may become parents from now on, in an order of the strategy's own.
     fn parent_pool(&self) -> Vec<IndividualId> {
@@ -90,12 +73,6 @@ pub trait Strategy: Send {
     /// parents keeps ids in its state. Ids that do not fit the state are ignored, and stay unknown.
     fn restore_parents(&mut self, _pool: &[IndividualId]) {}
 
-    /// The number of the species of each genome that `ask` returns, in the same order; empty for a strategy without
-    /// species. Numbers ascend in the order of appearance.
-    fn species(&self) -> &[u32] {
-        &[]
-    }
-
     /// A copy of the archive of elites, if it keeps one.
     fn archive(&self) -> Option<Archive> {
         None
@@ -104,40 +81,6 @@ pub trait Strategy: Send {
     /// A copy of the tree of stairs, if stairs evolve.
     fn stairs_tree(&self) -> Option<StairsTree> {
         None
-    }
-}
-
-/// The stairs on which an individual is evaluated, if they are not those of its run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OwnStairs {
-    /// The stairs.
-    pub stairs: Arc<Stairs>,
-    /// Number of perturbed trials beside those of the run.
-    pub perturbed: u32,
-}
-
-impl OwnStairs {
-    /// The stairs of a batch: of each individual its staircase, and its number of perturbed trials. Equal stairs are built once.
-    pub fn of_batch(batch: impl IntoIterator<Item = (StairsGenome, u32)>) -> Vec<Self> {
-        let mut built: Vec<(StairsGenome, Arc<Stairs>)> = Vec::new();
-        let own = |(genome, perturbed): (StairsGenome, u32)| {
-            // Those of a batch mostly follow one another.
-            let known = built.iter().rev().find(|(of, _)| *of == genome);
-            let stairs = known.map(|(_, stairs)| Arc::clone(stairs)).unwrap_or_else(|| {
-                let stairs = Arc::new(genome.stairs());
-                built.push((genome, Arc::clone(&stairs)));
-                stairs
-            });
-            Self { stairs, perturbed }
-        };
-        batch.into_iter().map(own).collect()
-    }
-
-    /// A trial on these stairs.
-    pub fn on(&self, trial: &Trial) -> Trial {
-        let mut trial = trial.on_stairs((*self.stairs).clone());
-        trial.repeats.trials += self.perturbed;
-        trial
     }
 }
 

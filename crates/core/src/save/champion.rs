@@ -169,7 +169,7 @@ mod tests {
         settings.evolution.population = 4;
         settings.trial.duration_s = 1.0;
         let plan = RunPlan::new("test", 5, settings);
-        let genome = begin(&plan).ask().remove(0);
+        let genome = begin(&plan).ask().remove(0).genome;
         let trial = plan.settings.trial;
         let evaluation = evaluate(&genome, &trial);
         let origin = Origin { preset: plan.preset, seed: 5, generation: 1, individual: 0 };

@@ -36,7 +36,7 @@ mod fixtures {
     use super::{LibraryEntry, SavePlace};
     use crate::evolve::{Champion, Origin, RunPlan, Settings, begin};
     use crate::save::{
-        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, StatisticsRecord,
+        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, Statistics,
         generations_hash, shipped_champion, store_champion,
     };
     use crate::score::{Recording, evaluate};
@@ -68,12 +68,12 @@ mod fixtures {
         let (mut folder, _) = opened.expect("opened");
         let (mut search, mut records) = (begin(&plan), Vec::new());
         for generation in 1..=2 {
-            let genomes = search.ask();
+            let asked = search.ask();
             let evaluations: Vec<_> =
-                genomes.iter().map(|genome| evaluate(genome, &plan.settings.trial)).collect();
-            search.tell(&genomes, &evaluations);
+                asked.iter().map(|of| evaluate(&of.genome, &plan.settings.trial)).collect();
+            search.tell(&asked, &evaluations);
             let champion = Champion {
-                genome: genomes[0].clone(),
+                genome: asked[0].genome.clone(),
                 trial: plan.settings.trial.clone(),
                 evaluation: evaluations[0],
                 chosen_by: None,
@@ -81,7 +81,7 @@ mod fixtures {
             };
             let recording = Recording::of(&champion.genome, &champion.trial);
             let fitness = f64::from(champion.evaluation.fitness);
-            let statistics = StatisticsRecord {
+            let statistics = Statistics {
                 mean: fitness,
                 best: fitness,
                 median: fitness,
@@ -91,7 +91,7 @@ mod fixtures {
                 lower_quartile: None,
                 upper_quartile: None,
             };
-            let of_test = GenerationRecord::of_test(generation, genomes.len() as u32);
+            let of_test = GenerationRecord::of_test(generation, asked.len() as u32);
             records.push(GenerationRecord { statistics: Some(statistics), ..of_test });
             let hash = generations_hash(&records);
             let state = SearchState { strategy: search.state(), front: Default::default() };

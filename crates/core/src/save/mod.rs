@@ -61,7 +61,7 @@ pub use preset::{
     store_preset,
 };
 pub use record::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, Statistics,
     generations_hash, load_log, parse_evaluations, parse_records,
 };
 pub use run::{ExistingRun, RunFolder, SavedProgress};

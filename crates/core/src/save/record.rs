@@ -36,7 +36,7 @@ pub struct GenerationRecord {
     /// Index of the first one on the landing; none if there is none.
     pub first_on_landing: Option<u32>,
     /// Fitness statistics of the healthy individuals; none if all were disqualified.
-    pub statistics: Option<StatisticsRecord>,
+    pub statistics: Option<Statistics>,
     /// The champion's fitness over the varied trials on which the run chose it; none if it chose by the trial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen_by: Option<f64>,
@@ -56,22 +56,35 @@ pub struct GenerationRecord {
     pub elapsed_s: f64,
 }
 
-/// Fitness statistics of a generation in the log.
+/// Statistics over the fitness of the healthy individuals of one generation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[expect(missing_docs, reason = "the fields are those of run::Statistics, which explains them")]
-pub struct StatisticsRecord {
+pub struct Statistics {
+    /// Arithmetic mean.
     pub mean: f64,
+    /// Greatest fitness.
     pub best: f64,
+    /// Median; of an even number, the mean of the two middle ones.
     pub median: f64,
+    /// Standard deviation of the whole population (divided by n).
     pub std: f64,
+    /// Least fitness.
     pub worst: f64,
+    /// Mean final y of the centre, in m, independent of what is rewarded.
     pub mean_centre_y_m: f64,
-    /// Absent in the oldest logs.
+    /// Lower quartile; none in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_quartile: Option<f64>,
+    /// Upper quartile; none in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_quartile: Option<f64>,
+}
+
+impl Statistics {
+    /// Lower and upper quartile; none in logs of earlier versions of the program.
+    pub fn quartiles(&self) -> Option<(f64, f64)> {
+        self.lower_quartile.zip(self.upper_quartile)
+    }
 }
 
 /// A rung of a ladder of stairs, and the success of a generation on it. The ladder's next rung follows from these of all
@@ -250,8 +263,7 @@ pub fn parse_records(
             within("chosen_by", fitness, least..=most)?;
         }
         if let Some(statistics) = record.statistics {
-            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
-                statistics;
+            let Statistics { mean, best, median, std, worst, mean_centre_y_m, .. } = statistics;
             let quartiles = [statistics.lower_quartile, statistics.upper_quartile];
             let values = [mean, best, median, std, worst, mean_centre_y_m];
             let mut values = values.into_iter().chain(quartiles.into_iter().flatten());

@@ -1,9 +1,10 @@
 //! A run of the learning method: asks the strategy, evaluates the genomes, and tells it the results in order.
 
+mod best;
 mod changes;
 mod choice;
+mod evaluation;
 mod ladder;
-mod trials;
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, VecDeque};
@@ -12,22 +13,23 @@ use std::time::Instant;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::evaluator::{EvaluationResult, Evaluator, Job, evaluate_caught};
+use super::evaluated_generation::EvaluatedGeneration;
+use super::evaluator::Evaluator;
+use super::generation_trials::GenerationTrials;
 use super::lineage::{Ancestor, Ancestry, Generation, Lineage};
-use super::report::{EvaluatedGeneration, GenerationReport};
+use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
+use best::Best;
 use choice::choose_champion;
+use evaluation::{GenerationResults, evaluate};
 use ladder::Ladder;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{
-    Archive, Champion, Front, FrontMember, IndividualId, Origin, RunPlan, SettingChange,
-    StairsTree, Strategy, begin, ranking, resume,
+    Archive, Candidate, Champion, Front, IndividualId, RunPlan, SettingChange, StairsTree,
+    Strategy, begin, resume,
 };
-use snakes_core::genome::Genome;
 use snakes_core::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
-use snakes_core::score::{Evaluation, Scored, Trial};
-use snakes_core::world::Disqualification;
-pub use trials::GenerationTrials;
+use snakes_core::score::{Evaluation, Trial};
 
 /// A run, between two generations.
 pub struct Experiment {
@@ -36,13 +38,15 @@ pub struct Experiment {
     /// Recorded changes that take effect with later generations, the earliest first.
     ahead: VecDeque<SettingChange>,
     strategy: Box<dyn Strategy>,
+    /// The candidates of the next generation, once somebody has asked for them.
+    asked: OnceLock<Vec<Candidate>>,
     ladder: Option<Ladder>,
     front: Front,
     finished: u32,
     evaluated: u64,
     simulations: u64,
     hash: Xxh3Default,
-    best: Option<Champion>,
+    best: Best,
     /// The best individuals of the last generation, the best first.
     leaders: Vec<Champion>,
     /// The last generation, if this session has finished it.
@@ -62,6 +66,7 @@ impl Experiment {
     pub fn new(plan: RunPlan) -> Self {
         Self {
             strategy: begin(&plan),
+            asked: OnceLock::new(),
             ladder: Ladder::begin(&plan.settings),
             plan,
             ahead: VecDeque::new(),
@@ -70,7 +75,7 @@ impl Experiment {
             evaluated: 0,
             simulations: 0,
             hash: Xxh3Default::new(),
-            best: None,
+            best: Best::default(),
             leaders: Vec::new(),
             generation: None,
             lineage: Lineage::default(),
@@ -106,9 +111,7 @@ impl Experiment {
             progress.records.iter().map(|record| u64::from(record.evaluations)).sum();
         experiment.known = progress.evaluations.iter().copied().collect();
         for champion in progress.champions.iter().flatten() {
-            if experiment.was_better(champion) {
-                experiment.best = Some(champion.clone());
-            }
+            experiment.best.restore(champion, &experiment.plan.settings.evolution);
         }
         experiment.lineage = Lineage::recalled(&progress.lineage);
         if let Some(last) = progress.lineage.last().filter(|last| last.generation == finished) {
@@ -179,13 +182,14 @@ impl Experiment {
 
     /// The ancestry of the best individual so far.
     pub fn ancestry(&self) -> Ancestry {
-        self.lineage.ancestry(self.best_place())
+        self.lineage.ancestry(self.best.place())
     }
 
     /// The known parents of the next generation, each with its number of children, in the order of their places.
     pub fn parents(&self) -> Vec<(Arc<Ancestor>, u32)> {
         let mut children = BTreeMap::new();
-        for place in self.strategy.parents().into_iter().flat_map(|parents| parents.ids()) {
+        let asked = self.asked.get_or_init(|| self.strategy.ask());
+        for place in asked.iter().flat_map(|candidate| candidate.parents.ids()) {
             *children.entry(place).or_insert(0) += 1;
         }
         let known = |(place, count)| Some((Arc::clone(self.lineage.get(place)?), count));
@@ -197,11 +201,6 @@ impl Experiment {
         self.lineage_record.as_ref()
     }
 
-    fn best_place(&self) -> Option<IndividualId> {
-        let Origin { generation, individual, .. } = self.best.as_ref()?.origin;
-        Some(IndividualId { generation, individual })
-    }
-
     /// The individuals so far that no other beats in both distance and energy.
     pub fn front(&self) -> &Front {
         &self.front
@@ -209,7 +208,7 @@ impl Experiment {
 
     /// The best individual of all generations so far; of equals, the first found.
     pub fn best(&self) -> Option<&Champion> {
-        self.best.as_ref()
+        self.best.champion()
     }
 
     /// Hash over the bits of every evaluation so far, in the order of generations and individuals.
@@ -248,72 +247,42 @@ impl Experiment {
         control.start_generation();
         self.apply_due_changes();
         let generation = self.finished + 1;
-        let (genomes, parents) = (self.strategy.ask(), self.strategy.parents());
+        // If this generation is cancelled, the strategy is asked again.
+        let candidates = self.asked.take().unwrap_or_else(|| self.strategy.ask());
+        let trials = GenerationTrials::new(self.trial_in(generation), &candidates);
         let record = |individual, evaluation: &_| record(generation, individual, evaluation);
-        let stairs = self.strategy.stairs();
-        let trials = GenerationTrials::new(self.trial_in(generation), &stairs);
-        let results = self.evaluate(&genomes, &trials, evaluator, control, &record)?;
-        let (mut evaluations, mut episodes, mut messages) = (Vec::new(), Vec::new(), Vec::new());
-        for result in results {
-            let (scored, message) = match result {
-                Ok(scored) => (scored, None),
-                Err(message) => {
-                    (Scored { evaluation: void_evaluation(), episode: None }, Some(message))
-                }
-            };
-            evaluations.push(scored.evaluation);
-            episodes.push(scored.episode);
-            messages.push(message);
+        if self.strategy.learns_from_episodes() {
+            // A journal of evaluations has no experience to learn from; it is computed again, with the same bits.
+            self.known.clear();
         }
-
-        let mut ranking = ranking(&evaluations);
-        ranking.retain(|&index| self.strategy.may_be_champion(index));
-        let bands = bands(&self.plan, &*self.strategy, &genomes);
+        let GenerationResults { evaluations, episodes, messages } =
+            evaluate(&candidates, &trials, &self.known, evaluator, control, &record)?;
         let evaluated = EvaluatedGeneration {
             plan: &self.plan,
             generation,
             trials: &trials,
             rung: self.ladder.as_ref().map(|ladder| ladder.rung_of(&evaluations, &trials.common)),
-            genomes: &genomes,
+            candidates: &candidates,
             evaluations: &evaluations,
-            species: &bands,
         };
-        if trials.are_own() {
-            // The best on stairs that they climb, the highest first.
-            let rank = |index: usize| self.rank(&evaluated.individual(index));
-            let ranks: Vec<[f32; 2]> = (0..genomes.len()).map(rank).collect();
-            ranking.sort_by(|&a, &b| {
-                ranks[b].partial_cmp(&ranks[a]).unwrap_or(std::cmp::Ordering::Equal)
-            });
-        }
+        let settings = &self.plan.settings.evolution;
+        let rank = |champion: &Champion| Best::rank(champion, settings);
+        let ranking = evaluated.ranking(rank);
         let (mut champion, of_choice) =
-            choose_champion(&evaluated, &ranking, evaluator, control, |of| self.rank(of))?;
+            choose_champion(&evaluated, &ranking, evaluator, control, rank)?;
         if trials.are_own() {
             // There are thousands of generations. Those that are better than all before are enough.
-            champion = champion.filter(|champion| self.is_better(champion));
+            champion = champion.filter(|champion| self.best.is_beaten_by(champion, settings));
         }
         // People read its rules. A run that starts from it learns again what it needs besides.
         champion.iter_mut().for_each(|champion| champion.genome.controller.compact());
-        let mut report = evaluated.report(champion, messages, started.elapsed());
+        let mut report = GenerationReport::of(&evaluated, champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);
         self.leaders = leaders.map(|&index| evaluated.individual(index)).collect();
+        evaluated.extend(&mut self.front);
 
-        for (index, (genome, evaluation)) in genomes.iter().zip(&evaluations).enumerate() {
-            // Distances on different stairs cannot be compared.
-            if trials.are_own() || !self.strategy.may_be_champion(index) {
-                continue;
-            }
-            let start_y_m = trials.common.middle_start_y_m(genome);
-            // Clone only the few genomes that enter the front.
-            if self.front.accepts(genome, evaluation, start_y_m) {
-                let (genome, evaluation) = (genome.clone(), *evaluation);
-                let individual = index as u32;
-                let member = FrontMember { genome, evaluation, generation, individual };
-                self.front.add(member, start_y_m);
-            }
-        }
         self.strategy.learn(episodes);
-        self.strategy.tell(&genomes, &evaluations);
+        self.strategy.tell(&candidates, &evaluations);
         report.set_stairs(self.strategy.stairs_tree().as_ref());
         self.finished = generation;
         if let Some((ladder, rung)) = self.ladder.as_mut().zip(report.rung) {
@@ -326,66 +295,14 @@ impl Experiment {
             }
         }
         self.evaluated += evaluations.len() as u64;
-        let simulations = evaluations
-            .iter()
-            .enumerate()
-            .map(|(index, evaluation)| u64::from(trials.of(index).simulations_of(evaluation)));
-        self.simulations += simulations.sum::<u64>() + of_choice;
+        self.simulations += trials.simulations(&evaluations) + of_choice;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
-        self.keep_if_better(report.champion.as_ref());
-        let genomes = genomes.into_iter().map(Arc::new).collect();
-        self.remember(Generation { number: generation, genomes, evaluations, parents, stairs });
-        Ok(report)
-    }
-
-    /// Evaluates the genomes whose results are not known yet. Returns all results in the order of the individuals,
-    /// whichever the evaluator reported first.
-    fn evaluate(
-        &self,
-        genomes: &[Genome],
-        trials: &GenerationTrials,
-        evaluator: &dyn Evaluator,
-        control: &RunControl,
-        record: &(dyn Fn(u32, &Evaluation) + Sync),
-    ) -> Result<Vec<EvaluationResult>, Cancelled> {
-        // A journal of evaluations has no experience to learn from; it is computed again, with the same bits.
-        let is_enough = !self.strategy.learns_from_episodes();
-        let result_of = |index: usize| match self.known.get(&(index as u32)) {
-            Some(known) if is_enough => {
-                OnceLock::from(Ok(Scored { evaluation: *known, episode: None }))
-            }
-            _ => OnceLock::new(),
-        };
-        let results: Vec<OnceLock<EvaluationResult>> = (0..genomes.len()).map(result_of).collect();
-        let unknown: Vec<usize> =
-            (0..genomes.len()).filter(|&index| results[index].get().is_none()).collect();
-        (unknown.len()..genomes.len()).for_each(|_| control.count_one());
-        let store = |index: usize, result: EvaluationResult| {
-            let evaluation = result.as_ref().ok().map(|scored| scored.evaluation);
-            if results[index].set(result).is_err() {
-                return;
-            }
-            // A crash is not recorded: after a resume it is tried again, perhaps by a corrected program.
-            if let Some(evaluation) = evaluation {
-                record(index as u32, &evaluation);
-            }
-            control.count_one();
-        };
-        let job = |&index: &usize| Job { genome: &genomes[index], trial: trials.index_of(index) };
-        let jobs: Vec<Job<'_>> = unknown.iter().map(job).collect();
-        evaluator.evaluate_jobs(&trials.all, &jobs, control, &|job, result| {
-            if let Some(&index) = unknown.get(job) {
-                store(index, result);
-            }
-        })?;
-        for &index in &unknown {
-            if results[index].get().is_none() {
-                control.wait_while_paused()?;
-                store(index, evaluate_caught(&genomes[index], trials.of(index)));
-            }
+        if let Some(champion) = &report.champion {
+            self.best.take(champion, &self.plan.settings.evolution);
         }
-        Ok(results.into_iter().filter_map(OnceLock::into_inner).collect())
+        self.remember(Generation::of(generation, candidates, evaluations));
+        Ok(report)
     }
 
     /// The trial of a generation: that of the plan, on the rung that the ladder has reached.
@@ -399,63 +316,10 @@ impl Experiment {
 
     /// Keeps the generation that was just finished, and its possible parents in the lineage.
     fn remember(&mut self, generation: Generation) {
-        let (pool, best) = (self.strategy.parent_pool(), self.best_place());
+        let (pool, best) = (self.strategy.parent_pool(), self.best.place());
         self.lineage_record = Some(self.lineage.add(&generation, &pool, best));
         self.lineage.retain(pool.into_iter().chain(best));
         self.generation = Some(Arc::new(generation));
-    }
-
-    /// The numbers by which champions of this run are compared: the greater are the better one.
-    fn rank(&self, champion: &Champion) -> [f32; 2] {
-        let settings = &self.plan.settings.evolution;
-        if settings.strategy.info().evolves_stairs {
-            champion.rank_of_climbed(settings.climbed_from())
-        } else {
-            champion.rank()
-        }
-    }
-
-    /// Whether a champion that an earlier session has kept is better than those before it. Where stairs evolve, only better
-    /// ones were kept, by the settings of that time.
-    fn was_better(&self, kept: &Champion) -> bool {
-        self.plan.settings.evolution.strategy.info().evolves_stairs || self.is_better(kept)
-    }
-
-    /// Whether a champion is better than all before.
-    fn is_better(&self, candidate: &Champion) -> bool {
-        self.best.as_ref().is_none_or(|best| self.rank(candidate) > self.rank(best))
-    }
-
-    fn keep_if_better(&mut self, candidate: Option<&Champion>) {
-        if let Some(candidate) = candidate
-            && self.is_better(candidate)
-        {
-            self.best = Some(candidate.clone());
-        }
-    }
-}
-
-/// The number by which each individual is counted: of its species, or of its blocks where bodies evolve. Empty if there
-/// is none.
-fn bands<'a>(plan: &RunPlan, strategy: &'a dyn Strategy, genomes: &[Genome]) -> Cow<'a, [u32]> {
-    if plan.settings.genome.bodies.vary {
-        genomes.iter().map(|genome| genome.body.block_count() as u32).collect()
-    } else {
-        strategy.species().into()
-    }
-}
-
-/// The evaluation of an individual whose simulation panicked.
-fn void_evaluation() -> Evaluation {
-    let disqualified = Some(Disqualification::Crashed);
-    Evaluation {
-        fitness: 0.0,
-        centre_y_m: 0.0,
-        disqualified,
-        trace_hash: 0,
-        steps: 0,
-        effort: None,
-        behaviour: None,
     }
 }
 

@@ -299,7 +299,7 @@ fn about(champion: &Champion) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::report::Statistics;
+    use snakes_core::save::Statistics;
 
     fn report() -> GenerationReport {
         let statistics = Statistics {
@@ -309,7 +309,8 @@ mod tests {
             std: 0.25,
             worst: -9.0,
             mean_centre_y_m: -7.225,
-            quartiles: None,
+            lower_quartile: None,
+            upper_quartile: None,
         };
         GenerationReport {
             generation: 1,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use snakes_core::evolve::{IndividualId, OwnStairs, Parents, ranking};
+use snakes_core::evolve::{Candidate, IndividualId, OwnStairs, Parents, ranking};
 use snakes_core::genome::Genome;
 use snakes_core::save::{IndividualRecord, LineageRecord, MAX_SPREAD};
 use snakes_core::score::Evaluation;
@@ -148,6 +148,18 @@ impl Lineage {
 }
 
 impl Generation {
+    /// The generation of these candidates.
+    pub(super) fn of(
+        number: u32,
+        candidates: Vec<Candidate>,
+        evaluations: Vec<Evaluation>,
+    ) -> Self {
+        let parents = candidates.iter().map(|candidate| candidate.parents).collect();
+        let stairs = candidates.iter().filter_map(|candidate| candidate.stairs.clone()).collect();
+        let genomes = candidates.into_iter().map(|candidate| Arc::new(candidate.genome)).collect();
+        Self { number, genomes, evaluations, parents, stairs }
+    }
+
     /// One of its individuals, as an ancestor.
     fn ancestor(&self, individual: u32) -> Option<Ancestor> {
         let index = individual as usize;
@@ -187,14 +199,12 @@ mod tests {
         let mut lineage = Lineage::default();
         let mut records = Vec::new();
         for (number, best) in (1..).zip(best) {
-            let (genomes, parents) = (strategy.ask(), strategy.parents());
+            let asked = strategy.ask();
             let evaluations: Vec<Evaluation> = (0..6)
                 .map(|i| Evaluation::of_fitness(if i == *best { 9.0 } else { i as f32 }))
                 .collect();
-            strategy.tell(&genomes, &evaluations);
-            let genomes = genomes.into_iter().map(Arc::new).collect();
-            let generation =
-                Generation { number, genomes, evaluations, parents, stairs: Vec::new() };
+            strategy.tell(&asked, &evaluations);
+            let generation = Generation::of(number, asked, evaluations);
             let champion = IndividualId { generation: number, individual: *best as u32 };
             let parent_pool = strategy.parent_pool();
             records.push(lineage.add(&generation, &parent_pool, Some(champion)));
@@ -236,13 +246,7 @@ mod tests {
     fn the_fitness_sample_includes_the_least_and_the_greatest() {
         let evaluations: Vec<Evaluation> =
             (0..100).map(|i| Evaluation::of_fitness(i as f32)).collect();
-        let generation = Generation {
-            number: 1,
-            genomes: Vec::new(),
-            evaluations,
-            parents: Vec::new(),
-            stairs: Vec::new(),
-        };
+        let generation = Generation::of(1, Vec::new(), evaluations);
         let spread = generation.spread();
         assert_eq!(spread.len(), MAX_SPREAD);
         assert_eq!((spread.first(), spread.last()), (Some(&0.0), Some(&99.0)));

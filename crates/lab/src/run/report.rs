@@ -6,12 +6,11 @@ use std::time::Duration;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::experiment::GenerationTrials;
+use super::evaluated_generation::EvaluatedGeneration;
 use crate::statistics::Quartiles;
-use snakes_core::evolve::{Champion, Origin, RunPlan, StairsTree};
-use snakes_core::genome::Genome;
+use snakes_core::evolve::{Champion, StairsTree};
 use snakes_core::save::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StatisticsRecord,
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, Statistics,
 };
 use snakes_core::score::{Evaluation, Trial};
 use snakes_core::world::Disqualification;
@@ -67,59 +66,26 @@ pub struct Crash {
 /// Maximum number of crashes in a report; more would add nothing new.
 const MAX_CRASHES: usize = 3;
 
-/// A generation that was just evaluated.
-pub(super) struct EvaluatedGeneration<'a> {
-    pub plan: &'a RunPlan,
-    /// Its number; the first is 1.
-    pub generation: u32,
-    /// The trials of its individuals.
-    pub trials: &'a GenerationTrials,
-    /// The rung of the ladder on which it was evaluated; none without a ladder.
-    pub rung: Option<Rung>,
-    /// In the order of the individuals, as the evaluations.
-    pub genomes: &'a [Genome],
-    pub evaluations: &'a [Evaluation],
-    /// The number of the species of each individual, or of its blocks where bodies evolve; empty without both.
-    pub species: &'a [u32],
-}
-
-impl EvaluatedGeneration<'_> {
-    /// One of its individuals.
-    pub fn individual(&self, index: usize) -> Champion {
-        Champion {
-            genome: self.genomes[index].clone(),
-            trial: self.trials.of(index).clone(),
-            evaluation: self.evaluations[index],
-            chosen_by: None,
-            origin: Origin {
-                preset: self.plan.preset.clone(),
-                seed: self.plan.seed,
-                generation: self.generation,
-                individual: index as u32,
-            },
-        }
-    }
-
-    /// Its report. `messages` has those of the panics, in the order of the individuals.
-    pub fn report(
-        &self,
+impl GenerationReport {
+    /// The report of a generation. `messages` has those of the panics, in the order of the individuals.
+    pub(super) fn of(
+        evaluated: &EvaluatedGeneration<'_>,
         champion: Option<Champion>,
         messages: Vec<Option<String>>,
         elapsed: Duration,
-    ) -> GenerationReport {
-        let (evaluations, trial) = (self.evaluations, &self.trials.common);
-        let is_goal = trial.stairs == self.plan.settings.trial.stairs;
+    ) -> Self {
+        let EvaluatedGeneration { plan, generation, trials, rung, evaluations, .. } = *evaluated;
+        let is_goal = trials.common.stairs == plan.settings.trial.stairs;
         let crashes = messages.into_iter().enumerate().filter_map(|(index, message)| {
-            Some(Crash { individual: self.individual(index), message: message? })
+            Some(Crash { individual: evaluated.individual(index), message: message? })
         });
         let reasons = reasons(evaluations);
-        let statistics = Statistics::of(evaluations);
-        let landed = |index: &usize| {
-            is_goal && evaluations[*index].is_on_landing(&self.trials.of(*index).stairs)
-        };
+        let statistics = statistics(evaluations);
+        let landed =
+            |index: &usize| is_goal && evaluations[*index].is_on_landing(&trials.of(*index).stairs);
         let first_on_landing = (0..evaluations.len()).find(landed);
-        GenerationReport {
-            generation: self.generation,
+        Self {
+            generation,
             on_landing: (0..evaluations.len()).filter(landed).count() as u32,
             first_on_landing: first_on_landing.map(|index| index as u32),
             evaluations: evaluations.len() as u32,
@@ -127,19 +93,17 @@ impl EvaluatedGeneration<'_> {
             crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
             reasons,
             crashes: crashes.take(MAX_CRASHES).collect(),
-            rung: self.rung,
+            rung,
             stairs: None,
             statistics,
-            species: species(self.species, evaluations),
-            meaning: meaning(statistics.as_ref(), trial, self.rung),
+            species: species(&evaluated.species(), evaluations),
+            meaning: meaning(statistics.as_ref(), &trials.common, rung),
             hash: generation_hash(evaluations),
             elapsed_s: elapsed.as_secs_f64(),
             champion,
         }
     }
-}
 
-impl GenerationReport {
     /// Adds the numbers of the stairs that evolve, if they do.
     pub fn set_stairs(&mut self, tree: Option<&StairsTree>) {
         self.stairs = tree.map(StairsCount::of);
@@ -167,21 +131,7 @@ impl GenerationReport {
             crashed: self.crashed,
             on_landing: self.on_landing,
             first_on_landing: self.first_on_landing,
-            statistics: self.statistics.map(|statistics| {
-                let Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles } =
-                    statistics;
-                let (lower_quartile, upper_quartile) = quartiles.unzip();
-                StatisticsRecord {
-                    mean,
-                    best,
-                    median,
-                    std,
-                    worst,
-                    mean_centre_y_m,
-                    lower_quartile,
-                    upper_quartile,
-                }
-            }),
+            statistics: self.statistics,
             chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
             species: self.species.clone(),
             rung: self.rung,
@@ -193,12 +143,6 @@ impl GenerationReport {
 
     /// The report that a line of the log stands for, under the trial of its run.
     pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
-        let statistics = record.statistics.map(|statistics| {
-            let StatisticsRecord { mean, best, median, std, worst, mean_centre_y_m, .. } =
-                statistics;
-            let quartiles = statistics.lower_quartile.zip(statistics.upper_quartile);
-            Statistics { mean, best, median, std, worst, mean_centre_y_m, quartiles }
-        });
         Self {
             generation: record.generation,
             evaluations: record.evaluations,
@@ -210,11 +154,11 @@ impl GenerationReport {
             first_on_landing: record.first_on_landing,
             rung: record.rung,
             stairs: record.stairs,
-            statistics,
+            statistics: record.statistics,
             species: record.species.clone(),
             meaning: match record.stairs {
                 Some(count) => count.words(),
-                None => meaning(statistics.as_ref(), trial, record.rung),
+                None => meaning(record.statistics.as_ref(), trial, record.rung),
             },
             // Reading the log has checked it.
             hash: record.generation_hash().unwrap_or(0),
@@ -265,42 +209,27 @@ fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
     species
 }
 
-/// Statistics over the fitness of the healthy individuals of one generation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Statistics {
-    /// Arithmetic mean.
-    pub mean: f64,
-    /// Greatest fitness.
-    pub best: f64,
-    /// Median; of an even number, the mean of the two middle ones.
-    pub median: f64,
-    /// Standard deviation of the whole population (divided by n).
-    pub std: f64,
-    /// Least fitness.
-    pub worst: f64,
-    /// Mean final y of the centre, in m, independent of what is rewarded.
-    pub mean_centre_y_m: f64,
-    /// Lower and upper quartile; none in logs of earlier versions of the program.
-    pub quartiles: Option<(f64, f64)>,
-}
-
-impl Statistics {
-    /// Statistics over the healthy ones among `evaluations`, summed in a fixed order.
-    pub fn of(evaluations: &[Evaluation]) -> Option<Self> {
-        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
-        let mut fitness: Vec<f64> = healthy.map(|e| f64::from(e.fitness)).collect();
-        fitness.sort_by(f64::total_cmp);
-        let (&worst, &best) = (fitness.first()?, fitness.last()?);
-        let count = fitness.len() as f64;
-        let mean = fitness.iter().sum::<f64>() / count;
-        let variance = fitness.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
-        let (low, high) = (fitness[(fitness.len() - 1) / 2], fitness[fitness.len() / 2]);
-        let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
-        let mean_centre_y_m = healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count;
-        let median = (low + high) / 2.0;
-        let quartiles = Quartiles::of(fitness).map(|quartiles| (quartiles.low, quartiles.high));
-        Some(Self { mean, best, median, std: variance.sqrt(), worst, mean_centre_y_m, quartiles })
-    }
+/// Statistics over the healthy ones among `evaluations`, summed in a fixed order.
+fn statistics(evaluations: &[Evaluation]) -> Option<Statistics> {
+    let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+    let mut fitness: Vec<f64> = healthy.clone().map(|e| f64::from(e.fitness)).collect();
+    fitness.sort_by(f64::total_cmp);
+    let (&worst, &best) = (fitness.first()?, fitness.last()?);
+    let count = fitness.len() as f64;
+    let mean = fitness.iter().sum::<f64>() / count;
+    let variance = fitness.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count;
+    let (low, high) = (fitness[(fitness.len() - 1) / 2], fitness[fitness.len() / 2]);
+    let quartiles = Quartiles::of(fitness);
+    Some(Statistics {
+        mean,
+        best,
+        median: (low + high) / 2.0,
+        std: variance.sqrt(),
+        worst,
+        mean_centre_y_m: healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count,
+        lower_quartile: quartiles.as_ref().map(|quartiles| quartiles.low),
+        upper_quartile: quartiles.as_ref().map(|quartiles| quartiles.high),
+    })
 }
 
 /// The hash of a generation: every evaluation's bits, in the order of the individuals.
@@ -333,13 +262,13 @@ mod tests {
             evaluation(1.0, None),
             evaluation(5.0, None),
         ];
-        let statistics = Statistics::of(&evaluations).expect("four are healthy");
-        assert_eq!((statistics.mean, statistics.median), (2.0, 2.5));
-        assert_eq!((statistics.best, statistics.worst), (5.0, -2.0));
-        assert_eq!(statistics.mean_centre_y_m, 3.0);
-        assert_eq!(statistics.std, 7.5_f64.sqrt());
-        assert_eq!(statistics.quartiles, Some((0.25, 4.25)), "of -2, 1, 4, 5");
-        assert_eq!(Statistics::of(&evaluations[1..2]), None);
+        let of_four = statistics(&evaluations).expect("four are healthy");
+        assert_eq!((of_four.mean, of_four.median), (2.0, 2.5));
+        assert_eq!((of_four.best, of_four.worst), (5.0, -2.0));
+        assert_eq!(of_four.mean_centre_y_m, 3.0);
+        assert_eq!(of_four.std, 7.5_f64.sqrt());
+        assert_eq!(of_four.quartiles(), Some((0.25, 4.25)), "of -2, 1, 4, 5");
+        assert_eq!(statistics(&evaluations[1..2]), None);
     }
 
     #[test]

@@ -5,9 +5,10 @@ use std::ops::RangeInclusive;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::save::Statistics;
 use snakes_core::score::Fitness;
 use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
-use snakes_lab::run::{GenerationReport, Statistics};
+use snakes_lab::run::GenerationReport;
 
 /// Minimum length of the axis: the six generations of the original experiment.
 const MIN_GENERATIONS: f64 = 6.0;
@@ -27,7 +28,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
         known.iter().map(|(generation, statistics)| [*generation, value(statistics)]).collect()
     };
     let band = known.iter().filter_map(|(generation, statistics)| {
-        let (low, high) = statistics.quartiles?;
+        let (low, high) = statistics.quartiles()?;
         Some([*generation, low, high])
     });
     let band: Vec<[f64; 3]> = band.collect();
@@ -38,7 +39,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
         Series::new("best", Role::First, Shape::Line(along(|statistics| statistics.best))),
     ];
     let ends = known.iter().flat_map(|(_, statistics)| {
-        let low = statistics.quartiles.map_or(statistics.mean, |(low, _)| low);
+        let low = statistics.quartiles().map_or(statistics.mean, |(low, _)| low);
         [statistics.best, statistics.mean, statistics.median, low]
     });
     let frame = ChartBounds::new(settings, reports.len(), ends);
@@ -53,10 +54,11 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
 
 /// Hover text and click target of a generation.
 fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
-    let Statistics { mean, best, median, std, worst, quartiles, .. } = report.statistics?;
+    let statistics = report.statistics?;
+    let Statistics { mean, best, median, std, worst, .. } = statistics;
     let GenerationReport { generation, disqualified, evaluations, .. } = *report;
     let words = move || {
-        let quarters = quartiles.map_or(String::new(), |(low, high)| {
+        let quarters = statistics.quartiles().map_or(String::new(), |(low, high)| {
             format!("middle 50 % {low:.2} to {high:.2}{unit}\n")
         });
         format!(
@@ -177,7 +179,7 @@ mod tests {
         // Logs of earlier versions have no quartiles.
         let mut old = report;
         if let Some(statistics) = &mut old.statistics {
-            statistics.quartiles = None;
+            statistics.lower_quartile = None;
         }
         let view = super::view(&settings, &[old]);
         assert!(!view.hits[0][0].words().contains("middle 50 %"));

@@ -11,9 +11,8 @@ use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::RunPlan;
-use snakes_core::save::StatisticsRecord;
+use snakes_core::save::Statistics;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
-use snakes_lab::run::Statistics;
 
 /// Colours of the other runs, in the order of their selection.
 const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
@@ -41,7 +40,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
         let Some(Ok(other)) = &compared.read else { continue };
         rewards_differ |= other.plan.settings.trial.fitness != fitness;
         let points = other.records.iter().filter_map(|record| {
-            let StatisticsRecord { best, median, .. } = record.statistics?;
+            let Statistics { best, median, .. } = record.statistics?;
             Some([f64::from(record.generation), best, median])
         });
         let mut name = title(&other.plan);

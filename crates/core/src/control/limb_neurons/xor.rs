@@ -49,17 +49,17 @@ fn evaluations_needed(seed: u64, settings: &Settings) -> Option<u32> {
     let mut search = begin(&RunPlan::new("xor", seed, settings.clone()));
     let mut count = 0;
     while count < MOST_EVALUATIONS {
-        let genomes = search.ask();
-        let mut evaluations = Vec::with_capacity(genomes.len());
-        for genome in &genomes {
-            let [largest, squares] = errors(neurons(genome));
+        let asked = search.ask();
+        let mut evaluations = Vec::with_capacity(asked.len());
+        for candidate in &asked {
+            let [largest, squares] = errors(neurons(&candidate.genome));
             count += 1;
             if largest < 0.5 {
                 return Some(count);
             }
             evaluations.push(Evaluation::of_fitness(4.0 - squares));
         }
-        search.tell(&genomes, &evaluations);
+        search.tell(&asked, &evaluations);
     }
     None
 }

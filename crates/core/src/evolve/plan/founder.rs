@@ -1,9 +1,5 @@
 //! The founder of a run: an individual from which the first generation descends.
 
-use std::sync::Arc;
-
-use super::RunPlan;
-use crate::check::Invalid;
 use crate::genome::Genome;
 
 /// Maximum length of a founder's name, in characters.
@@ -15,7 +11,7 @@ pub struct Founder {
     /// A few plain characters for people. They decide nothing.
     name: String,
     /// Its genes.
-    genome: Genome,
+    pub(super) genome: Genome,
 }
 
 impl PartialEq for Founder {
@@ -45,37 +41,10 @@ impl Founder {
     }
 }
 
-impl RunPlan {
-    /// The same run, starting from a founder.
-    ///
-    /// # Errors
-    /// It does not fit the trial or the space of genomes; the message names the gene or setting.
-    pub fn starting_from(self, founder: Founder) -> Result<Self, Invalid> {
-        let genome = self.settings.genome.with_all_genes(founder.genome);
-        let founder = Founder { genome, ..founder };
-        let plan = Self { founder: Some(Arc::new(founder)), ..self };
-        plan.check_founder()?;
-        Ok(plan)
-    }
-
-    /// Checks that the founder, if there is one, fits the settings.
-    ///
-    /// # Errors
-    /// The first gene or setting that does not fit, inside `founder`.
-    pub fn check_founder(&self) -> Result<(), Invalid> {
-        let Some(founder) = &self.founder else { return Ok(()) };
-        let (trial, space) = (&self.settings.trial, &self.settings.genome);
-        let fits = space
-            .check_genome(&founder.genome, trial.genome_shape())
-            .and_then(|()| trial.check_genome(&founder.genome));
-        fits.map_err(|error| error.inside("founder"))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{EvolutionSettings, Settings, StrategyKind, begin};
+    use crate::evolve::{EvolutionSettings, RunPlan, Settings, StrategyKind, begin};
     use crate::genome::ControllerKind;
     use crate::rng::{Purpose, stream};
 
@@ -91,6 +60,11 @@ mod tests {
     fn founder_in(settings: &Settings) -> Genome {
         let mut rng = stream(77, 1, 0, Purpose::Birth);
         settings.genome.random_genome(settings.trial.genome_shape(), &mut rng)
+    }
+
+    /// The genomes of the first generation.
+    fn first_genomes(plan: &RunPlan) -> Vec<Genome> {
+        begin(plan).ask().into_iter().map(|candidate| candidate.genome).collect()
     }
 
     /// The largest difference between the coordinates of two genomes.
@@ -117,9 +91,9 @@ mod tests {
                 let settings = settings(strategy, controller);
                 let genome = founder_in(&settings);
                 let plan = RunPlan::new("test", 1, settings.clone());
-                let random = begin(&plan).ask();
+                let random = first_genomes(&plan);
                 let founded = plan.starting_from(Founder::new("x", genome.clone())).expect("fits");
-                let asked = begin(&founded).ask();
+                let asked = first_genomes(&founded);
                 let what = format!("{strategy}, {controller}");
                 match strategy {
                     StrategyKind::Poet => assert_eq!(asked.len(), 4, "no random genomes"),
@@ -178,7 +152,7 @@ mod tests {
         let genome = founder_in(&settings);
         let plan = RunPlan::new("test", 1, settings.clone());
         let plan = plan.starting_from(Founder::new("x", genome.clone())).expect("fits");
-        let asked = begin(&plan).ask();
+        let asked = first_genomes(&plan);
         assert_eq!(asked.len(), 20, "no random genomes");
         assert!(asked.iter().all(|other| distance(&settings, other, &genome) < 1.0e-4));
     }

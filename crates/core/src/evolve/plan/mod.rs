@@ -9,6 +9,8 @@ pub use live_changes::{MOST_CHANGES, SettingChange, SettingChanges, may_change_d
 use std::sync::Arc;
 
 use super::settings::Settings;
+use crate::check::Invalid;
+use crate::genome::Genome;
 use crate::score::Trial;
 
 /// Everything that determines the bits of a run, and its name.
@@ -37,5 +39,35 @@ impl RunPlan {
     pub fn trial_in(&self, generation: u32) -> Trial {
         let trial = &self.settings.trial;
         Trial { repeats: trial.repeats.in_generation(self.seed, generation), ..trial.clone() }
+    }
+
+    /// The same run, starting from a founder.
+    ///
+    /// # Errors
+    /// It does not fit the trial or the space of genomes; the message names the gene or setting.
+    pub fn starting_from(self, mut founder: Founder) -> Result<Self, Invalid> {
+        founder.genome = self.settings.genome.with_all_genes(founder.genome);
+        let plan = Self { founder: Some(Arc::new(founder)), ..self };
+        plan.check_founder()?;
+        Ok(plan)
+    }
+
+    /// Checks that the founder, if there is one, fits the settings.
+    ///
+    /// # Errors
+    /// The first gene or setting that does not fit, inside `founder`.
+    pub fn check_founder(&self) -> Result<(), Invalid> {
+        let Some(founder) = &self.founder else { return Ok(()) };
+        self.check_genome(&founder.genome).map_err(|error| error.inside("founder"))
+    }
+
+    /// Checks that a genome fits the settings.
+    ///
+    /// # Errors
+    /// The first gene or setting that does not fit.
+    pub fn check_genome(&self, genome: &Genome) -> Result<(), Invalid> {
+        let trial = &self.settings.trial;
+        self.settings.genome.check_genome(genome, trial.genome_shape())?;
+        trial.check_genome(genome)
     }
 }

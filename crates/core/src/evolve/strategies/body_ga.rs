@@ -9,10 +9,13 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::body_children::BodyChildren;
+use super::body_children::is_crossed;
 use super::breeder::{BehaviourPoint, Breeder};
+use super::parent_pool::ParentPool;
+use super::search::Search;
 use crate::check::{Invalid, within};
-use crate::evolve::parents::{IndividualId, Parents};
+use crate::evolve::candidate::Candidate;
+use crate::evolve::parents::IndividualId;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{BodyGaSettings, BodyProtection};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
@@ -34,98 +37,60 @@ pub struct BodyMember {
 #[derive(Debug, Clone)]
 pub struct BodyGa {
     settings: BodyGaSettings,
-    children: BodyChildren,
-    population: usize,
-    /// The last generation, best first; empty at the beginning.
-    members: Vec<BodyMember>,
-    /// Their ids; empty if they are unknown.
-    ids: Vec<IndividualId>,
-}
-
-/// How an individual is made; the numbers are indices in the last generation.
-enum BodyVariation {
-    Random,
-    Elite(usize),
-    Child(usize, Option<usize>),
+    search: Search,
+    /// The last generation.
+    pool: ParentPool<BodyMember>,
 }
 
 impl BodyGa {
     fn with(plan: &RunPlan, finished: u32, members: Vec<BodyMember>) -> Self {
         Self {
             settings: plan.settings.evolution.body_ga.clone(),
-            children: BodyChildren::new(plan, finished),
-            population: plan.settings.evolution.population as usize,
-            members,
-            ids: Vec::new(),
+            search: Search::new(plan, finished),
+            pool: ParentPool::unknown(members),
         }
     }
 
-    /// How an individual is made, and the stream from which its random numbers continue.
-    fn variation(&self, individual: usize) -> (BodyVariation, ChaCha8Rng) {
-        let mut rng = self.children.stream(individual, Purpose::Mutation);
-        let count = self.members.len();
+    fn individual(&self, individual: usize) -> Candidate {
+        let members = &self.pool.members;
+        let step = self.settings.mutation_step.into();
+        let count = members.len();
+        if count == 0 {
+            return self.search.founding(individual, step);
+        }
         // At least one individual has to change.
-        let elites = (self.settings.kept_best as usize).min(self.population - 1).min(count);
-        let variation = if count == 0 {
-            BodyVariation::Random
-        } else if individual < elites {
-            BodyVariation::Elite(individual)
-        } else {
-            let mut parent = || {
-                let drawn = (0..self.settings.tournament_size).map(|_| rng.random_range(0..count));
-                // Members are in order, so the best of those drawn has the lowest index.
-                drawn.fold(count - 1, usize::min)
-            };
-            let first = parent();
-            let second = parent();
-            let is_crossed = BodyChildren::is_crossed(self.settings.two_parents, &mut rng);
-            BodyVariation::Child(
-                first,
-                Some(second).filter(|second| is_crossed && *second != first),
-            )
-        };
-        (variation, rng)
-    }
-
-    fn individual(&self, individual: usize) -> BodyMember {
-        let (variation, mut rng) = self.variation(individual);
-        match variation {
-            BodyVariation::Random => {
-                let step = self.settings.mutation_step.into();
-                let child = |founder: &Genome, rng: &mut ChaCha8Rng| {
-                    self.children.varied(founder, step, rng).genome
-                };
-                BodyMember { genome: self.children.first(individual, child), age: 0 }
-            }
-            BodyVariation::Elite(index) => {
-                let elite = &self.members[index];
-                BodyMember { age: elite.age.saturating_add(1), genome: elite.genome.clone() }
-            }
-            BodyVariation::Child(first, second) => {
-                let mut parent = self.members[first].clone();
-                if let Some(second) = second {
-                    // Members are in order, so the lower index is the fitter one.
-                    let [fitter, other] = [first.min(second), first.max(second)];
-                    let [fitter, other] = [fitter, other].map(|index| &self.members[index]);
-                    parent = BodyMember {
-                        genome: self.children.space.with_crossed_bodies(
-                            &fitter.genome,
-                            &other.genome,
-                            &mut rng,
-                        ),
-                        age: fitter.age.max(other.age),
-                    };
-                }
-                let step = self.settings.mutation_step.into();
-                let child = self.children.varied(&parent.genome, step, &mut rng);
-                let age = if child.is_restructured { 0 } else { parent.age.saturating_add(1) };
-                BodyMember { genome: child.genome, age }
-            }
+        if individual
+            < (self.settings.kept_best as usize).min(self.search.population - 1).min(count)
+        {
+            let BodyMember { genome, age } = members[individual].clone();
+            return Candidate::aged(
+                age.saturating_add(1),
+                genome,
+                self.pool.parents(individual, None),
+            );
         }
-    }
-
-    fn generation(&self) -> Vec<BodyMember> {
-        (0..self.population).map(|individual| self.individual(individual)).collect()
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let mut parent = || {
+            let drawn = (0..self.settings.tournament_size).map(|_| rng.random_range(0..count));
+            // Members are in order, so the best of those drawn has the lowest index.
+            drawn.fold(count - 1, usize::min)
+        };
+        let (first, second) = (parent(), parent());
+        let is_crossed = is_crossed(self.settings.two_parents, &mut rng);
+        let (parent, parents) = if is_crossed && second != first {
+            // The fitter one, which gives the structure, has the lower index.
+            let [fitter, other] = [first.min(second), first.max(second)];
+            let parents = self.pool.parents(fitter, Some(other));
+            let [fitter, other] = [fitter, other].map(|index| &members[index]);
+            let space = &self.search.space;
+            let genome = space.with_crossed_bodies(&fitter.genome, &other.genome, &mut rng);
+            (BodyMember { genome, age: fitter.age.max(other.age) }, parents)
+        } else {
+            (members[first].clone(), self.pool.parents(first, None))
+        };
+        let child = self.search.varied(&parent.genome, step, &mut rng);
+        let age = if child.is_restructured { 0 } else { parent.age.saturating_add(1) };
+        Candidate::aged(age, child.genome, parents)
     }
 
     /// The order of a generation as parents: the elites by their rank alone, then by the protection of new bodies.
@@ -175,29 +140,30 @@ impl Breeder for BodyGa {
         members: Vec<BodyMember>,
     ) -> Result<Self, Invalid> {
         let resumed = Self::with(plan, finished, members);
-        within("members", resumed.members.len(), 0..=resumed.population)?;
-        for member in &resumed.members {
-            plan.settings.trial.check_genome(&member.genome)?;
-            resumed.children.space.check_genome(&member.genome, resumed.children.shape)?;
+        within("members", resumed.pool.members.len(), 0..=resumed.search.population)?;
+        for member in &resumed.pool.members {
+            resumed.search.check_genome(&member.genome, plan)?;
         }
         Ok(resumed)
     }
 
     fn members(&self) -> &[BodyMember] {
-        &self.members
+        &self.pool.members
     }
 
-    fn select(&mut self, ranking: &[usize]) {
-        let generation = self.generation();
-        let ages: Vec<u32> = generation.iter().map(|member| member.age).collect();
+    fn select(&mut self, candidates: &[Candidate], ranking: &[usize]) {
+        let ages: Vec<u32> = candidates.iter().map(|of| of.heritage.age).collect();
         let order = self.order(&ages, ranking);
-        self.members = order.iter().filter_map(|&index| generation.get(index).cloned()).collect();
-        self.ids = IndividualId::all(self.children.generation, &order);
-        self.children.generation += 1;
+        let member = |&index: &usize| BodyMember {
+            genome: candidates[index].genome.clone(),
+            age: ages[index],
+        };
+        self.pool = ParentPool::chosen(self.search.generation, &order, member);
+        self.search.generation += 1;
     }
 
     fn stream(&self, purpose: Purpose) -> ChaCha8Rng {
-        self.children.stream(0, purpose)
+        self.search.stream(0, purpose)
     }
 
     fn point(
@@ -224,52 +190,33 @@ impl Strategy for BodyGa {
         Self::resume_with(plan, finished, state.read()?)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        self.generation().into_iter().map(|member| member.genome).collect()
+    fn ask(&self) -> Vec<Candidate> {
+        (0..self.search.population).map(|individual| self.individual(individual)).collect()
     }
 
     fn population(&self) -> usize {
-        self.population
+        self.search.population
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        self.select(&full_ranking(evaluations));
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        self.select(candidates, &full_ranking(evaluations));
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::of(&self.members)
+        StrategyState::of(&self.pool.members)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.settings = plan.settings.evolution.body_ga.clone();
-        self.population = plan.settings.evolution.population as usize;
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let of = |individual| {
-            let id = |index: usize| self.ids.get(index).copied();
-            let parents = match self.variation(individual).0 {
-                BodyVariation::Random => Some(Parents::None),
-                BodyVariation::Elite(index) | BodyVariation::Child(index, None) => {
-                    id(index).map(Parents::One)
-                }
-                BodyVariation::Child(first, Some(second)) => {
-                    // The fitter one gives the structure; it has the lower index.
-                    let [fitter, other] = [first.min(second), first.max(second)];
-                    id(fitter).zip(id(other)).map(|(fitter, other)| Parents::Two(fitter, other))
-                }
-            };
-            parents.unwrap_or(Parents::Unknown)
-        };
-        (0..self.population).map(of).collect()
+        self.search.apply_settings(plan);
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        self.ids.clone()
+        self.pool.ids()
     }
 
     fn restore_parents(&mut self, pool: &[IndividualId]) {
-        self.ids = pool.get(..self.members.len()).unwrap_or_default().to_vec();
+        self.pool.restore(pool);
     }
 }
 
@@ -300,29 +247,28 @@ mod tests {
     }
 
     fn advance(ga: &mut BodyGa) {
-        let genomes = ga.ask();
-        let fitness = |genome: &Genome| genome.body.segments.len() as f32;
+        let asked = ga.ask();
+        let fitness = |of: &Candidate| of.genome.body.segments.len() as f32;
         let evaluations: Vec<Evaluation> =
-            genomes.iter().map(|genome| Evaluation::of_fitness(fitness(genome))).collect();
-        ga.tell(&genomes, &evaluations);
+            asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
+        ga.tell(&asked, &evaluations);
     }
 
     #[test]
     fn three_in_ten_children_have_another_structure_and_age_begins_again() {
         let mut ga = ga(|settings| settings.two_parents = 0.0);
         advance(&mut ga);
-        let generation = ga.generation();
-        let ids = |member: &BodyMember| -> Vec<(u64, u32)> {
-            let segments = member.genome.body.segments.iter();
+        let asked = ga.ask();
+        let ids = |genome: &Genome| -> Vec<(u64, u32)> {
+            let segments = genome.body.segments.iter();
             segments.map(|segment| (segment.id, segment.length_m.to_bits())).collect()
         };
-        let parents: Vec<Vec<(u64, u32)>> = ga.members.iter().map(ids).collect();
-        assert!(
-            generation[..2].iter().all(|elite| parents.contains(&ids(elite)) && elite.age == 1)
-        );
-        let new = generation[2..].iter().filter(|child| child.age == 0).count();
+        let parents: Vec<_> = ga.pool.members.iter().map(|of| ids(&of.genome)).collect();
+        assert!(asked[..2].iter().all(|elite| parents.contains(&ids(&elite.genome))));
+        assert!(asked[..2].iter().all(|elite| elite.heritage.age == 1));
+        let new = asked[2..].iter().filter(|child| child.heritage.age == 0).count();
         assert!((35..85).contains(&new), "{new} of 198");
-        assert!(generation[2..].iter().all(|child| child.age <= 1));
+        assert!(asked[2..].iter().all(|child| child.heritage.age <= 1));
     }
 
     #[test]

@@ -3,11 +3,12 @@
 //! The cells protect new bodies: a changed body competes only with bodies of its own kind.
 
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
-use super::body_children::BodyChildren;
+use super::body_children::is_crossed;
+use super::search::Search;
 use crate::check::Invalid;
 use crate::evolve::archives::{Archive, Elite, EliteGenes, body_archive, body_cell};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::BodyMapElitesSettings;
@@ -18,48 +19,36 @@ use crate::score::Evaluation;
 
 /// The elites with the numbers of their cells.
 type Elites = Vec<(u32, Elite<Genome>)>;
-/// A parent, perhaps another one, and random numbers.
-type ChosenParents<'a> = (&'a Elite<Genome>, Option<&'a Elite<Genome>>, ChaCha8Rng);
 
 /// MAP-Elites over bodies.
 #[derive(Debug, Clone)]
 pub struct BodyMapElites {
     settings: BodyMapElitesSettings,
-    children: BodyChildren,
-    population: usize,
+    search: Search,
     archive: Archive<Genome>,
 }
 
 impl BodyMapElites {
-    /// The parents of a child, the one whose structure it takes first, and the random numbers with which it goes on.
-    fn chosen<'a>(&self, individual: usize, elites: &[&'a Elite<Genome>]) -> ChosenParents<'a> {
-        let mut rng = self.children.stream(individual, Purpose::Mutation);
-        let first = rng.random_range(0..elites.len());
-        let second = rng.random_range(0..elites.len());
-        let is_crossed = BodyChildren::is_crossed(self.settings.two_parents, &mut rng);
-        let (first, second, is_same) = (elites[first], elites[second], first == second);
-        if !is_crossed || is_same {
-            return (first, None, rng);
-        }
-        let [fitter, other] =
-            if second.fitness > first.fitness { [second, first] } else { [first, second] };
-        (fitter, Some(other), rng)
-    }
-
-    fn individual(&self, individual: usize, elites: &[&Elite<Genome>]) -> Genome {
+    fn individual(&self, individual: usize, elites: &[&Elite<Genome>]) -> Candidate {
         let step = self.settings.mutation_step.into();
         if elites.is_empty() {
-            return self
-                .children
-                .first(individual, |founder, rng| self.children.varied(founder, step, rng).genome);
+            return self.search.founding(individual, step);
         }
-        let (parent, other, mut rng) = self.chosen(individual, elites);
-        let Some(other) = other else {
-            return self.children.varied(&parent.genes, step, &mut rng).genome;
-        };
-        let crossed =
-            self.children.space.with_crossed_bodies(&parent.genes, &other.genes, &mut rng);
-        self.children.varied(&crossed, step, &mut rng).genome
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let first = rng.random_range(0..elites.len());
+        let second = rng.random_range(0..elites.len());
+        let is_crossed = is_crossed(self.settings.two_parents, &mut rng);
+        let (first, second, is_same) = (elites[first], elites[second], first == second);
+        if !is_crossed || is_same {
+            let child = self.search.varied(&first.genes, step, &mut rng);
+            return Candidate::new(child.genome, Parents::One(first.id()));
+        }
+        // A child takes the structure of the fitter one.
+        let [fitter, other] =
+            if second.fitness > first.fitness { [second, first] } else { [first, second] };
+        let crossed = self.search.space.with_crossed_bodies(&fitter.genes, &other.genes, &mut rng);
+        let child = self.search.varied(&crossed, step, &mut rng);
+        Candidate::new(child.genome, Parents::Two(fitter.id(), other.id()))
     }
 
     fn elites(&self) -> Vec<&Elite<Genome>> {
@@ -74,17 +63,15 @@ impl Strategy for BodyMapElites {
         Self {
             archive: body_archive(&plan.settings.genome.bodies, settings.length_cells, floor),
             settings,
-            children: BodyChildren::new(plan, 0),
-            population: plan.settings.evolution.population as usize,
+            search: Search::new(plan, 0),
         }
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
         let elites: Elites = state.read()?;
-        let mut resumed = Self { children: BodyChildren::new(plan, finished), ..Self::begin(plan) };
+        let mut resumed = Self { search: Search::new(plan, finished), ..Self::begin(plan) };
         for (cell, elite) in &elites {
-            plan.settings.trial.check_genome(&elite.genes)?;
-            resumed.children.space.check_genome(&elite.genes, resumed.children.shape)?;
+            resumed.search.check_genome(&elite.genes, plan)?;
             let expected = body_cell(&resumed.archive, &elite.genes);
             if *cell != expected {
                 let allowed = format!("{expected}, the cell of its body");
@@ -95,29 +82,29 @@ impl Strategy for BodyMapElites {
         Ok(resumed)
     }
 
-    fn ask(&self) -> Vec<Genome> {
+    fn ask(&self) -> Vec<Candidate> {
         let elites = self.elites();
-        (0..self.population).map(|individual| self.individual(individual, &elites)).collect()
+        (0..self.search.population).map(|individual| self.individual(individual, &elites)).collect()
     }
 
     fn population(&self) -> usize {
-        self.population
+        self.search.population
     }
 
-    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
-        for (index, (genome, evaluation)) in genomes.iter().zip(evaluations).enumerate() {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        for (index, (candidate, evaluation)) in candidates.iter().zip(evaluations).enumerate() {
             if evaluation.disqualified.is_some() {
                 continue;
             }
             let elite = Elite {
                 fitness: evaluation.fitness,
-                generation: self.children.generation,
+                generation: self.search.generation,
                 individual: index as u32,
-                genes: genome.clone(),
+                genes: candidate.genome.clone(),
             };
-            self.archive.add(body_cell(&self.archive, genome), elite);
+            self.archive.add(body_cell(&self.archive, &candidate.genome), elite);
         }
-        self.children.generation += 1;
+        self.search.generation += 1;
     }
 
     fn state(&self) -> StrategyState {
@@ -128,21 +115,7 @@ impl Strategy for BodyMapElites {
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.settings = plan.settings.evolution.body_map_elites.clone();
-        self.population = plan.settings.evolution.population as usize;
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let elites = self.elites();
-        let of = |individual| {
-            if elites.is_empty() {
-                return Parents::None;
-            }
-            match self.chosen(individual, &elites) {
-                (parent, None, _) => Parents::One(parent.id()),
-                (parent, Some(other), _) => Parents::Two(parent.id(), other.id()),
-            }
-        };
-        (0..self.population).map(of).collect()
+        self.search.apply_settings(plan);
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
@@ -171,11 +144,11 @@ mod tests {
     }
 
     fn advance(search: &mut BodyMapElites) {
-        let genomes = search.ask();
-        let fitness = |genome: &Genome| genome.body.segments[0].length_m;
+        let asked = search.ask();
+        let fitness = |of: &Candidate| of.genome.body.segments[0].length_m;
         let evaluations: Vec<Evaluation> =
-            genomes.iter().map(|genome| Evaluation::of_fitness(fitness(genome))).collect();
-        search.tell(&genomes, &evaluations);
+            asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
+        search.tell(&asked, &evaluations);
     }
 
     #[test]
@@ -183,8 +156,8 @@ mod tests {
         let mut search = BodyMapElites::begin(&plan());
         let mut best = std::collections::BTreeMap::new();
         for _ in 0..10 {
-            for genome in search.ask() {
-                let segments = &genome.body.segments;
+            for candidate in search.ask() {
+                let segments = &candidate.genome.body.segments;
                 let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
                 let row = ((f64::from(length_m) - 4.0) / 0.5).clamp(0.0, 15.0) as u32;
                 let of_cell = best.entry((row, segments.len() as u32)).or_insert(0.0_f32);
@@ -203,7 +176,7 @@ mod tests {
         advance(&mut search);
         let mut elites: Elites = search.state().read().expect("its own state");
         let again = BodyMapElites::resume(&plan(), 1, &search.state()).expect("accepted");
-        assert_eq!((again.archive, again.children.generation), (search.archive, 2));
+        assert_eq!((again.archive, again.search.generation), (search.archive, 2));
         elites[0].0 += 1;
         let error = BodyMapElites::resume(&plan(), 1, &StrategyState::of(&elites));
         let error = error.expect_err("refused").to_string();

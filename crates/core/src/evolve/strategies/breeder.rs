@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::check::Invalid;
+use crate::evolve::candidate::Candidate;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::strategy::Strategy;
 use crate::genome::{BodySpace, Genome};
@@ -33,8 +34,8 @@ pub trait Breeder: Strategy + Sized {
     ) -> Result<Self, Invalid>;
     /// The last generation, best first.
     fn members(&self) -> &[Self::Member];
-    /// Ends a generation: `ranking` lists its indices, best first.
-    fn select(&mut self, ranking: &[usize]);
+    /// Ends a generation: `ranking` lists the indices of its candidates, best first.
+    fn select(&mut self, candidates: &[Candidate], ranking: &[usize]);
     /// The random numbers of the present generation for a purpose.
     fn stream(&self, purpose: Purpose) -> ChaCha8Rng;
     /// The point of an individual.

@@ -1,13 +1,13 @@
 //! CMA-ES as a strategy: the points that [`super::cma`] samples, as genomes.
 
 use super::cma::{CmaParameters, CovarianceShape, RankedCandidate, RestartedCma};
-use super::search::Search;
+use super::search::{Search, check_point};
 use crate::check::{Invalid, within};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::CmaEsSettings;
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::Genome;
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
@@ -32,23 +32,44 @@ pub fn covariance_shape(dimension: usize) -> CovarianceShape {
     }
 }
 
-/// The points in an order, best first, each with its value.
+/// Checks runs from a file, in a space of this dimension.
+///
+/// # Errors
+/// They are not runs with these parameters.
+pub fn check_runs(
+    runs: &RestartedCma,
+    parameters: &CmaParameters,
+    dimension: usize,
+) -> Result<(), Invalid> {
+    runs.check()?;
+    check_point(runs.current().mean(), dimension)?;
+    if runs.parameters() != parameters {
+        let value = "different from those of the run";
+        return Err(Invalid::new("parameters", value, "the parameters of the run"));
+    }
+    let most = u64::from(parameters.population) << 9;
+    within("population", u64::from(runs.population()), 2..=most)?;
+    // Longer steps lead far outside all ranges.
+    within("step", runs.current().step(), 0.0..=1.0e6)
+}
+
+/// The points of candidates in an order, best first, each with its value.
 pub fn ranked_candidates<'a>(
-    points: &'a [Vec<f64>],
+    candidates: &'a [Candidate],
     evaluations: &[Evaluation],
     order: &[usize],
 ) -> Vec<RankedCandidate<'a>> {
     // A disqualified agent has no fitness. Its value is the least of those ranked before it.
     let mut least = f64::INFINITY;
-    let candidate = |&index: &usize| {
+    let ranked = |&index: &usize| {
         let evaluation = &evaluations[index];
         if evaluation.disqualified.is_none() {
             least = least.min(f64::from(evaluation.fitness));
         }
         let value = if least.is_finite() { least } else { 0.0 };
-        RankedCandidate { point: &points[index], value }
+        RankedCandidate { point: &candidates[index].heritage.point, value }
     };
-    order.iter().map(candidate).collect()
+    order.iter().map(ranked).collect()
 }
 
 impl CmaEs {
@@ -64,7 +85,7 @@ impl CmaEs {
         CmaParameters {
             step: self.settings.step.into(),
             population: u32::try_from(self.search.population).unwrap_or(u32::MAX).max(2),
-            shape: covariance_shape(self.search.dimension),
+            shape: covariance_shape(self.search.dimension()),
             active: self.settings.active,
             restart: self.settings.restarts,
         }
@@ -75,15 +96,6 @@ impl CmaEs {
         self.runs = RestartedCma::new(self.parameters(), mean).ok();
         debug_assert!(self.runs.is_some(), "the settings were checked");
     }
-
-    fn points(&self) -> Vec<Vec<f64>> {
-        match &self.runs {
-            Some(runs) => {
-                runs.candidates(|index| self.search.stream(index as usize, Purpose::Sample))
-            }
-            None => (0..self.population()).map(|i| self.search.random_genome_point(i)).collect(),
-        }
-    }
 }
 
 impl Strategy for CmaEs {
@@ -92,10 +104,10 @@ impl Strategy for CmaEs {
     fn begin(plan: &RunPlan) -> Self {
         let settings = Self::settings(plan);
         let mut search = Self { settings, search: Search::new(plan, 0), runs: None };
-        match search.search.founder().map(<[f64]>::to_vec) {
+        match search.search.founder_point() {
             Some(founder) => search.start(founder),
             None if search.settings.newborns == 0 => {
-                search.start(vec![0.5; search.search.dimension]);
+                search.start(vec![0.5; search.search.dimension()]);
             }
             None => {}
         }
@@ -106,25 +118,20 @@ impl Strategy for CmaEs {
         let settings = Self::settings(plan);
         let resumed = Self { settings, search: Search::new(plan, finished), runs: state.read()? };
         if let Some(runs) = &resumed.runs {
-            runs.check()?;
-            resumed.search.check(runs.current().mean())?;
-            if *runs.parameters() != resumed.parameters() {
-                return Err(Invalid::new(
-                    "parameters",
-                    "different from those of the run",
-                    "the parameters of the run",
-                ));
-            }
-            let most = u64::from(plan.settings.evolution.population) << 9;
-            within("population", u64::from(runs.population()), 2..=most)?;
-            // Longer steps lead far outside all ranges.
-            within("step", runs.current().step(), 0.0..=1.0e6)?;
+            check_runs(runs, &resumed.parameters(), resumed.search.dimension())?;
         }
         Ok(resumed)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        self.search.genomes(&self.points())
+    fn ask(&self) -> Vec<Candidate> {
+        match &self.runs {
+            Some(runs) => self.search.sampled(|random| runs.candidates(random)),
+            None => {
+                let point = |individual| self.search.random_genome_point(individual);
+                let random = |individual| self.search.candidate(point(individual), Parents::None);
+                (0..self.population()).map(random).collect()
+            }
+        }
     }
 
     fn population(&self) -> usize {
@@ -136,19 +143,18 @@ impl Strategy for CmaEs {
         self.runs.iter_mut().for_each(RestartedCma::forget_values);
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let points = self.points();
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let order = full_ranking(evaluations);
         match &mut self.runs {
             Some(runs) => {
-                let ranked = ranked_candidates(&points, evaluations, &order);
+                let ranked = ranked_candidates(candidates, evaluations, &order);
                 let mut rng = self.search.stream(0, Purpose::Restart);
                 // No candidate is missing. If one is not finite, there is nothing left to learn.
                 let _ = runs.update(&ranked, &mut rng);
             }
             None => {
-                let best = order.first().and_then(|&index| points.get(index).cloned());
-                self.start(best.unwrap_or_else(|| vec![0.5; self.search.dimension]));
+                let best = order.first().map(|&index| candidates[index].heritage.point.clone());
+                self.start(best.unwrap_or_else(|| vec![0.5; self.search.dimension()]));
             }
         }
         self.search.generation += 1;
@@ -161,10 +167,5 @@ impl Strategy for CmaEs {
     fn apply_settings(&mut self, plan: &RunPlan) {
         // The runs depend on no setting that may change.
         self.settings = Self::settings(plan);
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let parents = if self.runs.is_some() { Parents::Distribution } else { Parents::None };
-        vec![parents; self.population()]
     }
 }

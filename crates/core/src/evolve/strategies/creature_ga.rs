@@ -4,8 +4,10 @@
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::body_children::BodyChildren;
+use super::parent_pool::ParentPool;
+use super::search::Search;
 use crate::check::{Invalid, within};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::CreatureGaSettings;
@@ -33,80 +35,58 @@ struct Survivor {
 #[derive(Debug, Clone)]
 pub struct CreatureGa {
     settings: CreatureGaSettings,
-    children: BodyChildren,
-    population: usize,
-    /// The survivors of the last generation, best first; empty at the beginning.
-    survivors: Vec<Survivor>,
-    /// Their ids; empty if they are unknown.
-    ids: Vec<IndividualId>,
-}
-
-/// How an individual is made; the numbers are indices of survivors.
-enum CreatureOrigin {
-    /// Of the first generation.
-    First,
-    Survivor(usize),
-    Child(usize, usize, CreatureChange),
+    search: Search,
+    /// The survivors of the last generation.
+    pool: ParentPool<Survivor>,
 }
 
 impl CreatureGa {
     fn with(plan: &RunPlan, finished: u32, survivors: Vec<Survivor>) -> Self {
         Self {
             settings: plan.settings.evolution.creature_ga.clone(),
-            children: BodyChildren::new(plan, finished),
-            population: plan.settings.evolution.population as usize,
-            survivors,
-            ids: Vec::new(),
+            search: Search::new(plan, finished),
+            pool: ParentPool::unknown(survivors),
         }
-    }
-
-    /// How an individual is made, and the stream from which its random numbers continue.
-    fn origin(&self, individual: usize) -> (CreatureOrigin, ChaCha8Rng) {
-        let mut rng = self.children.stream(individual, Purpose::Mutation);
-        // At least one individual has to change.
-        let kept = self.survivors.len().min(self.population - 1);
-        let origin = if self.survivors.is_empty() {
-            CreatureOrigin::First
-        } else if individual < kept {
-            CreatureOrigin::Survivor(individual)
-        } else {
-            let change = CreatureChange::draw(&mut rng);
-            let (first, second) = (self.parent(&mut rng), self.parent(&mut rng));
-            let change = if first == second { CreatureChange::Mutation } else { change };
-            CreatureOrigin::Child(first, second, change)
-        };
-        (origin, rng)
     }
 
     /// Draws a survivor by its chance.
     fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
-        let all: f64 = self.survivors.iter().map(|survivor| survivor.chance).sum();
+        let all: f64 = self.pool.members.iter().map(|survivor| survivor.chance).sum();
         let mut left = uniform(rng) * all;
-        let drawn = self.survivors.iter().position(|survivor| {
+        let drawn = self.pool.members.iter().position(|survivor| {
             left -= survivor.chance;
             left < 0.0
         });
         drawn.unwrap_or(0)
     }
 
-    fn individual(&self, individual: usize) -> Genome {
-        let (origin, mut rng) = self.origin(individual);
-        match origin {
-            CreatureOrigin::First => self.children.first(individual, |founder, rng| {
+    fn individual(&self, individual: usize) -> Candidate {
+        let survivors = &self.pool.members;
+        if survivors.is_empty() {
+            let genome = self.search.first_genome(individual, |founder, rng| {
                 self.child([founder; 2], CreatureChange::Mutation, rng)
-            }),
-            CreatureOrigin::Survivor(index) => self.survivors[index].genome.clone(),
-            CreatureOrigin::Child(first, second, change) => {
-                let parents = [first, second].map(|index| &self.survivors[index].genome);
-                self.child(parents, change, &mut rng)
-            }
+            });
+            return Candidate::new(genome, Parents::None);
         }
+        // At least one individual has to change.
+        if individual < survivors.len().min(self.search.population - 1) {
+            let genome = survivors[individual].genome.clone();
+            return Candidate::new(genome, self.pool.parents(individual, None));
+        }
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let drawn = CreatureChange::draw(&mut rng);
+        let (first, second) = (self.parent(&mut rng), self.parent(&mut rng));
+        let change = if first == second { CreatureChange::Mutation } else { drawn };
+        let mates = [first, second].map(|index| &survivors[index].genome);
+        let has_two = !matches!(change, CreatureChange::Mutation);
+        let parents = self.pool.parents(first, has_two.then_some(second));
+        Candidate::new(self.child(mates, change, &mut rng), parents)
     }
 
     /// A child that can be built; a copy of the first parent if none was found.
     fn child(&self, parents: [&Genome; 2], change: CreatureChange, rng: &mut ChaCha8Rng) -> Genome {
         let step = self.settings.mutation_step.into();
-        let mut attempt = || self.children.space.changed_creature(parents, change, step, rng);
+        let mut attempt = || self.search.space.changed_creature(parents, change, step, rng);
         let child = (0..ATTEMPTS).find_map(|_| attempt());
         child.unwrap_or_else(|| parents[0].clone())
     }
@@ -132,26 +112,25 @@ impl Strategy for CreatureGa {
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
         let resumed = Self::with(plan, finished, state.read()?);
-        within("survivors", resumed.survivors.len(), 0..=resumed.population)?;
-        for survivor in &resumed.survivors {
+        within("survivors", resumed.pool.members.len(), 0..=resumed.search.population)?;
+        for survivor in &resumed.pool.members {
             within("chance", survivor.chance, LEAST_CHANCE..=1.0)?;
-            plan.settings.trial.check_genome(&survivor.genome)?;
-            resumed.children.space.check_genome(&survivor.genome, resumed.children.shape)?;
+            resumed.search.check_genome(&survivor.genome, plan)?;
         }
         Ok(resumed)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        (0..self.population).map(|individual| self.individual(individual)).collect()
+    fn ask(&self) -> Vec<Candidate> {
+        (0..self.search.population).map(|individual| self.individual(individual)).collect()
     }
 
     fn population(&self) -> usize {
-        self.population
+        self.search.population
     }
 
-    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let share = f64::from(self.settings.survivors);
-        let count = libm::round(share * genomes.len() as f64) as usize;
+        let count = libm::round(share * candidates.len() as f64) as usize;
         let mut order = full_ranking(evaluations);
         order.truncate(count.max(1));
         // A disqualified creature breeds only if there are too few others.
@@ -160,47 +139,30 @@ impl Strategy for CreatureGa {
             order.retain(healthy);
         }
         let fitness: Vec<f32> = order.iter().map(|&index| evaluations[index].fitness).collect();
-        let survivors = order.iter().zip(chances(&fitness));
-        self.survivors = survivors
-            .map(|(&index, chance)| Survivor { genome: genomes[index].clone(), chance })
-            .collect();
-        self.ids = IndividualId::all(self.children.generation, &order);
-        self.children.generation += 1;
+        let mut chances = chances(&fitness).into_iter();
+        let survivor = |&index: &usize| Survivor {
+            genome: candidates[index].genome.clone(),
+            chance: chances.next().unwrap_or(LEAST_CHANCE),
+        };
+        self.pool = ParentPool::chosen(self.search.generation, &order, survivor);
+        self.search.generation += 1;
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::of(&self.survivors)
+        StrategyState::of(&self.pool.members)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.settings = plan.settings.evolution.creature_ga.clone();
-        self.population = plan.settings.evolution.population as usize;
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let of = |individual| {
-            let id = |index: usize| self.ids.get(index).copied();
-            let parents = match self.origin(individual).0 {
-                CreatureOrigin::First => Some(Parents::None),
-                CreatureOrigin::Survivor(index)
-                | CreatureOrigin::Child(index, _, CreatureChange::Mutation) => {
-                    id(index).map(Parents::One)
-                }
-                CreatureOrigin::Child(first, second, _) => {
-                    id(first).zip(id(second)).map(|(first, second)| Parents::Two(first, second))
-                }
-            };
-            parents.unwrap_or(Parents::Unknown)
-        };
-        (0..self.population).map(of).collect()
+        self.search.apply_settings(plan);
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
-        self.ids.clone()
+        self.pool.ids()
     }
 
     fn restore_parents(&mut self, pool: &[IndividualId]) {
-        self.ids = pool.get(..self.survivors.len()).unwrap_or_default().to_vec();
+        self.pool.restore(pool);
     }
 }
 
@@ -225,12 +187,12 @@ mod tests {
     }
 
     fn advance(ga: &mut CreatureGa) -> f32 {
-        let genomes = ga.ask();
-        let evaluations: Vec<Evaluation> = genomes
+        let asked = ga.ask();
+        let evaluations: Vec<Evaluation> = asked
             .iter()
-            .map(|genome| Evaluation::of_fitness(-(parts(genome) as f32 - 8.0).abs()))
+            .map(|of| Evaluation::of_fitness(-(parts(&of.genome) as f32 - 8.0).abs()))
             .collect();
-        ga.tell(&genomes, &evaluations);
+        ga.tell(&asked, &evaluations);
         evaluations.iter().map(|of| of.fitness).sum::<f32>() / evaluations.len() as f32
     }
 
@@ -238,12 +200,14 @@ mod tests {
     fn a_fifth_survives_and_the_population_follows_the_fitness() {
         let mut ga = ga();
         let first = advance(&mut ga);
-        assert_eq!(ga.survivors.len(), 12);
-        let kept: Vec<Genome> = ga.survivors.iter().map(|of| of.genome.clone()).collect();
-        assert_eq!(ga.ask()[..12], kept);
+        assert_eq!(ga.pool.members.len(), 12);
+        let asked = ga.ask();
+        let pairs = asked.iter().zip(&ga.pool.members);
+        assert!(pairs.clone().all(|(of, survivor)| of.genome == survivor.genome));
+        assert!(pairs.count() == 12);
         let last = (0..6).map(|_| advance(&mut ga)).last().expect("six");
         assert!(last > first + 1.0, "{first}, then {last}");
-        assert_eq!(parts(&ga.survivors[0].genome), 8);
+        assert_eq!(parts(&ga.pool.members[0].genome), 8);
     }
 
     #[test]
@@ -259,14 +223,14 @@ mod tests {
     #[test]
     fn disqualified_creatures_do_not_breed_beside_healthy_ones() {
         let mut ga = ga();
-        let genomes = ga.ask();
+        let asked = ga.ask();
         let mut evaluations: Vec<Evaluation> =
             (0..60).map(|_| Evaluation::of_fitness(9.0)).collect();
         for evaluation in &mut evaluations[3..] {
             evaluation.disqualified = Some(crate::world::Disqualification::FellOver);
         }
-        ga.tell(&genomes, &evaluations);
-        assert_eq!(ga.survivors.len(), 3);
+        ga.tell(&asked, &evaluations);
+        assert_eq!(ga.pool.members.len(), 3);
     }
 
     #[test]
@@ -281,7 +245,7 @@ mod tests {
         advance(&mut ga);
         CreatureGa::resume(&plan, 1, &ga.state()).expect("its own");
         let error = |change: fn(&mut Survivor)| {
-            let mut survivors = ga.survivors.clone();
+            let mut survivors = ga.pool.members.clone();
             change(&mut survivors[1]);
             let state = StrategyState::of(&survivors);
             CreatureGa::resume(&plan, 1, &state).expect_err("refused").to_string()

@@ -8,10 +8,12 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::breeder::{BehaviourPoint, Breeder};
+use super::parent_pool::ParentPool;
 use super::search::Search;
 use super::wave_takeover::WaveTakeover;
 use crate::check::{Invalid, within};
 use crate::control::WaveUses;
+use crate::evolve::candidate::{Candidate, Heritage};
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{Crossover, GaSettings, Mutation, ParentSelection};
@@ -38,26 +40,14 @@ pub struct GaMember {
     pub uses: Option<WaveUses>,
 }
 
-/// How an individual is made; the numbers are indices in the last generation, best first.
-enum Variation {
-    /// Drawn at random.
-    Random,
-    /// An unchanged copy.
-    Elite(usize),
-    /// A child of one parent, or two, and of one of whom it has a wave.
-    Child { first: usize, second: Option<usize>, wave_of: Option<usize> },
-}
-
 /// The genetic algorithm. Which individuals are the best may also be decided from outside: see [`Breeder::select`].
 #[derive(Debug, Clone)]
 pub struct Ga {
     settings: GaSettings,
     /// The points of genomes, and random numbers.
     pub search: Search,
-    /// The last generation, best first; empty at the beginning.
-    members: Vec<GaMember>,
-    /// Their ids; empty if they are unknown.
-    ids: Vec<IndividualId>,
+    /// The last generation.
+    pool: ParentPool<GaMember>,
     takeover: WaveTakeover,
 }
 
@@ -66,68 +56,51 @@ impl Ga {
         Self {
             settings: plan.settings.evolution.ga.clone(),
             search: Search::new(plan, finished),
-            members,
-            ids: Vec::new(),
+            pool: ParentPool::unknown(members),
             takeover: WaveTakeover::new(plan),
         }
     }
 
-    /// The next generation.
-    pub fn generation(&self) -> Vec<GaMember> {
-        (0..self.search.population).map(|individual| self.individual(individual)).collect()
-    }
-
-    /// How an individual is made, and the stream from which its random numbers continue.
-    fn variation(&self, individual: usize) -> (Variation, ChaCha8Rng) {
-        let mut rng = self.search.stream(individual, Purpose::Mutation);
-        let count = self.members.len();
+    fn individual(&self, individual: usize) -> Candidate {
+        let members = &self.pool.members;
+        if members.is_empty() {
+            return self.candidate(self.first(individual), Parents::None);
+        }
         // At least one individual has to change.
         let elites = (self.settings.elites as usize).min(self.search.population - 1);
-        let variation = if count == 0 {
-            Variation::Random
-        } else if individual < elites.min(count) {
-            Variation::Elite(individual)
-        } else {
-            let first = self.parent(&mut rng);
-            let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.crossover_share);
-            let second = is_crossed.then(|| self.parent(&mut rng));
-            let share = self.settings.wave_takeover;
-            let wave_of = self.takeover.donor(&self.members, first, share, &mut rng);
-            Variation::Child { first, second, wave_of }
-        };
-        (variation, rng)
-    }
-
-    fn individual(&self, individual: usize) -> GaMember {
-        let parents = &self.members;
-        let (variation, mut rng) = self.variation(individual);
-        let (first, second, wave_of) = match variation {
-            Variation::Random => return self.first(individual),
-            Variation::Elite(index) => return parents[index].clone(),
-            Variation::Child { first, second, wave_of } => (first, second, wave_of),
-        };
-        let mut child = parents[first].clone();
+        if individual < elites.min(members.len()) {
+            let parents = self.pool.parents(individual, None);
+            return self.candidate(members[individual].clone(), parents);
+        }
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let first = self.parent(&mut rng);
+        let is_crossed = rng.random_range(0.0..1.0) < f64::from(self.settings.crossover_share);
+        let second = is_crossed.then(|| self.parent(&mut rng));
+        let wave_of = self.takeover.donor(members, first, self.settings.wave_takeover, &mut rng);
+        let mut child = members[first].clone();
         if let Some(other) = second {
-            self.cross(&mut child, &parents[other], &mut rng);
+            self.cross(&mut child, &members[other], &mut rng);
         }
         if let Some(other) = wave_of {
-            self.takeover.take_over(&mut child.point, &parents[first], &parents[other]);
+            self.takeover.take_over(&mut child.point, &members[first], &members[other]);
         }
         self.mutate(&mut child, &mut rng);
-        child
+        // Of three parents, the one that has given a single wave is left out.
+        self.candidate(child, self.pool.parents(first, second.or(wave_of)))
+    }
+
+    fn candidate(&self, GaMember { step, point, .. }: GaMember, parents: Parents) -> Candidate {
+        let mut candidate = self.search.candidate(point, parents);
+        candidate.heritage.step = step;
+        candidate
     }
 
     /// An individual of the first generation.
     fn first(&self, individual: usize) -> GaMember {
         let step = f64::from(self.settings.step).max(*STEPS.start());
-        let Some(founder) = self.search.founder() else {
-            let point = self.search.random_genome_point(individual);
-            return GaMember { step, point, uses: None };
-        };
-        let mut member = GaMember { step, point: founder.to_vec(), uses: None };
-        if !Search::is_founder_mutant(individual) {
-            member.point = self.search.random_genome_point(individual);
-        } else if individual > 0 {
+        let point = self.search.unvaried_point(individual);
+        let mut member = GaMember { step, point, uses: None };
+        if individual > 0 && self.search.founder_of(individual).is_some() {
             self.mutate(&mut member, &mut self.search.stream(individual, Purpose::Mutation));
         }
         member
@@ -135,7 +108,7 @@ impl Ga {
 
     /// Chooses a parent; returns its index.
     fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
-        let count = self.members.len();
+        let count = self.pool.members.len();
         match self.settings.selection {
             // Members are in order, so the best of those drawn has the lowest index.
             ParentSelection::Tournament => (0..self.settings.tournament)
@@ -189,27 +162,27 @@ impl Breeder for Ga {
     type Point = BehaviourPoint;
 
     fn resume_with(plan: &RunPlan, finished: u32, members: Vec<GaMember>) -> Result<Self, Invalid> {
-        let ga = Self::with(plan, finished, members);
-        within("members", ga.members.len(), 0..=ga.search.population)?;
-        for member in &ga.members {
+        let mut ga = Self::with(plan, finished, Vec::new());
+        within("members", members.len(), 0..=ga.search.population)?;
+        for member in &members {
             within("step", member.step, STEPS)?;
             ga.search.check(&member.point)?;
             ga.takeover.check(member)?;
         }
+        ga.pool = ParentPool::unknown(members);
         Ok(ga)
     }
 
     fn members(&self) -> &[GaMember] {
-        &self.members
+        &self.pool.members
     }
 
-    fn select(&mut self, order: &[usize]) {
-        let generation = self.generation();
+    fn select(&mut self, candidates: &[Candidate], order: &[usize]) {
         let member = |&index: &usize| {
-            generation.get(index).map(|member| GaMember { uses: None, ..member.clone() })
+            let Heritage { step, point, .. } = candidates[index].heritage.clone();
+            GaMember { step, point, uses: None }
         };
-        self.members = order.iter().filter_map(member).collect();
-        self.ids = IndividualId::all(self.search.generation, order);
+        self.pool = ParentPool::chosen(self.search.generation, order, member);
         self.search.generation += 1;
     }
 
@@ -231,24 +204,23 @@ impl Strategy for Ga {
         Self::resume_with(plan, finished, state.read()?)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        let members = self.generation();
-        let genomes = members.iter().map(|member| self.search.genome(&member.point)).collect();
-        self.search.with_founder_first(genomes)
+    fn ask(&self) -> Vec<Candidate> {
+        let all = (0..self.search.population).map(|individual| self.individual(individual));
+        self.search.with_founder_first(all.collect())
     }
 
     fn population(&self) -> usize {
         self.search.population
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let order = full_ranking(evaluations);
-        self.select(&order);
-        self.takeover.learn(&mut self.members, &order, evaluations);
+        self.select(candidates, &order);
+        self.takeover.learn(&mut self.pool.members, &order, evaluations);
     }
 
     fn state(&self) -> StrategyState {
-        StrategyState::of(&self.members)
+        StrategyState::of(&self.pool.members)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
@@ -256,29 +228,12 @@ impl Strategy for Ga {
         self.search.apply_settings(plan);
     }
 
-    fn parents(&self) -> Vec<Parents> {
-        let of = |individual| {
-            let id = |index: usize| self.ids.get(index).copied();
-            let parents = match self.variation(individual).0 {
-                Variation::Random => Some(Parents::None),
-                Variation::Elite(index) => id(index).map(Parents::One),
-                // Of three, the one that has given a single wave is left out.
-                Variation::Child { first, second, wave_of } => match second.or(wave_of) {
-                    None => id(first).map(Parents::One),
-                    Some(second) => id(first).zip(id(second)).map(|(a, b)| Parents::Two(a, b)),
-                },
-            };
-            parents.unwrap_or(Parents::Unknown)
-        };
-        (0..self.search.population).map(of).collect()
-    }
-
     fn parent_pool(&self) -> Vec<IndividualId> {
-        self.ids.clone()
+        self.pool.ids()
     }
 
     fn restore_parents(&mut self, pool: &[IndividualId]) {
-        self.ids = pool.get(..self.members.len()).unwrap_or_default().to_vec();
+        self.pool.restore(pool);
     }
 }
 
@@ -293,7 +248,7 @@ mod tests {
         settings.trial.duration_s = 1.0;
         change(&mut settings.evolution.ga);
         let mut ga = Ga::begin(&RunPlan::new("test", 1, settings));
-        ga.select(&(0..200).collect::<Vec<_>>());
+        ga.select(&ga.ask(), &(0..200).collect::<Vec<_>>());
         ga
     }
 
@@ -322,29 +277,32 @@ mod tests {
     #[test]
     fn elites_are_unchanged_and_all_others_change() {
         let ga = ga(|settings| settings.elites = 3);
-        let next = ga.generation();
-        assert_eq!(next[..3], ga.members[..3]);
-        assert!(next[3..].iter().all(|child| !ga.members.contains(child)));
+        let members: Vec<_> = ga.pool.members.iter().map(|of| (of.step, &of.point)).collect();
+        let next = ga.ask();
+        let next: Vec<_> = next.iter().map(|of| (of.heritage.step, &of.heritage.point)).collect();
+        assert_eq!(next[..3], members[..3]);
+        assert!(next[3..].iter().all(|child| !members.contains(child)));
     }
 
     #[test]
     fn every_gene_of_a_child_is_close_to_that_of_a_recorded_parent() {
         let ga = ga(|settings| settings.step = 1.0e-4);
         let index_of = |id: IndividualId| {
-            ga.ids.iter().position(|known| *known == id).expect("one of the last")
+            ga.pool.ids().iter().position(|known| *known == id).expect("one of the last")
         };
         let mut seen = [0; 3];
-        for (child, parents) in ga.generation().iter().zip(ga.parents()) {
-            let parents: Vec<_> = parents.ids().map(index_of).collect();
+        let asked = ga.ask();
+        for child in &asked {
+            let parents: Vec<_> = child.parents.ids().map(index_of).collect();
             seen[parents.len()] += 1;
-            let members: Vec<_> = parents.iter().map(|&index| &ga.members[index]).collect();
-            for (gene, value) in child.point.iter().enumerate() {
+            let members: Vec<_> = parents.iter().map(|&index| &ga.pool.members[index]).collect();
+            for (gene, value) in child.heritage.point.iter().enumerate() {
                 let is_near = |member: &&GaMember| (member.point[gene] - value).abs() < 0.01;
                 assert!(members.iter().any(is_near), "gene {gene}");
             }
         }
         assert!(seen[0] == 0 && seen[1] > 50 && seen[2] > 50, "{seen:?}");
-        assert_eq!(ga.parents()[0], Parents::One(ga.ids[0]), "the first is an elite");
+        assert_eq!(asked[0].parents, Parents::One(ga.pool.ids()[0]), "the first is an elite");
     }
 
     #[test]
@@ -376,7 +334,7 @@ mod tests {
             let ga = ga(|settings| settings.mutation = mutation);
             let mut rng = ga.search.stream(5, Purpose::Mutation);
             let (mut squares, mut count, mut most) = (0.0, 0.0, 0.0_f64);
-            for parent in &ga.members {
+            for parent in &ga.pool.members {
                 let mut child = parent.clone();
                 ga.mutate(&mut child, &mut rng);
                 for (x, y) in child.point.iter().zip(&parent.point) {

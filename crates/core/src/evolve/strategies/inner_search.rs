@@ -2,8 +2,12 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, Serializer};
+
+use crate::check::{Invalid, within};
 use crate::evolve::plan::{Founder, RunPlan};
 use crate::evolve::settings::{RestartKind, StrategyKind};
+use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::Genome;
 
 /// Random genomes with which a search begins that is not around a genome; in a short run a quarter of its evaluations.
@@ -21,6 +25,25 @@ pub struct InnerSearch<'a> {
 }
 
 impl InnerSearch<'_> {
+    /// Resumes a search with this plan after its first `finished` generations.
+    ///
+    /// # Errors
+    /// The state does not fit the plan, or a generation would be too large.
+    pub fn resumed<S: Strategy>(
+        plan: &RunPlan,
+        finished: u32,
+        state: &StrategyState,
+    ) -> Result<S, Invalid> {
+        let search = match finished {
+            0 => S::begin(plan),
+            _ => S::resume(plan, finished, state)?,
+        };
+        let evolution = &plan.settings.evolution;
+        let most = evolution.population.max(evolution.cma_es.newborns) as usize;
+        within("population", search.population(), 1..=most)?;
+        Ok(search)
+    }
+
     /// Its plan, in the world and with the genomes of a run.
     pub fn plan(&self, run: &RunPlan) -> RunPlan {
         let mut settings = run.settings.clone();
@@ -37,4 +60,9 @@ impl InnerSearch<'_> {
         let founder = self.around.map(|genome| Arc::new(Founder::new("agent", genome.clone())));
         RunPlan { founder, ..RunPlan::new(&run.preset, self.seed, settings) }
     }
+}
+
+/// Writes a search into a file as its state.
+pub fn serialize_search<S: Strategy, T: Serializer>(search: &S, to: T) -> Result<T::Ok, T::Error> {
+    search.state().serialize(to)
 }

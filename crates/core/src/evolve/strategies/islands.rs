@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 use super::cma::{CmaParameters, RestartedCma};
-use super::cma_es::{covariance_shape, ranked_candidates};
+use super::cma_es::{check_runs, covariance_shape, ranked_candidates};
 use crate::check::{Invalid, within};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::{Founder, RunPlan};
 use crate::evolve::settings::{IslandSettings, LARGEST_SAMPLE, RestartKind};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::{Genome, GenomeShape, GenomeSpace};
+use crate::genome::{GenomeShape, GenomeSpace};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 
@@ -92,24 +93,31 @@ impl Islands {
         if island.is_active { runs as usize } else { 0 }
     }
 
-    /// The points of an island, given the index of its first individual.
-    fn points(&self, island: &Island, first: usize) -> Vec<Vec<f64>> {
-        let stream = |index: usize, purpose| {
-            stream(self.seed, self.generation, (first + index) as u32, purpose)
-        };
-        match &island.runs {
-            Some(runs) if island.is_active => {
-                runs.candidates(|index| stream(index as usize, Purpose::Sample))
-            }
-            _ => (0..self.size(island))
-                .map(|index| {
-                    let mut rng = stream(index, Purpose::Birth);
-                    let genome =
-                        self.space.random_genome_of_plain_body(self.shape(island), &mut rng);
-                    self.space.point_of(&genome)
-                })
-                .collect(),
+    /// The candidates of an island, given the index of its first individual.
+    fn candidates(&self, island: &Island, first: usize) -> Vec<Candidate> {
+        if !island.is_active {
+            return Vec::new();
         }
+        let stream =
+            |index: u32, purpose| stream(self.seed, self.generation, first as u32 + index, purpose);
+        let shape = self.shape(island);
+        let (points, parents) = match &island.runs {
+            Some(runs) => {
+                (runs.candidates(|index| stream(index, Purpose::Sample)), Parents::Distribution)
+            }
+            None => {
+                let random = |index| {
+                    let mut rng = stream(index, Purpose::Birth);
+                    self.space.point_of(&self.space.random_genome_of_plain_body(shape, &mut rng))
+                };
+                ((0..self.settings.candidates).map(random).collect(), Parents::None)
+            }
+        };
+        let candidate = |point: Vec<f64>| {
+            let genome = self.space.genome_at(&point, shape);
+            Candidate::at(point, genome, parents)
+        };
+        points.into_iter().map(candidate).collect()
     }
 
     /// Ends a stage once all active islands have had its evaluations.
@@ -167,45 +175,35 @@ impl Strategy for Islands {
         for island in &search.islands {
             within("evaluations", island.evaluations, 0..=budget)?;
             let Some(runs) = &island.runs else { continue };
-            runs.check()?;
             let dimension = search.space.dimension(search.shape(island));
-            within("coordinates", runs.current().mean().len(), dimension..=dimension)?;
-            let mean = runs.current().mean().iter();
-            mean.copied().try_for_each(|x| within("coordinate", x, -1.0e6..=1.0e6))?;
-            if *runs.parameters() != search.parameters(island) {
-                let value = "different from those of the run";
-                return Err(Invalid::new("parameters", value, "the parameters of the run"));
-            }
-            within("population", runs.population(), 2..=search.settings.candidates << 9)?;
-            within("step", runs.current().step(), 0.0..=1.0e6)?;
+            check_runs(runs, &search.parameters(island), dimension)?;
             coordinates += dimension * runs.population() as usize;
             within("population · dimension", coordinates, 1..=LARGEST_SAMPLE)?;
         }
         Ok(search)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        let mut genomes = Vec::with_capacity(self.population());
+    fn ask(&self) -> Vec<Candidate> {
+        let mut candidates = Vec::with_capacity(self.population());
         for island in &self.islands {
-            let (shape, points) = (self.shape(island), self.points(island, genomes.len()));
-            genomes.extend(points.iter().map(|point| self.space.genome_at(point, shape)));
+            candidates.extend(self.candidates(island, candidates.len()));
         }
-        genomes
+        candidates
     }
 
     fn population(&self) -> usize {
         self.islands.iter().map(|island| self.size(island)).sum()
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let mut first = 0;
         for index in 0..self.islands.len() {
             let island = &self.islands[index];
-            let points = self.points(island, first);
-            if points.is_empty() {
+            let end = first + self.size(island);
+            if first == end {
                 continue;
             }
-            let own = evaluations.get(first..first + points.len()).unwrap_or_default();
+            let (asked, own) = (&candidates[first..end], &evaluations[first..end]);
             let order = full_ranking(own);
             let mut next = island.clone();
             next.evaluations += own.len() as u64;
@@ -213,14 +211,14 @@ impl Strategy for Islands {
             let fitness = best.filter(|best| best.disqualified.is_none()).map(|best| best.fitness);
             next.best = [next.best, fitness].into_iter().flatten().reduce(f32::max);
             if let Some(runs) = &mut next.runs {
-                let ranked = ranked_candidates(&points, own, &order);
+                let ranked = ranked_candidates(asked, own, &order);
                 let mut rng = stream(self.seed, self.generation, first as u32, Purpose::Restart);
                 // No candidate is missing. If one is not finite, there is nothing left to learn.
                 let _ = runs.update(&ranked, &mut rng);
             } else if let Some(&best) = order.first() {
-                next.runs = self.start(island, points[best].clone());
+                next.runs = self.start(island, asked[best].heritage.point.clone());
             }
-            first += points.len();
+            first = end;
             self.islands[index] = next;
         }
         self.end_stage();
@@ -234,14 +232,6 @@ impl Strategy for Islands {
     fn apply_settings(&mut self, plan: &RunPlan) {
         // The runs depend on no setting that may change.
         self.settings = plan.settings.evolution.islands.clone();
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let of = |island: &Island| {
-            let parents = if island.runs.is_some() { Parents::Distribution } else { Parents::None };
-            vec![parents; self.size(island)]
-        };
-        self.islands.iter().flat_map(of).collect()
     }
 }
 
@@ -263,12 +253,12 @@ mod tests {
     /// Takes generations in which seven blocks are the best, and the others the worse the more they differ.
     fn advance(search: &mut Islands, generations: u32) {
         for _ in 0..generations {
-            let genomes = search.ask();
-            assert_eq!(genomes.len(), search.population());
-            let fitness = |genome: &Genome| -(genome.body.segments.len() as f32 - 7.0).abs();
+            let asked = search.ask();
+            assert_eq!(asked.len(), search.population());
+            let fitness = |of: &Candidate| -(of.genome.body.segments.len() as f32 - 7.0).abs();
             let evaluations: Vec<Evaluation> =
-                genomes.iter().map(|genome| Evaluation::of_fitness(fitness(genome))).collect();
-            search.tell(&genomes, &evaluations);
+                asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
+            search.tell(&asked, &evaluations);
         }
     }
 
@@ -289,9 +279,9 @@ mod tests {
         assert_eq!(active(&search).len(), 5);
         advance(&mut search, 1);
         assert_eq!(active(&search), [6, 7], "of equals the one with fewer blocks");
-        let parents = search.parents();
-        assert!(parents.iter().all(|parents| *parents == Parents::Distribution));
-        assert_eq!(parents.len(), search.population());
+        let asked = search.ask();
+        assert!(asked.iter().all(|of| of.parents == Parents::Distribution));
+        assert_eq!(asked.len(), search.population());
     }
 
     #[test]
@@ -300,10 +290,11 @@ mod tests {
         advance(&mut search, 1);
         let island = search.islands.iter().find(|island| island.limbs == 7).expect("an island");
         let body = search.space.body_dimension(search.shape(island));
-        let points = search.points(island, 0);
+        let asked = search.candidates(island, 0);
         let mean = island.runs.as_ref().expect("started").current().mean();
         let spread = |range: std::ops::Range<usize>| {
-            let offs = points.iter().flat_map(|point| {
+            let points = asked.iter().map(|of| &of.heritage.point);
+            let offs = points.flat_map(|point| {
                 range.clone().map(|coordinate| (point[coordinate] - mean[coordinate]).abs())
             });
             offs.sum::<f64>() / range.len() as f64

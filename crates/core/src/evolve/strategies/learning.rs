@@ -7,6 +7,7 @@
 use super::learned::Learned;
 use super::search::Search;
 use crate::check::Invalid;
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::EvolutionSettings;
@@ -15,14 +16,13 @@ use crate::genome::Genome;
 use crate::genome::controllers::Explorer;
 use crate::learn::Episode;
 use crate::learn::q_table::epsilon;
-use crate::rng::{Purpose, stream};
+use crate::rng::Purpose;
 use crate::score::Evaluation;
 
 /// A learner that all episodes share.
 #[derive(Debug, Clone)]
 pub struct Learning<L> {
     search: Search,
-    seed: u64,
     evolution: EvolutionSettings,
     /// The snake of all episodes, without a policy of its own: the founder, or the one in the middle of all ranges.
     first: Genome,
@@ -32,11 +32,10 @@ pub struct Learning<L> {
 impl<L: Learned> Learning<L> {
     fn with(plan: &RunPlan, finished: u32, learned: L) -> Self {
         let search = Search::new(plan, finished);
-        let middle = || search.genome(&vec![0.5; search.dimension]);
+        let middle = || search.genome(&vec![0.5; search.dimension()]);
         Self {
             first: plan.founder.as_ref().map_or_else(middle, |of| of.genome().clone()),
             search,
-            seed: plan.seed,
             evolution: plan.settings.evolution.clone(),
             learned,
         }
@@ -49,7 +48,7 @@ impl<L: Learned> Learning<L> {
         let ladder = self.evolution.exploration.ladder();
         (individual > 0).then(|| Explorer {
             epsilon: epsilon(finished, individual, actors, &ladder),
-            seed: self.seed,
+            seed: self.search.seed,
             generation: self.search.generation,
             individual,
             rule: self.evolution.q_learning.rule(),
@@ -76,13 +75,15 @@ impl<L: Learned> Strategy for Learning<L> {
         Ok(Self::with(plan, finished, learned))
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        let individual = |individual| {
+    fn ask(&self) -> Vec<Candidate> {
+        let candidate = |individual| {
             let mut genome = self.first.clone();
-            self.learned.give(&mut genome.controller, self.explorer(individual));
-            genome
+            let explorer = self.explorer(individual);
+            let may_be_champion = explorer.is_none();
+            self.learned.give(&mut genome.controller, explorer);
+            Candidate { may_be_champion, ..Candidate::new(genome, Parents::None) }
         };
-        (0..self.search.population).map(individual).collect()
+        (0..self.search.population).map(candidate).collect()
     }
 
     fn population(&self) -> usize {
@@ -93,17 +94,13 @@ impl<L: Learned> Strategy for Learning<L> {
         true
     }
 
-    fn may_be_champion(&self, individual: usize) -> bool {
-        individual == 0
-    }
-
     fn learn(&mut self, episodes: Vec<Option<Episode>>) {
-        let mut rng = stream(self.seed, self.search.generation, 0, Purpose::Learn);
+        let mut rng = self.search.stream(0, Purpose::Learn);
         let episodes: Vec<Episode> = episodes.into_iter().flatten().collect();
         self.learned.learn(episodes, &self.evolution, &mut rng);
     }
 
-    fn tell(&mut self, _: &[Genome], _: &[Evaluation]) {
+    fn tell(&mut self, _: &[Candidate], _: &[Evaluation]) {
         self.search.generation += 1;
     }
 
@@ -115,10 +112,6 @@ impl<L: Learned> Strategy for Learning<L> {
         self.search.apply_settings(plan);
         self.evolution = plan.settings.evolution.clone();
         self.learned.apply(&self.evolution);
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        vec![Parents::None; self.search.population]
     }
 }
 
@@ -138,9 +131,12 @@ mod tests {
         let founder = Learning::<Policy>::begin(&RunPlan::new("x", 1, settings.clone())).ask();
         let changed = with_fields(&settings, [("xcs.learning_rate", "0.5")]).expect("allowed");
         let plan = RunPlan::new("x", 1, changed);
-        let plan = plan.starting_from(Founder::new("x", founder[0].clone())).expect("it fits");
+        let plan =
+            plan.starting_from(Founder::new("x", founder[0].genome.clone())).expect("it fits");
         let asked = Learning::<Policy>::begin(&plan).ask();
-        let ControllerGenes::Decisions(genes) = &asked[0].controller else { panic!("decisions") };
+        let ControllerGenes::Decisions(genes) = &asked[0].genome.controller else {
+            panic!("decisions")
+        };
         let Policy::Xcs(rules) = &genes.policy else { panic!("rules") };
         assert_eq!(rules.settings().learning_rate, 0.5);
     }

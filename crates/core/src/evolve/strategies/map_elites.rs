@@ -3,7 +3,6 @@
 //! Mouret, GECCO 2018), and one that searches for improvements by CMA-ES (Fontaine and others, GECCO 2020).
 
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::cma::{Cma, RankedCandidate};
@@ -11,11 +10,11 @@ use super::cma_es::covariance_shape;
 use super::search::Search;
 use crate::check::{Invalid, within};
 use crate::evolve::archives::{Addition, Archive, ArchiveAxis, Elite, EliteGenes};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::{IndividualId, Parents};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::MapElitesSettings;
 use crate::evolve::strategy::{Strategy, StrategyState};
-use crate::genome::Genome;
 use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
@@ -56,47 +55,32 @@ impl MapElites {
         Some(self.archive.cell([x?, y?]))
     }
 
-    fn points(&self) -> Vec<Vec<f64>> {
-        let mut points = match &self.emitter {
-            Some(cma) => {
-                cma.candidates(|index| self.search.stream(index as usize, Purpose::Sample))
-            }
-            None => Vec::new(),
-        };
-        let elites: Vec<&Elite<Vec<f64>>> = self.archive.elites().map(|(_, elite)| elite).collect();
-        while points.len() < self.search.population {
-            let individual = points.len();
-            points.push(if elites.is_empty() {
-                self.search.first_point(individual, self.settings.step.into())
-            } else {
-                self.varied(individual, &elites)
-            });
-        }
-        points
-    }
-
-    /// Chooses the elite that is varied and the one that it moves towards. Returns their indices, and the stream from
-    /// which the random numbers continue.
-    fn chosen(&self, individual: usize, elites: usize) -> (usize, usize, ChaCha8Rng) {
-        let mut rng = self.search.stream(individual, Purpose::Mutation);
-        let parent = rng.random_range(0..elites);
-        let other = rng.random_range(0..elites);
-        (parent, other, rng)
-    }
-
     /// An elite, moved by a normally distributed step in every gene and along the line to another elite.
-    fn varied(&self, individual: usize, elites: &[&Elite<Vec<f64>>]) -> Vec<f64> {
-        let (parent, other, mut rng) = self.chosen(individual, elites.len());
+    fn varied(&self, individual: usize, elites: &[&Elite<Vec<f64>>]) -> Candidate {
+        let mut rng = self.search.stream(individual, Purpose::Mutation);
+        let parent = rng.random_range(0..elites.len());
+        let other = rng.random_range(0..elites.len());
+        let has_one = parent == other || self.settings.line == 0.0;
         let (parent, other) = (elites[parent], elites[other]);
         let along = f64::from(self.settings.line) * normal(&mut rng);
         let step = f64::from(self.settings.step);
         let pairs = parent.genes.iter().zip(&other.genes);
-        pairs.map(|(x, to)| x + step * normal(&mut rng) + along * (to - x)).collect()
+        let point = pairs.map(|(x, to)| x + step * normal(&mut rng) + along * (to - x)).collect();
+        let parents = match has_one {
+            true => Parents::One(parent.id()),
+            false => Parents::Two(parent.id(), other.id()),
+        };
+        self.search.candidate(point, parents)
     }
 
     /// Lets the emitter learn: individuals that filled an empty cell rank first, then those that improved one, then the
     /// others. If there was no progress, or its search has ended, it begins again at another elite.
-    fn teach(&mut self, points: &[Vec<f64>], evaluations: &[Evaluation], additions: &[Addition]) {
+    fn teach(
+        &mut self,
+        candidates: &[Candidate],
+        evaluations: &[Evaluation],
+        additions: &[Addition],
+    ) {
         let share = self.emitter_population();
         let mut has_ended = true;
         if let Some(cma) = &mut self.emitter {
@@ -119,7 +103,7 @@ impl MapElites {
                 .enumerate()
                 .map(|(rank, &index)| {
                     let value = (share - rank) as f64 + f64::from(cma.iteration());
-                    RankedCandidate { point: &points[index], value }
+                    RankedCandidate { point: &candidates[index].heritage.point, value }
                 })
                 .collect();
             let is_fruitless = additions[..share].iter().all(|a| *a == Addition::None);
@@ -138,7 +122,7 @@ impl MapElites {
         }
         let mut rng = self.search.stream(0, Purpose::Restart);
         let start = elites[rng.random_range(0..elites.len())].genes.clone();
-        let shape = covariance_shape(self.search.dimension);
+        let shape = covariance_shape(self.search.dimension());
         // The check of the settings excludes errors. Without this emitter the other makes all individuals.
         Cma::new(start, self.settings.cma_step.into(), population as u32, shape, true).ok()
     }
@@ -181,17 +165,30 @@ impl Strategy for MapElites {
         Ok(search)
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        self.search.with_founder_first(self.search.genomes(&self.points()))
+    fn ask(&self) -> Vec<Candidate> {
+        let mut candidates = match &self.emitter {
+            Some(cma) => self.search.sampled(|random| cma.candidates(random)),
+            None => Vec::new(),
+        };
+        let elites: Vec<&Elite<Vec<f64>>> = self.archive.elites().map(|(_, elite)| elite).collect();
+        while candidates.len() < self.search.population {
+            let individual = candidates.len();
+            candidates.push(if elites.is_empty() {
+                let point = self.search.first_point(individual, self.settings.step.into());
+                self.search.candidate(point, Parents::None)
+            } else {
+                self.varied(individual, &elites)
+            });
+        }
+        self.search.with_founder_first(candidates)
     }
 
     fn population(&self) -> usize {
         self.search.population
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let points = self.points();
-        let add = |(index, (point, evaluation)): (usize, (&Vec<f64>, &Evaluation))| {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        let add = |(index, (candidate, evaluation)): (usize, (&Candidate, &Evaluation))| {
             let Some(cell) = self.cell(evaluation) else {
                 return Addition::None;
             };
@@ -200,13 +197,13 @@ impl Strategy for MapElites {
                 generation: self.search.generation,
                 individual: index as u32,
                 // Inside the cube lines between elites are short.
-                genes: self.search.folded(point),
+                genes: self.search.folded(&candidate.heritage.point),
             };
             self.archive.add(cell, elite)
         };
         let additions: Vec<Addition> =
-            points.iter().zip(evaluations).enumerate().map(add).collect();
-        self.teach(&points, evaluations, &additions);
+            candidates.iter().zip(evaluations).enumerate().map(add).collect();
+        self.teach(candidates, evaluations, &additions);
         self.search.generation += 1;
     }
 
@@ -222,25 +219,6 @@ impl Strategy for MapElites {
         let share = self.emitter_population();
         // An emitter of another size cannot learn from this generation. It begins again after the next.
         self.emitter.take_if(|emitter| emitter.population() as usize != share);
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let elites = self.parent_pool();
-        let drawn = self.emitter.as_ref().map_or(0, |emitter| emitter.population() as usize);
-        let of = |individual| {
-            if individual < drawn {
-                return Parents::Distribution;
-            }
-            if elites.is_empty() {
-                return Parents::None;
-            }
-            let (parent, other, _) = self.chosen(individual, elites.len());
-            if parent == other || self.settings.line == 0.0 {
-                return Parents::One(elites[parent]);
-            }
-            Parents::Two(elites[parent], elites[other])
-        };
-        (0..self.search.population).map(of).collect()
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
@@ -271,8 +249,8 @@ mod tests {
             ..MapElitesSettings::default()
         };
         let mut search = MapElites::begin(&RunPlan::new("test", 1, settings));
-        let genomes = search.ask();
-        assert_eq!(search.parents(), [Parents::None; 12]);
+        let asked = search.ask();
+        assert!(asked.iter().all(|of| of.parents == Parents::None));
         let evaluations: Vec<Evaluation> = (0..12)
             .map(|index| Evaluation {
                 behaviour: Some(Behaviour {
@@ -282,15 +260,14 @@ mod tests {
                 ..Evaluation::of_fitness(index as f32)
             })
             .collect();
-        search.tell(&genomes, &evaluations);
+        search.tell(&asked, &evaluations);
         assert!(search.parent_pool().len() > 3, "several cells");
-        let parents = search.parents();
-        assert!(parents.iter().any(|parents| matches!(parents, Parents::Two(..))));
+        assert!(search.ask().iter().any(|of| matches!(of.parents, Parents::Two(..))));
         search.settings.line = 0.0;
-        for (child, parents) in search.ask().iter().zip(search.parents()) {
-            let Parents::One(parent) = parents else { panic!("{parents:?}") };
-            let point = search.search.folded(&search.search.point_of(child));
-            let elite = &genomes[parent.individual as usize];
+        for child in search.ask() {
+            let Parents::One(parent) = child.parents else { panic!("{:?}", child.parents) };
+            let point = search.search.folded(&search.search.point_of(&child.genome));
+            let elite = &asked[parent.individual as usize].genome;
             let off = point.iter().zip(search.search.point_of(elite)).map(|(a, b)| (a - b).abs());
             assert!(off.fold(0.0, f64::max) < 1.0e-4, "genes differ from those of the parent");
         }

@@ -15,24 +15,18 @@ mod tests;
 
 use rand::Rng;
 
+use super::attempt::Attempt;
 use super::inner_search::InnerSearch;
 use crate::check::Invalid;
-use crate::evolve::parents::Parents;
+use crate::evolve::candidate::Candidate;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{MccSettings, PoetSettings};
 use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree};
-use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
+use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::{Genome, StairsChange, StairsGenome};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
-use state::{FirstSearch, MccProgress};
-
-/// Candidates of a generation of the search for the first snakes.
-const CANDIDATES: u32 = 30;
-/// Its first step, as a share of each gene's range.
-const FIRST_STEP: f32 = 0.15;
-/// Generations of that search without a snake that climbs, after which it begins again.
-const PATIENCE: u32 = 50;
+use state::{FirstSearch, MccProgress, PATIENCE};
 
 /// Minimal criterion coevolution. Its children, and the first snakes, come from searches of the kind `S`.
 pub struct Mcc<S> {
@@ -42,20 +36,12 @@ pub struct Mcc<S> {
     generation: u32,
     progress: MccProgress<S>,
     /// The attempts of the next generation, which follow from the progress.
-    batch: Vec<Attempt>,
-}
-
-/// A genome to evaluate, and its stairs.
-#[derive(Debug, Clone)]
-struct Attempt {
-    genome: Genome,
-    stairs: StairsGenome,
-    kind: AttemptKind,
+    batch: Vec<Attempt<MccRole>>,
 }
 
 /// The purpose of an attempt. Children are numbered within the generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum AttemptKind {
+enum MccRole {
     /// Whether it is one of the first snakes.
     First,
     /// Whether a child of a snake climbs stairs of the queue.
@@ -77,10 +63,10 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// The attempts of the next generation.
-    fn next_batch(&self) -> Vec<Attempt> {
+    fn next_batch(&self) -> Vec<Attempt<MccRole>> {
         if let Some(beginning) = &self.progress.beginning {
             let stairs = self.progress.nodes[0].stairs;
-            let first = |genome| Attempt { genome, stairs, kind: AttemptKind::First };
+            let first = |asked| Attempt::sampled(asked, stairs, MccRole::First);
             return beginning.search.ask().into_iter().map(first).collect();
         }
         let mut all = self.children_of_snakes();
@@ -89,7 +75,7 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Each child of the snakes whose turn it is on all stairs that may still be used.
-    fn children_of_snakes(&self) -> Vec<Attempt> {
+    fn children_of_snakes(&self) -> Vec<Attempt<MccRole>> {
         let MccProgress { snakes, snake_turn, .. } = &self.progress;
         let open: Vec<u32> = self.progress.active().filter(|node| self.has_uses(*node)).collect();
         let mut all = Vec::new();
@@ -100,10 +86,9 @@ impl<S: Strategy> Mcc<S> {
             let parent = &snakes[(snake_turn + child) as usize % snakes.len()];
             let individual = all.len() as u32;
             let genome = self.child_of(&parent.genome, individual);
-            all.extend(open.iter().map(|&node| Attempt {
-                genome: genome.clone(),
-                stairs: self.progress.nodes[node as usize].stairs,
-                kind: AttemptKind::Snake { child, node },
+            all.extend(open.iter().map(|&node| {
+                let stairs = self.progress.nodes[node as usize].stairs;
+                Attempt::new(&genome, stairs, MccRole::Snake { child, node })
             }));
         }
         all
@@ -131,11 +116,11 @@ impl<S: Strategy> Mcc<S> {
             around: Some(parent),
         };
         let drawn = S::begin(&of.plan(&self.plan)).ask().pop();
-        drawn.unwrap_or_else(|| parent.clone())
+        drawn.map_or_else(|| parent.clone(), |of| of.genome)
     }
 
     /// Each mutant of the stairs whose turn it is with all snakes.
-    fn mutants_of_stairs(&self) -> Vec<Attempt> {
+    fn mutants_of_stairs(&self) -> Vec<Attempt<MccRole>> {
         let MccProgress { snakes, nodes, stairs_turn, .. } = &self.progress;
         let active: Vec<u32> = self.progress.active().collect();
         let longest_m = self.plan.settings.trial.stairs.treads_m().max(nodes[0].stairs.length_m());
@@ -151,10 +136,8 @@ impl<S: Strategy> Mcc<S> {
             if nodes.iter().any(|node| node.stairs == stairs) {
                 continue;
             }
-            all.extend((0..).zip(snakes).map(|(snake, of)| Attempt {
-                genome: of.genome.clone(),
-                stairs,
-                kind: AttemptKind::Stairs { child, parent, snake },
+            all.extend((0..).zip(snakes).map(|(snake, of)| {
+                Attempt::new(&of.genome, stairs, MccRole::Stairs { child, parent, snake })
             }));
         }
         all
@@ -166,19 +149,19 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Takes the evaluations of the search for the first snakes.
-    fn after_first(&mut self, evaluations: &[Evaluation]) {
-        let genomes: Vec<Genome> =
-            self.batch.iter().map(|attempt| attempt.genome.clone()).collect();
-        let climbing: Vec<bool> = evaluations.iter().map(|of| self.climbs(of)).collect();
+    fn after_first(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let wanted = self.settings().first_snakes as usize;
-        let (generation, mut found) = (self.generation, 0);
-        for (index, genome) in genomes.iter().enumerate().filter(|(index, _)| climbing[*index]) {
-            let individual = index as u32;
-            let agent = Agent { genome: genome.clone(), generation, individual };
+        let mut found = 0;
+        for (individual, (candidate, evaluation)) in (0..).zip(candidates.iter().zip(evaluations)) {
+            if !self.climbs(evaluation) {
+                continue;
+            }
+            let genome = candidate.genome.clone();
+            let agent = Agent { genome, generation: self.generation, individual };
             found += 1;
             let root = &mut self.progress.nodes[0];
-            if root.agent.is_none() || evaluations[index].fitness > root.score {
-                (root.agent, root.score) = (Some(agent.clone()), evaluations[index].fitness);
+            if root.agent.is_none() || evaluation.fitness > root.score {
+                (root.agent, root.score) = (Some(agent.clone()), evaluation.fitness);
             }
             root.solved = root.solved.or(Some(0));
             if self.progress.snakes.len() < wanted {
@@ -192,7 +175,7 @@ impl<S: Strategy> Mcc<S> {
             return;
         }
         let Some(beginning) = &mut self.progress.beginning else { return };
-        beginning.search.tell(&genomes, evaluations);
+        beginning.search.tell(candidates, evaluations);
         beginning.finished += 1;
         beginning.idle = if found > 0 { 0 } else { beginning.idle + 1 };
         if beginning.idle >= PATIENCE {
@@ -205,15 +188,15 @@ impl<S: Strategy> Mcc<S> {
         self.progress.rounds += 1;
         self.progress.pass_turns(self.settings().snake_children, self.settings().stairs_children);
         let batch = std::mem::take(&mut self.batch);
-        let tried: Vec<(u32, &Attempt, &Evaluation)> = (0..)
+        let tried: Vec<Tried<'_>> = (0..)
             .zip(batch.iter().zip(evaluations))
             .map(|(individual, (attempt, evaluation))| (individual, attempt, evaluation))
             .collect();
-        for of_child in tried.chunk_by(|(_, a, _), (_, b, _)| a.kind.is_of_child_of(b.kind)) {
-            match of_child.first().map(|(_, attempt, _)| attempt.kind) {
-                Some(AttemptKind::Snake { .. }) => self.take_snake(of_child),
-                Some(AttemptKind::Stairs { parent, .. }) => self.take_stairs(parent, of_child),
-                Some(AttemptKind::First) | None => {}
+        for of_child in tried.chunk_by(|(_, a, _), (_, b, _)| a.role.is_of_child_of(b.role)) {
+            match of_child.first().map(|(_, attempt, _)| attempt.role) {
+                Some(MccRole::Snake { .. }) => self.take_snake(of_child),
+                Some(MccRole::Stairs { parent, .. }) => self.take_stairs(parent, of_child),
+                Some(MccRole::First) | None => {}
             }
         }
         self.shorten_queues();
@@ -227,10 +210,10 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Lets a child of a snake enter the queue, if it climbs stairs that may still be used: the least used of those.
-    fn take_snake(&mut self, tried: &[(u32, &Attempt, &Evaluation)]) {
+    fn take_snake(&mut self, tried: &[Tried<'_>]) {
         let mut least: Option<(u32, u32, f32, u32)> = None;
         for (individual, attempt, evaluation) in tried {
-            let AttemptKind::Snake { node, .. } = attempt.kind else { continue };
+            let MccRole::Snake { node, .. } = attempt.role else { continue };
             let trials = &mut self.progress.nodes[node as usize].trials;
             *trials = trials.saturating_add(1);
             let uses = self.progress.uses[node as usize];
@@ -242,7 +225,7 @@ impl<S: Strategy> Mcc<S> {
             }
         }
         let Some((_, node, fitness, individual)) = least else { return };
-        let genome = tried[0].1.genome.clone();
+        let genome = tried[0].1.candidate.genome.clone();
         let agent = Agent { genome, generation: self.generation, individual };
         let uses = &mut self.progress.uses[node as usize];
         *uses = uses.saturating_add(1);
@@ -254,12 +237,12 @@ impl<S: Strategy> Mcc<S> {
     }
 
     /// Lets a mutant of stairs enter the queue, if a snake climbs it.
-    fn take_stairs(&mut self, parent: u32, tried: &[(u32, &Attempt, &Evaluation)]) {
+    fn take_stairs(&mut self, parent: u32, tried: &[Tried<'_>]) {
         let climbed = tried.iter().filter(|(.., evaluation)| self.climbs(evaluation));
         // Of equals the first.
         let best = climbed.reduce(|a, b| if b.2.fitness > a.2.fitness { b } else { a });
         let Some((_, attempt, evaluation)) = best else { return };
-        let AttemptKind::Stairs { snake, .. } = attempt.kind else { return };
+        let MccRole::Stairs { snake, .. } = attempt.role else { return };
         let MccProgress { nodes, uses, snakes, rounds, .. } = &mut self.progress;
         nodes.push(StairsNode {
             stairs: attempt.stairs,
@@ -276,7 +259,10 @@ impl<S: Strategy> Mcc<S> {
     }
 }
 
-impl AttemptKind {
+/// The number of an individual, what was attempted with it, and the result.
+type Tried<'a> = (u32, &'a Attempt<MccRole>, &'a Evaluation);
+
+impl MccRole {
     /// Whether two attempts belong to one child.
     fn is_of_child_of(self, other: Self) -> bool {
         match (self, other) {
@@ -290,17 +276,8 @@ impl AttemptKind {
 impl<S: Strategy> Strategy for Mcc<S> {
     fn begin(plan: &RunPlan) -> Self {
         let evolution = &plan.settings.evolution;
-        let root = StairsNode {
-            stairs: StairsGenome::like(&plan.settings.trial.stairs, evolution.mcc.start_rise_m),
-            parent: None,
-            born: 0,
-            archived: None,
-            solved: None,
-            is_new_challenge: false,
-            agent: None,
-            score: 0.0,
-            trials: 0,
-        };
+        let stairs = StairsGenome::like(&plan.settings.trial.stairs, evolution.mcc.start_rise_m);
+        let root = StairsNode::root(stairs);
         Self::with(plan, 0, MccProgress::begin(root, FirstSearch::new(plan, 0)))
     }
 
@@ -312,21 +289,17 @@ impl<S: Strategy> Strategy for Mcc<S> {
         Ok(Self::with(plan, finished, progress))
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        self.batch.iter().map(|attempt| attempt.genome.clone()).collect()
+    fn ask(&self) -> Vec<Candidate> {
+        Attempt::candidates(&self.batch)
     }
 
     fn population(&self) -> usize {
         self.batch.len()
     }
 
-    fn stairs(&self) -> Vec<OwnStairs> {
-        OwnStairs::of_batch(self.batch.iter().map(|attempt| (attempt.stairs, 0)))
-    }
-
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         if self.progress.beginning.is_some() {
-            self.after_first(evaluations);
+            self.after_first(candidates, evaluations);
         } else {
             self.after_children(evaluations);
         }
@@ -335,7 +308,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
     }
 
     fn state(&self) -> StrategyState {
-        self.progress.state()
+        StrategyState::of(&self.progress)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
@@ -345,14 +318,6 @@ impl<S: Strategy> Strategy for Mcc<S> {
         }
         self.shorten_queues();
         self.batch = self.next_batch();
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let of = |attempt: &Attempt| match attempt.kind {
-            AttemptKind::First => Parents::Distribution,
-            AttemptKind::Snake { .. } | AttemptKind::Stairs { .. } => Parents::Unknown,
-        };
-        self.batch.iter().map(of).collect()
     }
 
     fn stairs_tree(&self) -> Option<StairsTree> {

@@ -3,6 +3,7 @@
 //! A new strategy is a file here and a line in [`constructors`], a row of
 //! [`StrategyKind`] and, if it has any, its settings in [`super::settings`].
 
+mod attempt;
 mod body_children;
 mod body_ga;
 mod body_map_elites;
@@ -20,6 +21,7 @@ mod map_elites;
 mod mcc;
 mod neat;
 mod novelty;
+mod parent_pool;
 mod poet;
 mod random;
 mod search;

@@ -2,6 +2,7 @@
 
 use super::search::Search;
 use crate::check::{Invalid, within};
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::strategy::{Strategy, StrategyState};
@@ -14,7 +15,6 @@ use crate::score::Evaluation;
 #[derive(Debug, Clone)]
 pub struct Neat {
     search: Search,
-    seed: u64,
     /// None only if a first generation could not be made, which the checks of settings and founders rule out.
     population: Option<NeatPopulation>,
 }
@@ -30,19 +30,14 @@ impl Neat {
         if let Some(founder) = &plan.founder
             && let ControllerGenes::Grown(genes) = &founder.genome().controller
         {
-            let point = search.founder().unwrap_or_default();
+            let point = search.founder_point().unwrap_or_default();
             let parameters = point.iter().map(|x| (*x as f32).clamp(0.0, 1.0)).collect();
             let network = NetworkGenome { parameters, ..genes.network.clone() };
             return NeatPopulation::descended(rules, &network, size, seed);
         }
         let [inputs, outputs] = GrownGenes::ends(plan.settings.trial.agent.joints());
-        let parameters = u16::try_from(search.dimension).unwrap_or(u16::MAX);
+        let parameters = u16::try_from(search.dimension()).unwrap_or(u16::MAX);
         NeatPopulation::first(rules, inputs, outputs, parameters, size, seed)
-    }
-
-    /// The networks of the next generation.
-    fn networks(&self) -> &[NetworkGenome] {
-        self.population.as_ref().map_or(&[], NeatPopulation::genomes)
     }
 
     /// The genome of a network.
@@ -60,7 +55,7 @@ impl Strategy for Neat {
     fn begin(plan: &RunPlan) -> Self {
         let search = Search::new(plan, 0);
         let population = Self::first(plan, &search).ok();
-        Self { search, seed: plan.seed, population }
+        Self { search, population }
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
@@ -74,22 +69,27 @@ impl Strategy for Neat {
             within("state.genomes.inputs", network.inputs, inputs..=inputs)?;
             within("state.genomes.outputs", network.outputs, outputs..=outputs)?;
             let parameters = network.parameters.len();
-            let expected = search.dimension;
+            let expected = search.dimension();
             within("state.genomes.parameters", parameters, expected..=expected)?;
         }
-        Ok(Self { search, seed: plan.seed, population: Some(population) })
+        Ok(Self { search, population: Some(population) })
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        let genomes = self.networks().iter().map(|network| self.genome(network)).collect();
-        self.search.with_founder_first(genomes)
+    fn ask(&self) -> Vec<Candidate> {
+        let Some(population) = &self.population else { return Vec::new() };
+        let candidate = |(network, &species): (&NetworkGenome, &u32)| Candidate {
+            species: Some(species),
+            ..Candidate::new(self.genome(network), Parents::None)
+        };
+        let all = population.genomes().iter().zip(population.memberships());
+        self.search.with_founder_first(all.map(candidate).collect())
     }
 
     fn population(&self) -> usize {
-        self.networks().len()
+        self.population.as_ref().map_or(0, |population| population.genomes().len())
     }
 
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
+    fn tell(&mut self, _: &[Candidate], evaluations: &[Evaluation]) {
         // What is not a number counts as the worst.
         let fitness = |evaluation: &Evaluation| match evaluation.disqualified {
             Some(_) => f64::NAN,
@@ -97,12 +97,8 @@ impl Strategy for Neat {
         };
         let fitness: Vec<f64> = evaluations.iter().map(fitness).collect();
         self.search.generation += 1;
-        let (seed, generation) = (self.seed, self.search.generation);
+        let (seed, generation) = (self.search.seed, self.search.generation);
         self.population = self.population.as_ref().map(|of| of.next(&fitness, seed, generation));
-    }
-
-    fn species(&self) -> &[u32] {
-        self.population.as_ref().map_or(&[], NeatPopulation::memberships)
     }
 
     fn state(&self) -> StrategyState {
@@ -114,8 +110,4 @@ impl Strategy for Neat {
 
     /// Nothing of it may change during a run.
     fn apply_settings(&mut self, _: &RunPlan) {}
-
-    fn parents(&self) -> Vec<Parents> {
-        vec![Parents::None; self.population()]
-    }
 }

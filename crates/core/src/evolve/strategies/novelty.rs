@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::breeder::{BehaviourPoint, Breeder};
 use crate::check::{Invalid, within};
 use crate::evolve::archives::Descriptor;
-use crate::evolve::parents::{IndividualId, Parents};
+use crate::evolve::candidate::Candidate;
+use crate::evolve::parents::IndividualId;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::NoveltySettings;
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
-use crate::genome::{BodySpace, Genome};
+use crate::genome::BodySpace;
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 use crate::world::Stairs;
@@ -132,7 +133,7 @@ impl<B: Breeder> Strategy for Novelty<B> {
         Ok(Self::with(plan, B::resume_with(plan, finished, members)?, archive))
     }
 
-    fn ask(&self) -> Vec<Genome> {
+    fn ask(&self) -> Vec<Candidate> {
         self.breeder.ask()
     }
 
@@ -141,11 +142,11 @@ impl<B: Breeder> Strategy for Novelty<B> {
     }
 
     /// Mixes ranks, because novelty and fitness have no common unit.
-    fn tell(&mut self, genomes: &[Genome], evaluations: &[Evaluation]) {
-        let point = |(genome, evaluation): (&Genome, &Evaluation)| {
-            Some(B::point(self.behaviour(evaluation)?, genome, &self.bodies))
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        let point = |(candidate, evaluation): (&Candidate, &Evaluation)| {
+            Some(B::point(self.behaviour(evaluation)?, &candidate.genome, &self.bodies))
         };
-        let points: Vec<Option<B::Point>> = genomes.iter().zip(evaluations).map(point).collect();
+        let points: Vec<Option<B::Point>> = candidates.iter().zip(evaluations).map(point).collect();
         let novelties = self.novelties(&points);
         let mut by_novelty: Vec<usize> = (0..evaluations.len()).collect();
         by_novelty.sort_by(|&a, &b| novelties[b].total_cmp(&novelties[a]));
@@ -160,7 +161,7 @@ impl<B: Breeder> Strategy for Novelty<B> {
         let mut order: Vec<usize> = (0..evaluations.len()).collect();
         order.sort_by(|&a, &b| mixed[a].total_cmp(&mixed[b]));
         self.remember(&points);
-        self.breeder.select(&order);
+        self.breeder.select(candidates, &order);
     }
 
     fn state(&self) -> StrategyState {
@@ -172,10 +173,6 @@ impl<B: Breeder> Strategy for Novelty<B> {
         self.settings = plan.settings.evolution.novelty.clone();
         self.archive.truncate(self.settings.archive_limit as usize);
         self.breeder.apply_settings(plan);
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        self.breeder.parents()
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
@@ -193,7 +190,7 @@ mod tests {
     use crate::evolve::strategies::body_ga::BodyGa;
     use crate::evolve::strategies::ga::Ga;
     use crate::evolve::{BodyProtection, Settings, StrategyKind};
-    use crate::genome::ControllerKind;
+    use crate::genome::{ControllerKind, Genome};
     use crate::score::Behaviour;
 
     fn evaluation(centre_y_m: f32, contact_duty: f32) -> Evaluation {
@@ -213,26 +210,25 @@ mod tests {
             ..NoveltySettings::default()
         };
         let mut search = Novelty::<Ga>::begin(&RunPlan::new("test", 1, settings));
-        let asked = search.breeder.generation();
-        let genomes = search.ask();
+        let asked = search.ask();
         let evaluations = [
             evaluation(0.0, 0.2),
             evaluation(-6.0, 0.9),
             evaluation(0.1, 0.2),
             evaluation(0.2, 0.2),
         ];
-        search.tell(&genomes, &evaluations);
+        search.tell(&asked, &evaluations);
         assert_eq!(search.archive.len(), 1);
-        search.tell(&genomes, &evaluations);
-        search.tell(&genomes, &evaluations);
+        search.tell(&asked, &evaluations);
+        search.tell(&asked, &evaluations);
         assert_eq!(search.archive.len(), 2, "at most its limit");
         let mut fresh = Settings::default();
         fresh.evolution.population = 4;
         let ga = Ga::begin(&RunPlan::new("test", 1, fresh));
         let mut search = Novelty { archive: Vec::new(), breeder: ga, ..search };
-        search.tell(&genomes, &evaluations);
+        search.tell(&asked, &evaluations);
         let best = &search.breeder.members()[0];
-        asked.iter().position(|member| member == best).expect("one of them")
+        asked.iter().position(|of| of.heritage.point == best.point).expect("one of them")
     }
 
     #[test]
@@ -254,15 +250,16 @@ mod tests {
         settings.check().expect("they go together");
         let plan = RunPlan::new("test", 1, settings);
         let mut search = Novelty::<BodyGa>::begin(&plan);
-        let mut genomes = search.ask();
-        let blocks = |genome: &Genome| genome.body.segments.len();
-        let few = genomes.iter().position(|genome| blocks(genome) == 2).expect("one in eleven");
-        let many = genomes.iter().position(|genome| blocks(genome) > 8).expect("several");
-        let common = genomes[many].clone();
-        (0..genomes.len()).filter(|index| *index != few).for_each(|index| {
-            genomes[index] = common.clone();
+        let mut asked = search.ask();
+        let blocks = |of: &Candidate| of.genome.body.segments.len();
+        let few = asked.iter().position(|of| blocks(of) == 2).expect("one in eleven");
+        let many = asked.iter().position(|of| blocks(of) > 8).expect("several");
+        let common = asked[many].clone();
+        (0..asked.len()).filter(|index| *index != few).for_each(|index| {
+            asked[index] = common.clone();
         });
-        let points = genomes.iter().map(|genome| BodyGa::point([0.5; 3], genome, &search.bodies));
+        let point = |genome: &Genome| BodyGa::point([0.5; 3], genome, &search.bodies);
+        let points = asked.iter().map(|of| point(&of.genome));
         let points: Vec<_> = points.collect();
         assert!(points.iter().flatten().all(|of| (0.0..=1.0).contains(of)));
         assert!(points[few][3] == 0.0 && points[many][3] >= 0.7, "{:?}", points[many]);
@@ -270,11 +267,12 @@ mod tests {
         let most = (0..40).max_by(|&a, &b| novelties[a].total_cmp(&novelties[b]));
         assert_eq!(most, Some(few));
         let evaluations = vec![evaluation(0.0, 0.2); 40];
-        let wanted = search.breeder.ask()[few].clone();
-        search.tell(&genomes, &evaluations);
-        assert_eq!(search.ask()[0], wanted, "kept unchanged");
+        let wanted = search.ask()[few].genome.clone();
+        search.tell(&asked, &evaluations);
+        assert_eq!(search.ask()[0].genome, wanted, "kept unchanged");
         let state = search.state();
         let again = Novelty::<BodyGa>::resume(&plan, 1, &state).expect("its own");
-        assert_eq!(again.ask(), search.ask());
+        let genomes = |of: Vec<Candidate>| of.into_iter().map(|of| of.genome).collect::<Vec<_>>();
+        assert_eq!(genomes(again.ask()), genomes(search.ask()));
     }
 }

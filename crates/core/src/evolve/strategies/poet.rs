@@ -14,27 +14,20 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-use rand::Rng;
-
-use super::inner_search::InnerSearch;
+use super::attempt::Attempt;
 use crate::check::Invalid;
-use crate::evolve::parents::Parents;
+use crate::evolve::candidate::Candidate;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
 use crate::evolve::stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
-use crate::evolve::strategy::{OwnStairs, Strategy, StrategyState};
+use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::{Genome, StairsGenome};
-use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
-use batch::Candidate;
-use state::{FineTuned, Pair, Phase, PoetProgress, Proposal};
+use batch::PoetRole;
+use state::{FineTuned, MOST_TRANSFERS, Pair, Phase, PoetProgress, Proposal, RECENT, search_plan};
 
-/// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
-const RECENT: usize = 5;
 /// Number of measurements in turn without a better agent after which a pair's search begins again around its agent.
 const STALE: u32 = 8;
-/// Maximum number of transfers that are remembered.
-const MOST_TRANSFERS: usize = 2000;
 
 /// POET, whose pairs search with `S`.
 pub struct Poet<S> {
@@ -44,12 +37,17 @@ pub struct Poet<S> {
     /// The next generation; the first is 1.
     generation: u32,
     progress: PoetProgress<S>,
+    /// The attempts of the next generation, which follow from the progress.
+    batch: Vec<Attempt<PoetRole>>,
 }
 
 impl<S: Strategy> Poet<S> {
     fn with(plan: &RunPlan, finished: u32, progress: PoetProgress<S>) -> Self {
         let settings = plan.settings.evolution.poet.clone();
-        Self { settings, plan: plan.clone(), generation: finished + 1, progress }
+        let (plan, generation, batch) = (plan.clone(), finished + 1, Vec::new());
+        let mut poet = Self { settings, plan, generation, progress, batch };
+        poet.batch = poet.next_batch();
+        poet
     }
 
     /// The stairs on which a run begins: those of the trial with the first rise.
@@ -77,17 +75,18 @@ impl<S: Strategy> Poet<S> {
     /// Takes the scores of a generation in the present phase, in the order of its candidates, and goes on to the next phase.
     fn take(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
-        for candidate in candidates {
-            if let Some(node) = candidate.node.and_then(|node| self.progress.node_mut(node)) {
-                let trials = u64::from(candidate.perturbed) + 1;
+        let attempts = std::mem::take(&mut self.batch);
+        for attempt in &attempts {
+            if let Some(node) = attempt.role.node.and_then(|node| self.progress.node_mut(node)) {
+                let trials = u64::from(attempt.perturbed) + 1;
                 node.trials = node.trials.saturating_add(trials);
             }
         }
         let phase = std::mem::replace(&mut self.progress.phase, Phase::Measure);
         self.progress.phase = match phase {
             Phase::Learn { left } => self.after_learning(left, candidates, evaluations),
-            Phase::Measure => self.after_measurement(candidates, &scores),
-            Phase::Tune { proposals } => self.after_tuning(proposals, candidates, &scores),
+            Phase::Measure => self.after_measurement(&attempts, &scores),
+            Phase::Tune { proposals } => self.after_tuning(proposals, &attempts, &scores),
             Phase::Confirm { tuned } => self.after_confirmation(tuned, &scores),
             Phase::Breed { children } => self.after_breeding(children, &scores),
             Phase::Compare { children } => self.after_comparison(&children, &scores),
@@ -120,9 +119,7 @@ impl<S: Strategy> Poet<S> {
                     pair.challenger = Some((agent, score));
                 }
             }
-            let genomes: Vec<Genome> =
-                candidates.iter().map(|candidate| candidate.genome.clone()).collect();
-            pair.search.tell(&genomes, evaluations);
+            pair.search.tell(candidates, evaluations);
             pair.finished += 1;
         }
         match left.saturating_sub(1) {
@@ -132,10 +129,10 @@ impl<S: Strategy> Poet<S> {
     }
 
     /// Keeps the better of each pair's agent and challenger, and proposes transfers.
-    fn after_measurement(&mut self, candidates: &[Candidate], scores: &[f32]) -> Phase {
+    fn after_measurement(&mut self, attempts: &[Attempt<PoetRole>], scores: &[f32]) -> Phase {
         let round = self.progress.rounds + 1;
         let mut own =
-            candidates.iter().zip(scores).filter(|(candidate, _)| candidate.from.is_none());
+            attempts.iter().zip(scores).filter(|(attempt, _)| attempt.role.from.is_none());
         let PoetProgress { pairs, nodes, .. } = &mut self.progress;
         for pair in pairs.iter_mut() {
             let Some(node) = nodes.get_mut(pair.node as usize) else { continue };
@@ -156,7 +153,7 @@ impl<S: Strategy> Poet<S> {
             Self::note_score(node, pair, score, round, self.settings.solved_from);
         }
         self.renew_stale_searches();
-        let proposals = self.proposals(candidates, scores);
+        let proposals = self.proposals(attempts, scores);
         if proposals.is_empty() { self.after_transfers() } else { Phase::Tune { proposals } }
     }
 
@@ -195,24 +192,21 @@ impl<S: Strategy> Poet<S> {
 
     /// For each staircase the agent of another one that covers the greatest share of its way in the nominal trial, if that is
     /// more than its own agent did lately.
-    fn proposals(&self, candidates: &[Candidate], scores: &[f32]) -> Vec<Proposal> {
+    fn proposals(&self, attempts: &[Attempt<PoetRole>], scores: &[f32]) -> Vec<Proposal> {
         let mut proposals = Vec::new();
         for pair in &self.progress.pairs {
             let to_beat = pair.to_beat();
-            let mut best: Option<(&Candidate, f32)> = None;
-            for (candidate, &score) in candidates.iter().zip(scores) {
-                if candidate.from.is_some()
-                    && candidate.node == Some(pair.node)
-                    && score > best.map_or(to_beat, |(_, most)| most)
+            let mut best: Option<(Proposal, f32)> = None;
+            for (attempt, &score) in attempts.iter().zip(scores) {
+                if let PoetRole { node: Some(to), from: Some(from) } = attempt.role
+                    && to == pair.node
+                    && score > best.as_ref().map_or(to_beat, |(_, most)| *most)
                 {
-                    best = Some((candidate, score));
+                    let genome = attempt.candidate.genome.clone();
+                    best = Some((Proposal { from, to, genome }, score));
                 }
             }
-            if let Some((candidate, _)) = best
-                && let Some(from) = candidate.from
-            {
-                proposals.push(Proposal { from, to: pair.node, genome: candidate.genome.clone() });
-            }
+            proposals.extend(best.map(|(proposal, _)| proposal));
         }
         proposals
     }
@@ -222,19 +216,19 @@ impl<S: Strategy> Poet<S> {
     fn after_tuning(
         &mut self,
         proposals: Vec<Proposal>,
-        candidates: &[Candidate],
+        attempts: &[Attempt<PoetRole>],
         scores: &[f32],
     ) -> Phase {
         let mut tuned = Vec::new();
-        let mut rest = (0..).zip(candidates.iter().zip(scores)).peekable();
+        let mut rest = (0..).zip(attempts.iter().zip(scores)).peekable();
         for proposal in proposals {
             let Some((_, (_, &direct))) = rest.next() else { break };
             let mut best: Option<(u32, &Genome, f32)> = None;
-            while let Some((individual, (candidate, score))) =
-                rest.next_if(|(_, (candidate, _))| candidate.is_sample)
+            while let Some((individual, (attempt, score))) =
+                rest.next_if(|(_, (attempt, _))| attempt.is_sample())
             {
                 if best.is_none_or(|(.., most)| *score > most) {
-                    best = Some((individual, &candidate.genome, *score));
+                    best = Some((individual, &attempt.candidate.genome, *score));
                 }
             }
             if direct > self.progress.pair(proposal.to).map_or(0.0, Pair::to_beat)
@@ -299,36 +293,12 @@ impl<S: Strategy> Poet<S> {
     }
 }
 
-/// The plan of a search for the agent of a staircase, around a genome or from random ones.
-fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>) -> RunPlan {
-    let poet = &plan.settings.evolution.poet;
-    let of = InnerSearch {
-        population: poet.pair_candidates,
-        step: poet.pair_step,
-        seed: stream(plan.seed, node, restarts, Purpose::Pair).next_u64(),
-        around,
-    };
-    of.plan(plan)
-}
-
 impl<S: Strategy> Strategy for Poet<S> {
     fn begin(plan: &RunPlan) -> Self {
         let founder = plan.founder.as_ref().map(|founder| founder.genome());
-        let root = StairsNode {
-            stairs: Self::root(plan),
-            parent: None,
-            born: 0,
-            archived: None,
-            solved: None,
-            is_new_challenge: false,
-            agent: founder.map(|genome| Agent {
-                genome: genome.clone(),
-                generation: 0,
-                individual: 0,
-            }),
-            score: 0.0,
-            trials: 0,
-        };
+        let agent =
+            founder.map(|genome| Agent { genome: genome.clone(), generation: 0, individual: 0 });
+        let root = StairsNode { agent, ..StairsNode::root(Self::root(plan)) };
         let search = S::begin(&search_plan(plan, 0, 0, founder));
         let left = plan.settings.evolution.poet.learn_generations;
         Self::with(plan, 0, PoetProgress::begin(root, Pair::new(0, search), left))
@@ -339,27 +309,22 @@ impl<S: Strategy> Strategy for Poet<S> {
         Ok(Self::with(plan, finished, progress))
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        self.batch().into_iter().map(|candidate| candidate.genome).collect()
+    fn ask(&self) -> Vec<Candidate> {
+        Attempt::candidates(&self.batch)
     }
 
     fn population(&self) -> usize {
-        self.batch().len()
+        self.batch.len()
     }
 
-    fn stairs(&self) -> Vec<OwnStairs> {
-        let batch = self.batch();
-        OwnStairs::of_batch(batch.iter().map(|candidate| (candidate.stairs, candidate.perturbed)))
-    }
-
-    fn tell(&mut self, _: &[Genome], evaluations: &[Evaluation]) {
-        let candidates = self.batch();
-        self.take(&candidates, evaluations);
+    fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
+        self.take(candidates, evaluations);
         self.generation += 1;
+        self.batch = self.next_batch();
     }
 
     fn state(&self) -> StrategyState {
-        self.progress.state()
+        StrategyState::of(&self.progress)
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
@@ -368,14 +333,7 @@ impl<S: Strategy> Strategy for Poet<S> {
         for pair in &mut self.progress.pairs {
             pair.search.apply_settings(&search_plan(plan, pair.node, pair.restarts, None));
         }
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        let of = |candidate: &Candidate| match candidate.is_sample {
-            true => Parents::Distribution,
-            false => Parents::Unknown,
-        };
-        self.batch().iter().map(of).collect()
+        self.batch = self.next_batch();
     }
 
     fn stairs_tree(&self) -> Option<StairsTree> {

@@ -2,10 +2,10 @@
 
 use super::search::Search;
 use crate::check::Invalid;
+use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
 use crate::evolve::plan::RunPlan;
 use crate::evolve::strategy::{Strategy, StrategyState};
-use crate::genome::Genome;
 use crate::score::Evaluation;
 
 /// Standard deviation of the mutations of a founder, as a share of each gene's range.
@@ -27,22 +27,20 @@ impl Strategy for Random {
         Ok(Self { search: Search::new(plan, finished) })
     }
 
-    fn ask(&self) -> Vec<Genome> {
-        let individual = |individual| match self.search.founder() {
-            Some(_) if Search::is_founder_mutant(individual) => {
-                self.search.genome(&self.search.first_point(individual, FOUNDER_STEP))
-            }
-            _ => self.search.random_genome(individual),
+    fn ask(&self) -> Vec<Candidate> {
+        let genome = |individual| match self.search.founder_of(individual) {
+            Some(_) => self.search.genome(&self.search.first_point(individual, FOUNDER_STEP)),
+            None => self.search.random_genome(individual),
         };
-        let genomes = (0..self.search.population).map(individual).collect();
-        self.search.with_founder_first(genomes)
+        let candidate = |individual| Candidate::new(genome(individual), Parents::None);
+        self.search.with_founder_first((0..self.search.population).map(candidate).collect())
     }
 
     fn population(&self) -> usize {
         self.search.population
     }
 
-    fn tell(&mut self, _: &[Genome], _: &[Evaluation]) {
+    fn tell(&mut self, _: &[Candidate], _: &[Evaluation]) {
         self.search.generation += 1;
     }
 
@@ -52,9 +50,5 @@ impl Strategy for Random {
 
     fn apply_settings(&mut self, plan: &RunPlan) {
         self.search.apply_settings(plan);
-    }
-
-    fn parents(&self) -> Vec<Parents> {
-        vec![Parents::None; self.search.population]
     }
 }

@@ -1,82 +1,88 @@
-//! The common part of all strategies that search among points of the unit cube.
+//! The common part of strategies: the genomes that they may make, the founder, and points of the unit cube.
 
 use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
 
 use crate::check::{Invalid, within};
+use crate::evolve::candidate::Candidate;
+use crate::evolve::parents::Parents;
 use crate::evolve::plan::{Founder, RunPlan};
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::rng::{Purpose, normal, stream};
 
-/// A search among points: the genome at each point, and the streams of random numbers.
+/// What all searches have in common: the space of genomes, the founder, and the streams of random numbers.
 #[derive(Debug, Clone)]
 pub struct Search {
-    space: GenomeSpace,
+    /// The genomes that may be made.
+    pub space: GenomeSpace,
     shape: GenomeShape,
-    seed: u64,
+    /// Seed of the run.
+    pub seed: u64,
     /// The next generation; the first is 1.
     pub generation: u32,
     /// Individuals per generation.
     pub population: usize,
-    /// Coordinates of a point.
-    pub dimension: usize,
-    /// The founder that the first generation descends from, and its point.
-    founder: Option<(Arc<Founder>, Vec<f64>)>,
+    /// The founder that the first generation descends from.
+    founder: Option<Arc<Founder>>,
 }
 
 impl Search {
     /// The search after the first `finished` generations of a run.
     pub fn new(plan: &RunPlan, finished: u32) -> Self {
-        let space = plan.settings.genome.clone();
-        let shape = plan.settings.trial.genome_shape();
-        let founder = plan.founder.as_ref().filter(|_| finished == 0);
-        let with_point =
-            |founder: &Arc<Founder>| (Arc::clone(founder), space.exact_point_of(founder.genome()));
         Self {
-            founder: founder.map(with_point),
-            dimension: space.dimension(shape),
-            space,
-            shape,
+            founder: plan.founder.clone().filter(|_| finished == 0),
+            space: plan.settings.genome.clone(),
+            shape: plan.settings.trial.genome_shape(),
             seed: plan.seed,
             generation: finished + 1,
             population: plan.settings.evolution.population as usize,
         }
     }
 
-    /// The point of the founder, in the first generation.
-    pub fn founder(&self) -> Option<&[f64]> {
-        self.founder.as_ref().filter(|_| self.generation == 1).map(|(_, point)| point.as_slice())
+    /// Number of coordinates of a point.
+    pub fn dimension(&self) -> usize {
+        self.space.dimension(self.shape)
     }
 
-    /// Whether an individual of the first generation is a mutant of the founder. The first individual is the founder
-    /// itself, every second one after it is a mutant, and the others are random.
-    pub fn is_founder_mutant(individual: usize) -> bool {
-        individual.is_multiple_of(2)
+    /// The founder, for an individual that descends from it: in the first generation the first individual, which is the
+    /// founder itself, and every second one after it. The others are random.
+    pub fn founder_of(&self, individual: usize) -> Option<&Genome> {
+        let descends = self.generation == 1 && individual.is_multiple_of(2);
+        self.founder.as_ref().filter(|_| descends).map(|founder| founder.genome())
+    }
+
+    /// The point of the founder, in the first generation.
+    pub fn founder_point(&self) -> Option<Vec<f64>> {
+        self.founder_of(0).map(|founder| self.space.exact_point_of(founder))
+    }
+
+    /// The point from which an individual that has no parents begins: that of the founder, or a random one.
+    pub fn unvaried_point(&self, individual: usize) -> Vec<f64> {
+        match self.founder_of(individual) {
+            Some(founder) => self.space.exact_point_of(founder),
+            None => self.random_genome_point(individual),
+        }
     }
 
     /// The point of an individual that has no parents: that of the founder, of a mutant of it by normally distributed
     /// steps, or a random one.
     pub fn first_point(&self, individual: usize, step: f64) -> Vec<f64> {
-        match self.founder() {
-            Some(founder) if individual == 0 => founder.to_vec(),
-            Some(founder) if Self::is_founder_mutant(individual) => {
-                let mut rng = self.stream(individual, Purpose::Mutation);
-                founder.iter().map(|x| x + step * normal(&mut rng)).collect()
-            }
-            _ => self.random_genome_point(individual),
+        let mut point = self.unvaried_point(individual);
+        if individual > 0 && self.founder_of(individual).is_some() {
+            let mut rng = self.stream(individual, Purpose::Mutation);
+            point.iter_mut().for_each(|x| *x += step * normal(&mut rng));
         }
+        point
     }
 
     /// Replaces the first genome of the first generation by the founder, if there is one: the genome at its point
     /// may differ by rounding.
-    pub fn with_founder_first(&self, mut genomes: Vec<Genome>) -> Vec<Genome> {
-        if let Some((founder, _)) = self.founder.as_ref().filter(|_| self.generation == 1)
-            && let Some(first) = genomes.first_mut()
-        {
-            first.clone_from(founder.genome());
+    pub fn with_founder_first(&self, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+        if let Some((founder, first)) = self.founder_of(0).zip(candidates.first_mut()) {
+            first.genome.clone_from(founder);
         }
-        genomes
+        candidates
     }
 
     /// Adopts the population of a plan in which it may have changed.
@@ -100,9 +106,20 @@ impl Search {
         self.space.point_of(genome)
     }
 
-    /// The genomes at several points.
-    pub fn genomes(&self, points: &[Vec<f64>]) -> Vec<Genome> {
-        points.iter().map(|point| self.genome(point)).collect()
+    /// The candidate at a point.
+    pub fn candidate(&self, point: Vec<f64>, parents: Parents) -> Candidate {
+        let genome = self.genome(&point);
+        Candidate::at(point, genome, parents)
+    }
+
+    /// Candidates at points that a distribution draws, given the random stream of each.
+    pub fn sampled(
+        &self,
+        draw: impl FnOnce(&dyn Fn(u32) -> ChaCha8Rng) -> Vec<Vec<f64>>,
+    ) -> Vec<Candidate> {
+        let points = draw(&|index| self.stream(index as usize, Purpose::Sample));
+        let candidate = |point| self.candidate(point, Parents::Distribution);
+        points.into_iter().map(candidate).collect()
     }
 
     /// The point of the unit cube that has the same genome as a point outside it.
@@ -125,10 +142,21 @@ impl Search {
         self.space.point_of(&self.random_genome(individual))
     }
 
+    /// Checks a genome from a file. What cannot be built is named before what does not fit the run.
+    pub fn check_genome(&self, genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
+        plan.settings.trial.check_genome(genome)?;
+        self.space.check_genome(genome, self.shape)
+    }
+
     /// Checks a point from a file.
     pub fn check(&self, point: &[f64]) -> Result<(), Invalid> {
-        within("coordinates", point.len(), self.dimension..=self.dimension)?;
-        // Reflections and turns return any point to the cube, but lose precision far outside.
-        point.iter().try_for_each(|&x| within("coordinate", x, -1.0e6..=1.0e6))
+        check_point(point, self.dimension())
     }
+}
+
+/// Checks a point of this dimension from a file.
+pub fn check_point(point: &[f64], dimension: usize) -> Result<(), Invalid> {
+    within("coordinates", point.len(), dimension..=dimension)?;
+    // Reflections and turns return any point to the cube, but lose precision far outside.
+    point.iter().try_for_each(|&x| within("coordinate", x, -1.0e6..=1.0e6))
 }

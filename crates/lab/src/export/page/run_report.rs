@@ -106,7 +106,7 @@ fn chart(run: &ExportedRun) -> String {
     let [width, height] = [SIZE[0] - left - right, SIZE[1] - top - bottom];
     let x = |generation: f32| left + width * (generation - first) / (last - first).max(1.0);
     let y = |value: f64| top + height * (1.0 - ((value - low) / (high - low).max(1e-9)) as f32);
-    let line = |of: fn(&snakes_core::save::StatisticsRecord) -> f64, style: &str| {
+    let line = |of: fn(&snakes_core::save::Statistics) -> f64, style: &str| {
         let points = statistics.iter().map(|(generation, statistics)| {
             format!("{:.1},{:.1}", x(*generation), y(of(statistics)))
         });

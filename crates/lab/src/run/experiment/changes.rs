@@ -64,9 +64,15 @@ impl Experiment {
         let next = self.finished + 1;
         within("generation", change.generation, next..=next)?;
         self.apply_due_changes();
+        self.adopt(change)?;
+        self.known.clear();
+        Ok(())
+    }
+
+    fn adopt(&mut self, change: &SettingChange) -> Result<(), Invalid> {
         self.plan.change(change)?;
         self.strategy.apply_settings(&self.plan);
-        self.known.clear();
+        self.asked.take();
         Ok(())
     }
 
@@ -76,8 +82,7 @@ impl Experiment {
         // One by one, as they were made: changing a setting there and back differs from not changing it.
         while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
             // All were checked before.
-            let _ = self.plan.change(&change);
-            self.strategy.apply_settings(&self.plan);
+            let _ = self.adopt(&change);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The choice of a generation's champion.
 
+use crate::run::evaluated_generation::EvaluatedGeneration;
 use crate::run::evaluator::{Evaluator, Job, evaluate_in_order};
-use crate::run::report::EvaluatedGeneration;
 use crate::run::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::Champion;
 use snakes_core::score::Trial;
@@ -27,7 +27,8 @@ pub(super) fn choose_champion(
     let Some(trials) = candidates.iter().map(of).collect::<Option<Vec<Trial>>>() else {
         return Ok((ranking.first().map(|&index| evaluated.individual(index)), 0));
     };
-    let genomes: Vec<_> = candidates.iter().map(|&index| &evaluated.genomes[index]).collect();
+    let genomes: Vec<_> =
+        candidates.iter().map(|&index| &evaluated.candidates[index].genome).collect();
     let jobs: Vec<Job<'_>> =
         genomes.iter().enumerate().map(|(trial, genome)| Job { genome, trial }).collect();
     let results = evaluate_in_order(&trials, &jobs, evaluator, control)?;

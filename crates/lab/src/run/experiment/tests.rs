@@ -1,8 +1,9 @@
 //! Generations: reproducible for any evaluator, resumable, robust against panics.
 
 use super::*;
-use crate::run::{Job, LocalPool, WorkersError};
+use crate::run::{EvaluationResult, Job, LocalPool, WorkersError, evaluate_caught};
 use snakes_core::evolve::Settings;
+use snakes_core::genome::Genome;
 use snakes_core::score::{ExamCondition, ExamEnd, PerturbationList, Trial, evaluate};
 
 fn small(seed: u64) -> Experiment {
@@ -110,7 +111,7 @@ fn an_evaluation_that_panics_is_void_and_counted_and_its_genome_kept() {
 #[test]
 fn results_are_complete_and_in_order_for_any_evaluator() {
     let (mut experiment, control) = (small(1), RunControl::default());
-    let fails_on = small(2).strategy.ask().remove(0);
+    let fails_on = small(2).strategy.ask().remove(0).genome;
     let evaluator = TestEvaluator { fails_on, leaves_out: 7 };
     while !experiment.is_over() {
         experiment.run_generation(&evaluator, &control).expect("not cancelled");

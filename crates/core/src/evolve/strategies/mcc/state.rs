@@ -3,8 +3,7 @@
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::super::inner_search::InnerSearch;
-use super::{CANDIDATES, FIRST_STEP, PATIENCE};
+use super::super::inner_search::{InnerSearch, serialize_search};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
@@ -12,8 +11,18 @@ use crate::evolve::stairs_tree::{Agent, StairsNode};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::rng::{Purpose, stream};
 
-/// The search for the first snakes.
+/// Candidates of a generation of the search for the first snakes.
+const CANDIDATES: u32 = 30;
+/// Its first step, as a share of each gene's range.
+const FIRST_STEP: f32 = 0.15;
+/// Generations of that search without a snake that climbs, after which it begins again.
+pub const PATIENCE: u32 = 50;
+
+/// The search for the first snakes. In a file, its state stands for the search.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct FirstSearch<S> {
+    #[serde(serialize_with = "serialize_search")]
     pub search: S,
     /// Generations that it has finished.
     pub finished: u32,
@@ -43,6 +52,8 @@ impl<S: Strategy> FirstSearch<S> {
 }
 
 /// Everything that the run has found.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct MccProgress<S> {
     /// The search for the first snakes; none once they are found.
     pub beginning: Option<FirstSearch<S>>,
@@ -60,30 +71,7 @@ pub struct MccProgress<S> {
     pub stairs_turn: u32,
 }
 
-/// [`MccProgress`] in a file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SavedQueues {
-    beginning: Option<SavedBeginning>,
-    rounds: u32,
-    nodes: Vec<StairsNode>,
-    uses: Vec<u32>,
-    snakes: Vec<Agent>,
-    snake_turn: u32,
-    stairs_turn: u32,
-}
-
-/// [`FirstSearch`] in a file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SavedBeginning {
-    search: StrategyState,
-    finished: u32,
-    restarts: u32,
-    idle: u32,
-}
-
-impl<S: Strategy> MccProgress<S> {
+impl<S> MccProgress<S> {
     /// The beginning of a run, with its first stairs.
     pub fn begin(root: StairsNode, beginning: FirstSearch<S>) -> Self {
         Self {
@@ -129,40 +117,19 @@ impl<S: Strategy> MccProgress<S> {
         self.stairs_turn = moved(self.stairs_turn, archived, active - archived);
     }
 
-    pub fn state(&self) -> StrategyState {
-        let beginning = self.beginning.as_ref().map(|beginning| SavedBeginning {
-            search: beginning.search.state(),
-            finished: beginning.finished,
-            restarts: beginning.restarts,
-            idle: beginning.idle,
-        });
-        StrategyState::of(&SavedQueues {
-            beginning,
-            rounds: self.rounds,
-            nodes: self.nodes.clone(),
-            uses: self.uses.clone(),
-            snakes: self.snakes.clone(),
-            snake_turn: self.snake_turn,
-            stairs_turn: self.stairs_turn,
-        })
-    }
-
     /// Reads what a run had found after its first `finished` generations.
-    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid> {
-        let saved: SavedQueues = state.read()?;
+    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid>
+    where
+        S: Strategy,
+    {
+        let saved: MccProgress<StrategyState> = state.read()?;
         saved.check(plan, finished)?;
         let beginning = saved.beginning.map(|beginning| {
-            let SavedBeginning { search, finished, restarts, idle } = beginning;
+            let FirstSearch { search, finished, restarts, idle } = beginning;
             let inside = |error: Invalid| error.inside("beginning");
             within("idle", idle, 0..=PATIENCE).map_err(inside)?;
             let plan = FirstSearch::<S>::plan(plan, restarts);
-            let search = match finished {
-                0 => S::begin(&plan),
-                _ => S::resume(&plan, finished, &search).map_err(inside)?,
-            };
-            let evolution = &plan.settings.evolution;
-            let most = evolution.population.max(evolution.cma_es.newborns) as usize;
-            within("population", search.population(), 1..=most).map_err(inside)?;
+            let search = InnerSearch::resumed(&plan, finished, &search).map_err(inside)?;
             Ok(FirstSearch { search, finished, restarts, idle })
         });
         Ok(Self {
@@ -177,7 +144,7 @@ impl<S: Strategy> MccProgress<S> {
     }
 }
 
-impl SavedQueues {
+impl MccProgress<StrategyState> {
     fn check(&self, plan: &RunPlan, finished: u32) -> Result<(), Invalid> {
         within("rounds", self.rounds, 0..=finished)?;
         within("nodes", self.nodes.len(), 1..=PoetSettings::MOST_STAIRS)?;
@@ -190,7 +157,7 @@ impl SavedQueues {
         for snake in &self.snakes {
             snake.check(plan).map_err(|error| error.inside("snakes"))?;
         }
-        let active = self.nodes.iter().filter(|node| node.archived.is_none()).count();
+        let active = self.active().count();
         within("active", active, 1..=100)?;
         within("snake_turn", self.snake_turn as usize, 0..=self.snakes.len().max(1) - 1)?;
         within("stairs_turn", self.stairs_turn as usize, 0..=active - 1)?;

@@ -22,20 +22,21 @@ fn plan() -> RunPlan {
 }
 
 /// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
-fn evaluate(mcc: &Mcc<CmaEs>, attempt: &Attempt) -> Evaluation {
-    let point = mcc.plan.settings.genome.point_of(&attempt.genome);
+fn evaluate(mcc: &Mcc<CmaEs>, attempt: &Attempt<MccRole>) -> Evaluation {
+    let point = mcc.plan.settings.genome.point_of(&attempt.candidate.genome);
     let target = 0.5 + f64::from(attempt.stairs.rise_m) / 2.4;
     let off = 1.5 * (point[point.len() - 1] - target).abs();
     Evaluation::of_fitness((1.05 - off).clamp(0.0, 1.05) as f32)
 }
 
 fn advance(mcc: &mut Mcc<CmaEs>) {
-    let genomes = mcc.ask();
-    assert!(!genomes.is_empty());
-    assert_eq!([mcc.population(), mcc.stairs().len()], [genomes.len(); 2]);
+    let asked = mcc.ask();
+    assert!(!asked.is_empty());
+    assert_eq!(mcc.population(), asked.len());
+    assert!(asked.iter().all(|candidate| candidate.stairs.is_some()));
     let evaluations: Vec<Evaluation> =
         mcc.batch.iter().map(|attempt| evaluate(mcc, attempt)).collect();
-    mcc.tell(&genomes, &evaluations);
+    mcc.tell(&asked, &evaluations);
 }
 
 /// A run of this many rounds, and its number of generations.
@@ -62,8 +63,8 @@ fn queues_are_filled_and_shortened_and_every_member_meets_the_criterion() {
     for (index, node) in nodes.iter().enumerate() {
         assert_eq!(node.parent.is_none(), index == 0);
         assert!(node.solved.is_some() && node.score >= mcc.settings().criterion);
-        let genome = node.agent.as_ref().expect("a snake climbs it").genome.clone();
-        let attempt = Attempt { genome, stairs: node.stairs, kind: AttemptKind::First };
+        let agent = node.agent.as_ref().expect("a snake climbs it");
+        let attempt = Attempt::new(&agent.genome, node.stairs, MccRole::First);
         assert_eq!(evaluate(&mcc, &attempt).fitness, node.score);
     }
     assert!(uses.iter().all(|uses| *uses <= mcc.settings().uses_of_stairs), "{uses:?}");
@@ -80,7 +81,7 @@ fn used_up_stairs_let_no_more_snakes_in() {
         .iter_mut()
         .for_each(|uses| *uses = mcc.plan.settings.evolution.mcc.uses_of_stairs);
     mcc.batch = mcc.next_batch();
-    let is_of_snake = |attempt: &Attempt| matches!(attempt.kind, AttemptKind::Snake { .. });
+    let is_of_snake = |attempt: &Attempt<MccRole>| matches!(attempt.role, MccRole::Snake { .. });
     assert!(!mcc.batch.iter().any(is_of_snake), "no child can enter");
     assert!(!mcc.batch.is_empty(), "mutants of stairs are tried");
     let before = mcc.progress.snakes.clone();
@@ -97,17 +98,18 @@ fn a_child_enters_by_the_least_used_of_the_stairs_that_it_climbs() {
     mcc.progress.uses.iter_mut().for_each(|uses| *uses = 2);
     mcc.progress.uses[least as usize] = 1;
     mcc.batch = mcc.next_batch();
-    let genomes = mcc.ask();
-    let is_first = |attempt: &Attempt| matches!(attempt.kind, AttemptKind::Snake { child: 0, .. });
+    let asked = mcc.ask();
+    let is_first =
+        |attempt: &Attempt<MccRole>| matches!(attempt.role, MccRole::Snake { child: 0, .. });
     let evaluations: Vec<Evaluation> = mcc
         .batch
         .iter()
         .map(|attempt| Evaluation::of_fitness(if is_first(attempt) { 1.0 } else { 0.0 }))
         .collect();
-    mcc.tell(&genomes, &evaluations);
+    mcc.tell(&asked, &evaluations);
     assert_eq!(mcc.progress.uses[least as usize], 2);
     let entered = mcc.progress.snakes.last().expect("one");
-    assert_eq!(entered.genome, genomes[0]);
+    assert_eq!(entered.genome, asked[0].genome);
     let of_stairs = &mcc.progress.nodes[least as usize];
     assert_eq!((of_stairs.agent.as_ref() == Some(entered)), of_stairs.score == 1.0);
 }
@@ -187,8 +189,8 @@ fn a_search_with_a_founder_and_equal_values_is_resumed_after_a_change_of_setting
             plan.settings.evolution.mcc.snake_queue = 15;
             mcc.apply_settings(&plan);
         }
-        let genomes = mcc.ask();
-        mcc.tell(&genomes, &vec![Evaluation::of_fitness(0.1); genomes.len()]);
+        let asked = mcc.ask();
+        mcc.tell(&asked, &vec![Evaluation::of_fitness(0.1); asked.len()]);
         let resumed = Mcc::<CmaEs>::resume(&plan, finished, &mcc.state()).expect("its own state");
         assert_eq!(resumed.ask(), mcc.ask(), "after generation {finished}");
     }
@@ -212,8 +214,8 @@ fn a_search_that_finds_no_snake_begins_again() {
     let mut mcc = Mcc::<CmaEs>::begin(&plan());
     let first = mcc.ask();
     for _ in 0..PATIENCE {
-        let genomes = mcc.ask();
-        mcc.tell(&genomes, &vec![Evaluation::of_fitness(0.1); genomes.len()]);
+        let asked = mcc.ask();
+        mcc.tell(&asked, &vec![Evaluation::of_fitness(0.1); asked.len()]);
     }
     let beginning = mcc.progress.beginning.as_ref().expect("nothing was found");
     assert_eq!((beginning.restarts, beginning.finished, beginning.idle), (1, 0, 0));

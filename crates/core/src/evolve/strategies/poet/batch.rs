@@ -1,28 +1,36 @@
-//! The candidates of a generation, which follow from the phase.
+//! The attempts of a generation, which follow from the phase.
 
+use super::super::attempt::Attempt;
 use super::Poet;
 use super::state::{Child, FineTuned, Phase, Proposal};
+use crate::evolve::parents::Parents;
 use crate::evolve::strategy::Strategy;
 use crate::genome::{Genome, StairsGenome};
 
-/// A genome to evaluate, and its stairs.
-#[derive(Debug, Clone)]
-pub struct Candidate {
-    pub genome: Genome,
-    pub stairs: StairsGenome,
-    /// Number of perturbed trials beside the nominal one.
-    pub perturbed: u32,
-    /// The index of the stairs on which it is evaluated, if the trials count for these.
+/// The stairs of an attempt among those of the run.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PoetRole {
+    /// The index of the stairs on which the candidate is evaluated, if the trials count for these.
     pub node: Option<u32>,
-    /// The index of the stairs from which it comes, if it is not one of their own candidates.
+    /// The index of the stairs from which the candidate comes, if it is not one of their own.
     pub from: Option<u32>,
-    /// Whether a search has drawn it.
-    pub is_sample: bool,
+}
+
+impl Attempt<PoetRole> {
+    /// Whether a search has drawn its candidate.
+    pub fn is_sample(&self) -> bool {
+        self.candidate.parents == Parents::Distribution
+    }
+
+    fn perturbed(self, perturbed: u32) -> Self {
+        Self { perturbed, ..self }
+    }
 }
 
 impl<S: Strategy> Poet<S> {
-    /// The candidates of the next generation.
-    pub(super) fn batch(&self) -> Vec<Candidate> {
+    /// The attempts of the next generation.
+    pub(super) fn next_batch(&self) -> Vec<Attempt<PoetRole>> {
+        let perturbed = self.settings.perturbed;
         match &self.progress.phase {
             Phase::Learn { .. } => self.learners(),
             Phase::Measure => self.measured(),
@@ -31,17 +39,14 @@ impl<S: Strategy> Poet<S> {
             }
             Phase::Confirm { tuned } => {
                 let confirmed = |FineTuned { from, to, agent }: &FineTuned| {
-                    let perturbed = self.settings.perturbed;
-                    let tuned = self.on_node(&agent.genome, *to, Some(*from))?;
-                    Some(Candidate { perturbed, ..tuned })
+                    Some(self.on_node(&agent.genome, *to, Some(*from))?.perturbed(perturbed))
                 };
                 tuned.iter().filter_map(confirmed).collect()
             }
             Phase::Breed { children } => {
                 let bred = |child: &Child| {
                     let agent = self.progress.agent(child.parent)?;
-                    let perturbed = self.settings.perturbed;
-                    Some(Candidate { perturbed, ..of_stairs(agent, child.stairs) })
+                    Some(on_stairs(agent, child.stairs).perturbed(perturbed))
                 };
                 children.iter().filter_map(bred).collect()
             }
@@ -53,37 +58,35 @@ impl<S: Strategy> Poet<S> {
                 let agents = new.filter_map(|node| Some(&node.agent.as_ref()?.genome));
                 let stairs = self.progress.nodes.iter().map(|node| node.stairs);
                 agents
-                    .flat_map(|agent| stairs.clone().map(move |stairs| of_stairs(agent, stairs)))
+                    .flat_map(|agent| stairs.clone().map(move |stairs| on_stairs(agent, stairs)))
                     .collect()
             }
         }
     }
 
-    fn learners(&self) -> Vec<Candidate> {
-        let mut all = Vec::new();
-        for pair in &self.progress.pairs {
-            let Some(node) = self.progress.node(pair.node) else { continue };
-            all.extend(pair.search.ask().into_iter().map(|genome| Candidate {
-                node: Some(pair.node),
-                is_sample: true,
-                ..of_stairs(&genome, node.stairs)
-            }));
-        }
-        all
+    fn learners(&self) -> Vec<Attempt<PoetRole>> {
+        let pairs = self.progress.pairs.iter();
+        pairs.flat_map(|pair| self.samples(&pair.search, pair.node, None)).collect()
+    }
+
+    /// The next candidates of a search, on the stairs of a node.
+    fn samples(&self, search: &S, node: u32, from: Option<u32>) -> Vec<Attempt<PoetRole>> {
+        let Some(stairs) = self.progress.node(node).map(|of| of.stairs) else { return Vec::new() };
+        let role = PoetRole { node: Some(node), from };
+        search.ask().into_iter().map(|asked| Attempt::sampled(asked, stairs, role)).collect()
     }
 
     /// The agents and challengers on their own stairs, the agent of a pair before its challenger; then the better of both on
     /// the stairs of all other pairs, in the nominal trial.
-    fn measured(&self) -> Vec<Candidate> {
+    fn measured(&self) -> Vec<Attempt<PoetRole>> {
         let mut all = Vec::new();
         let mut sent = Vec::new();
         for pair in &self.progress.pairs {
             let agent = self.progress.agent(pair.node);
             let challenger = pair.challenger.as_ref().map(|(agent, _)| &agent.genome);
             for genome in agent.into_iter().chain(challenger) {
-                let perturbed = self.settings.perturbed;
                 let own = self.on_node(genome, pair.node, None);
-                all.extend(own.map(|own| Candidate { perturbed, ..own }));
+                all.extend(own.map(|own| own.perturbed(self.settings.perturbed)));
             }
             // A challenger that was worse in the nominal trial than the agent in all trials is not sent in its place.
             let score = self.progress.node(pair.node).map_or(0.0, |node| node.score);
@@ -100,34 +103,28 @@ impl<S: Strategy> Poet<S> {
     }
 
     /// An agent on the stairs to which it may move, in all trials, and the candidates of one generation around it.
-    fn fine_tuned(&self, proposal: &Proposal) -> Vec<Candidate> {
-        let Proposal { from, to, genome } = proposal;
-        let restarts = self.progress.pair(*to).map_or(0, |pair| pair.restarts.saturating_add(1));
-        let perturbed = self.settings.perturbed;
-        let direct = self.on_node(genome, *to, Some(*from));
-        let mut all: Vec<Candidate> =
-            direct.into_iter().map(|direct| Candidate { perturbed, ..direct }).collect();
-        for sample in self.search(*to, restarts, Some(genome)).ask() {
-            let sample = self.on_node(&sample, *to, Some(*from));
-            all.extend(sample.map(|sample| Candidate { is_sample: true, ..sample }));
-        }
-        all
+    fn fine_tuned(&self, proposal: &Proposal) -> Vec<Attempt<PoetRole>> {
+        let &Proposal { from, to, ref genome } = proposal;
+        let restarts = self.progress.pair(to).map_or(0, |pair| pair.restarts.saturating_add(1));
+        let direct = self.on_node(genome, to, Some(from));
+        let direct = direct.map(|direct| direct.perturbed(self.settings.perturbed));
+        let around = self.search(to, restarts, Some(genome));
+        direct.into_iter().chain(self.samples(&around, to, Some(from))).collect()
     }
 
     /// All active agents, and the panel, on a mutant.
-    fn compared(&self, stairs: &StairsGenome) -> Vec<Candidate> {
+    fn compared(&self, stairs: &StairsGenome) -> Vec<Attempt<PoetRole>> {
         let active = self.progress.pairs.iter().filter_map(|pair| self.progress.agent(pair.node));
-        active.chain(&self.progress.panel).map(|genome| of_stairs(genome, *stairs)).collect()
+        active.chain(&self.progress.panel).map(|genome| on_stairs(genome, *stairs)).collect()
     }
 
-    fn on_node(&self, genome: &Genome, node: u32, from: Option<u32>) -> Option<Candidate> {
+    fn on_node(&self, genome: &Genome, node: u32, from: Option<u32>) -> Option<Attempt<PoetRole>> {
         let stairs = self.progress.node(node)?.stairs;
-        Some(Candidate { node: Some(node), from, ..of_stairs(genome, stairs) })
+        Some(Attempt::new(genome, stairs, PoetRole { node: Some(node), from }))
     }
 }
 
-/// A genome on stairs, in the nominal trial alone.
-fn of_stairs(genome: &Genome, stairs: StairsGenome) -> Candidate {
-    let genome = genome.clone();
-    Candidate { genome, stairs, perturbed: 0, node: None, from: None, is_sample: false }
+/// An attempt on stairs for which its trials do not count.
+fn on_stairs(genome: &Genome, stairs: StairsGenome) -> Attempt<PoetRole> {
+    Attempt::new(genome, stairs, PoetRole::default())
 }

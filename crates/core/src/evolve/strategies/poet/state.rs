@@ -1,15 +1,22 @@
 //! The state of POET: stairs, pairs, and the phase of the round.
 
+use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::{MOST_TRANSFERS, RECENT, search_plan};
+use super::super::inner_search::{InnerSearch, serialize_search};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::PoetSettings;
-use crate::evolve::stairs_tree::{Agent, StairsNode, Transfer, check_genome, check_score};
+use crate::evolve::stairs_tree::{Agent, StairsNode, Transfer, check_score};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::{Genome, StairsGenome};
+use crate::rng::{Purpose, stream};
 use crate::schema::check;
+
+/// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
+pub const RECENT: usize = 5;
+/// Maximum number of transfers that are remembered.
+pub const MOST_TRANSFERS: usize = 2000;
 
 /// The next generation of a round.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -56,10 +63,13 @@ pub struct Child {
     pub stairs: StairsGenome,
 }
 
-/// Active stairs and the search for their agent.
+/// Active stairs and the search for their agent. In a file, its state stands for the search.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct Pair<S> {
     /// Index of the stairs.
     pub node: u32,
+    #[serde(serialize_with = "serialize_search")]
     pub search: S,
     /// Generations that the search has finished.
     pub finished: u32,
@@ -93,7 +103,21 @@ impl<S> Pair<S> {
     }
 }
 
+/// The plan of a search for the agent of a staircase, around a genome or from random ones.
+pub fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>) -> RunPlan {
+    let poet = &plan.settings.evolution.poet;
+    let of = InnerSearch {
+        population: poet.pair_candidates,
+        step: poet.pair_step,
+        seed: stream(plan.seed, node, restarts, Purpose::Pair).next_u64(),
+        around,
+    };
+    of.plan(plan)
+}
+
 /// Everything that POET has learned.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct PoetProgress<S> {
     pub phase: Phase,
     /// Finished rounds.
@@ -110,34 +134,7 @@ pub struct PoetProgress<S> {
     pub transfers: Vec<Transfer>,
 }
 
-/// [`PoetProgress`] in a file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SavedPairs {
-    phase: Phase,
-    rounds: u32,
-    transfers_done: u32,
-    nodes: Vec<StairsNode>,
-    pairs: Vec<SavedPair>,
-    panel: Vec<Genome>,
-    rows: Vec<Vec<f32>>,
-    transfers: Vec<Transfer>,
-}
-
-/// [`Pair`] in a file.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SavedPair {
-    node: u32,
-    search: StrategyState,
-    finished: u32,
-    restarts: u32,
-    recent: Vec<f32>,
-    stale: u32,
-    challenger: Option<(Agent, f32)>,
-}
-
-impl<S: Strategy> PoetProgress<S> {
+impl<S> PoetProgress<S> {
     /// The beginning of a run, with one pair.
     pub fn begin(root: StairsNode, pair: Pair<S>, iterations: u32) -> Self {
         Self {
@@ -173,31 +170,12 @@ impl<S: Strategy> PoetProgress<S> {
         self.pairs.iter_mut().find(|pair| pair.node == node)
     }
 
-    pub fn state(&self) -> StrategyState {
-        let pair = |pair: &Pair<S>| SavedPair {
-            node: pair.node,
-            search: pair.search.state(),
-            finished: pair.finished,
-            restarts: pair.restarts,
-            recent: pair.recent.clone(),
-            stale: pair.stale,
-            challenger: pair.challenger.clone(),
-        };
-        StrategyState::of(&SavedPairs {
-            phase: self.phase.clone(),
-            rounds: self.rounds,
-            transfers_done: self.transfers_done,
-            nodes: self.nodes.clone(),
-            pairs: self.pairs.iter().map(pair).collect(),
-            panel: self.panel.clone(),
-            rows: self.rows.clone(),
-            transfers: self.transfers.clone(),
-        })
-    }
-
     /// Reads what a run had learned after its first `finished` generations.
-    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid> {
-        let saved: SavedPairs = state.read()?;
+    pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid>
+    where
+        S: Strategy,
+    {
+        let saved: PoetProgress<StrategyState> = state.read()?;
         saved.check(plan, finished)?;
         let mut pairs = Vec::new();
         for (index, pair) in saved.pairs.into_iter().enumerate() {
@@ -205,14 +183,7 @@ impl<S: Strategy> PoetProgress<S> {
             let around = saved.nodes.get(pair.node as usize).and_then(|node| node.agent.as_ref());
             let around = around.map(|agent| &agent.genome);
             let plan = search_plan(plan, pair.node, pair.restarts, around);
-            let search = match pair.finished {
-                0 => S::begin(&plan),
-                finished => S::resume(&plan, finished, &pair.search)
-                    .map_err(|error| error.inside(&format!("pairs[{index}].search")))?,
-            };
-            let evolution = &plan.settings.evolution;
-            let most = evolution.population.max(evolution.cma_es.newborns) as usize;
-            within("population", search.population(), 1..=most)
+            let search = InnerSearch::resumed(&plan, pair.finished, &pair.search)
                 .map_err(|error| error.inside(&format!("pairs[{index}].search")))?;
             pairs.push(Pair {
                 node: pair.node,
@@ -237,7 +208,7 @@ impl<S: Strategy> PoetProgress<S> {
     }
 }
 
-impl SavedPairs {
+impl PoetProgress<StrategyState> {
     fn check(&self, plan: &RunPlan, finished: u32) -> Result<(), Invalid> {
         let settings = &plan.settings.evolution.poet;
         within("rounds", self.rounds, 0..=finished)?;
@@ -257,7 +228,7 @@ impl SavedPairs {
             within("row", row.len(), self.panel.len()..=self.panel.len())?;
             row.iter().try_for_each(|score| check_score("row", *score))?;
         }
-        self.panel.iter().try_for_each(|genome| check_genome(genome, plan))?;
+        self.panel.iter().try_for_each(|genome| plan.check_genome(genome))?;
         for (index, pair) in self.pairs.iter().enumerate() {
             self.check_pair(pair, index, plan).map_err(|error| error.inside("pairs"))?;
         }
@@ -297,7 +268,12 @@ impl SavedPairs {
         }
     }
 
-    fn check_pair(&self, pair: &SavedPair, index: usize, plan: &RunPlan) -> Result<(), Invalid> {
+    fn check_pair(
+        &self,
+        pair: &Pair<StrategyState>,
+        index: usize,
+        plan: &RunPlan,
+    ) -> Result<(), Invalid> {
         self.check_place(pair.node)?;
         let is_twice = self.pairs.iter().take(index).any(|other| other.node == pair.node);
         if is_twice {
@@ -327,7 +303,7 @@ impl SavedPairs {
         moves.try_for_each(|(from, to, genome)| {
             self.check_place(from)?;
             self.check_place(to)?;
-            check_genome(genome, plan)
+            plan.check_genome(genome)
         })
     }
 

@@ -21,23 +21,22 @@ fn plan() -> RunPlan {
 }
 
 /// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
-fn evaluate(poet: &Poet<CmaEs>, candidate: &Candidate) -> Evaluation {
-    let point = poet.plan.settings.genome.point_of(&candidate.genome);
-    let target = f64::from(candidate.stairs.rise_m) / 1.2;
+fn evaluate(poet: &Poet<CmaEs>, attempt: &Attempt<PoetRole>) -> Evaluation {
+    let point = poet.plan.settings.genome.point_of(&attempt.candidate.genome);
+    let target = f64::from(attempt.stairs.rise_m) / 1.2;
     let [first, second] = [point[point.len() - 1], point[point.len() - 2]];
     let off: f64 = 3.0 * (first - target).abs() + (second - 0.5).abs() / 4.0;
     Evaluation::of_fitness((1.05 - off).clamp(0.0, 1.05) as f32)
 }
 
 fn advance(poet: &mut Poet<CmaEs>) {
-    let candidates = poet.batch();
-    assert!(!candidates.is_empty());
-    assert_eq!(poet.population(), candidates.len());
-    assert_eq!(poet.stairs().len(), candidates.len());
+    let asked = poet.ask();
+    assert!(!asked.is_empty());
+    assert_eq!(poet.population(), asked.len());
+    assert!(asked.iter().all(|candidate| candidate.stairs.is_some()));
     let evaluations: Vec<Evaluation> =
-        candidates.iter().map(|candidate| evaluate(poet, candidate)).collect();
-    let genomes = poet.ask();
-    poet.tell(&genomes, &evaluations);
+        poet.batch.iter().map(|attempt| evaluate(poet, attempt)).collect();
+    poet.tell(&asked, &evaluations);
 }
 
 /// A run of this many rounds, and its number of generations.
@@ -89,6 +88,7 @@ fn forget_an_agent(poet: &mut Poet<CmaEs>) -> u32 {
     let pair = poet.progress.pair_mut(target).expect("it is active");
     (pair.recent, pair.challenger) = (vec![0.0], None);
     poet.progress.phase = Phase::Measure;
+    poet.batch = poet.next_batch();
     target
 }
 

@@ -1,7 +1,7 @@
 //! The trials of a generation: one for all, or those of the stairs on which its individuals are evaluated.
 
-use snakes_core::evolve::OwnStairs;
-use snakes_core::score::Trial;
+use snakes_core::evolve::{Candidate, OwnStairs};
+use snakes_core::score::{Evaluation, Trial};
 
 /// The trials of a generation, and which individual has which.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,20 +15,20 @@ pub struct GenerationTrials {
 }
 
 impl GenerationTrials {
-    /// The trials of individuals on these stairs, or of all in `common` if there are none.
-    pub fn new(common: Trial, stairs: &[OwnStairs]) -> Self {
-        if stairs.is_empty() {
-            return Self { all: vec![common.clone()], common, of: Vec::new() };
-        }
+    /// The trials of candidates: on their own stairs, or all in `common` if they have none.
+    pub fn new(common: Trial, candidates: &[Candidate]) -> Self {
         let mut different: Vec<&OwnStairs> = Vec::new();
-        let mut of = Vec::with_capacity(stairs.len());
-        for own in stairs {
+        let mut of = Vec::new();
+        for own in candidates.iter().filter_map(|candidate| candidate.stairs.as_ref()) {
             // From the end: individuals on the same stairs follow one another.
             let known = different.iter().rposition(|other| *other == own);
             of.push(known.unwrap_or(different.len()));
             if known.is_none() {
                 different.push(own);
             }
+        }
+        if of.is_empty() {
+            return Self { all: vec![common.clone()], common, of };
         }
         let all = different.into_iter().map(|own| own.on(&common)).collect();
         Self { common, all, of }
@@ -44,6 +44,14 @@ impl GenerationTrials {
         self.of.get(individual).copied().unwrap_or(0)
     }
 
+    /// Number of trials that were simulated for these evaluations, which are in the order of the individuals.
+    pub fn simulations(&self, evaluations: &[Evaluation]) -> u64 {
+        let of = |(index, evaluation): (usize, &Evaluation)| {
+            u64::from(self.of(index).simulations_of(evaluation))
+        };
+        evaluations.iter().enumerate().map(of).sum()
+    }
+
     /// The trial of an individual.
     pub fn of(&self, individual: usize) -> &Trial {
         self.all.get(self.index_of(individual)).unwrap_or(&self.common)
@@ -53,14 +61,19 @@ impl GenerationTrials {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use snakes_core::evolve::{Parents, RunPlan, Settings, begin};
     use snakes_core::world::Stairs;
     use std::sync::Arc;
 
     #[test]
     fn individuals_on_equal_stairs_share_a_trial() {
-        let own = |steps, perturbed| OwnStairs {
-            stairs: Arc::new(Stairs { steps, ..Stairs::default() }),
-            perturbed,
+        let plan = RunPlan::new("test", 1, Settings::default());
+        let genome = begin(&plan).ask().remove(0).genome;
+        let own = |steps, perturbed| {
+            let stairs = Arc::new(Stairs { steps, ..Stairs::default() });
+            let mut candidate = Candidate::new(genome.clone(), Parents::None);
+            candidate.stairs = Some(OwnStairs { stairs, perturbed });
+            candidate
         };
         let trials = GenerationTrials::new(
             Trial::default(),
