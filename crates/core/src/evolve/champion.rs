@@ -41,7 +41,8 @@ impl Champion {
         [self.trial.stairs.highest_m(), self.chosen_by.unwrap_or(self.evaluation.fitness)]
     }
 
-    /// The same in a run whose stairs evolve: higher stairs come first only once a snake covers this share of their way.
+    /// The numbers of [`Self::rank`] in a run whose stairs evolve: higher stairs come first only once a snake covers this share
+    /// of their way.
     pub fn rank_of_climbed(&self, solved: f32) -> [f32; 2] {
         let [highest_m, fitness] = self.rank();
         let is_climbed = self.evaluation.disqualified.is_none() && fitness >= solved;

@@ -29,7 +29,7 @@ pub struct BenchReport {
     pub sim_s_per_s_per_thread: f64,
     /// Simulated seconds per wall second on one thread.
     pub one_thread_sim_s_per_s: f64,
-    /// The same worlds and torques on one thread, stepped by rapier alone: no checks, no trace.
+    /// Simulated seconds per wall second on one thread, stepped by rapier alone: no checks, no trace.
     pub bare_rapier_sim_s_per_s: f64,
     /// Our one-thread rate over bare rapier's.
     pub ratio_to_bare_rapier: f64,
@@ -150,8 +150,8 @@ fn evaluated_steps(pool: &LocalPool, threads: usize, genomes: &[Genome], trial: 
     steps.into_inner()
 }
 
-/// The same world and torques as `evaluate`, without health checks, pose copies and trace, as any program would
-/// drive this snake with rapier. Returns the world at the end.
+/// Drives a snake with rapier as any program would: with the world and the torques of `evaluate`, without health checks, pose
+/// copies and trace. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let plan = trial.world_plan(genome);
     let mut simulation = Simulation::new(&plan);

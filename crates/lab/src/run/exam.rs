@@ -86,7 +86,7 @@ pub fn exam_ends(
         }
     };
     evaluator.examine_batch(genome, conditions, control, &store)?;
-    // What the evaluator did not report.
+    // Conditions that the evaluator did not report.
     for (index, condition) in conditions.iter().enumerate() {
         if ends[index].get().is_none() {
             control.wait_while_paused()?;

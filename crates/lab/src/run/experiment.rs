@@ -233,7 +233,7 @@ impl Experiment {
         self.run_generation_recording(evaluator, control, |_, _, _| ())
     }
 
-    /// The same; calls `record` with generation, individual and result of each evaluation as soon as it is made.
+    /// As [`Self::run_generation`]; calls `record` with generation, individual and result of each evaluation as soon as it is made.
     ///
     /// # Errors
     /// As [`Self::run_generation`].

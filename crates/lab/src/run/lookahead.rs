@@ -21,7 +21,7 @@ impl Lookahead {
         Self::run(trial.steps(), move || Rollout::new(&genome, &trial))
     }
 
-    /// The same for a rollout at its start.
+    /// Starts to simulate a rollout that is at its start.
     pub fn of(rollout: Rollout) -> Self {
         Self::run(rollout.last_step(), || rollout)
     }

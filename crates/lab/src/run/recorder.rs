@@ -57,7 +57,7 @@ impl RunSource {
         Self { folder: saves.of_run(&plan), plan, earlier }
     }
 
-    /// The same run with the first seed, from its own on, of which `saves` has no run.
+    /// This run with the first seed, from its own on, of which `saves` has no run.
     #[must_use]
     pub fn with_unused_seed(self, saves: &SavesFolder) -> Self {
         let mut plan = self.plan;

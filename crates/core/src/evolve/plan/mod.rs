@@ -41,7 +41,7 @@ impl RunPlan {
         Trial { repeats: trial.repeats.in_generation(self.seed, generation), ..trial.clone() }
     }
 
-    /// The same run, starting from a founder.
+    /// This run, starting from a founder.
     ///
     /// # Errors
     /// It does not fit the trial or the space of genomes; the message names the gene or setting.

@@ -1,4 +1,4 @@
-//! What the episodes of a run learn together: a policy for the whole snake, or rules for each joint.
+//! Knowledge that all episodes of a run share: a policy for the whole snake, or rules for each joint.
 
 use std::sync::Arc;
 
@@ -19,16 +19,16 @@ use crate::rng::{Purpose, stream};
 
 /// Something that is learned from episodes.
 pub trait Learned: Clone + Send + Sync + Serialize + DeserializeOwned {
-    /// What a run knows at its beginning.
+    /// The knowledge of a run at its beginning.
     fn first(plan: &RunPlan) -> Self;
 
-    /// What a controller has learned, if it is of this kind.
+    /// The knowledge of a controller, if it is of this kind.
     fn of(genes: &ControllerGenes) -> Option<Self>;
 
     /// Checks that it is what the run's strategy learns, about the run's snakes.
     ///
     /// # Errors
-    /// What differs.
+    /// The first difference.
     fn check_fits(&self, plan: &RunPlan) -> Result<(), Invalid>;
 
     /// Gives it to a controller, with a way to explore.

@@ -90,7 +90,7 @@ impl Strategy for Neat {
     }
 
     fn tell(&mut self, _: &[Candidate], evaluations: &[Evaluation]) {
-        // What is not a number counts as the worst.
+        // A value that is not a number counts as the worst.
         let fitness = |evaluation: &Evaluation| match evaluation.disqualified {
             Some(_) => f64::NAN,
             None => f64::from(evaluation.fitness),

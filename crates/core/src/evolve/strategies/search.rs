@@ -11,7 +11,7 @@ use crate::evolve::plan::{Founder, RunPlan};
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::rng::{Purpose, normal, stream};
 
-/// What all searches have in common: the space of genomes, the founder, and the streams of random numbers.
+/// The common part of all searches: the space of genomes, the founder, and the streams of random numbers.
 #[derive(Debug, Clone)]
 pub struct Search {
     /// The genomes that may be made.
@@ -142,7 +142,7 @@ impl Search {
         self.space.point_of(&self.random_genome(individual))
     }
 
-    /// Checks a genome from a file. What cannot be built is named before what does not fit the run.
+    /// Checks a genome from a file. An error names a body that cannot be built rather than a gene that does not fit the run.
     pub fn check_genome(&self, genome: &Genome, plan: &RunPlan) -> Result<(), Invalid> {
         plan.settings.trial.check_genome(genome)?;
         self.space.check_genome(genome, self.shape)

@@ -70,7 +70,7 @@ impl RestartedCma {
         })
     }
 
-    /// The same with a first standard deviation of its own for each coordinate of the first run, as a factor of the step.
+    /// These runs, whose first has a standard deviation of its own for each coordinate, as a factor of the step.
     #[must_use]
     pub fn with_scales(mut self, scales: &[f64]) -> Self {
         self.current.scale(scales);
