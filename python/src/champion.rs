@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use snakes_core::Engine;
 use snakes_core::evolve;
 use snakes_core::genome::Genome;
-use snakes_core::save::{self, LoadedChampion, RecordedV5, load_log};
+use snakes_core::save::{self, LoadedChampion, load_log};
 use snakes_core::schema::Choices;
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::Disqualification;
@@ -49,7 +49,7 @@ impl Champion {
         let LoadedChampion { champion, engine, exam, recording } = &self.loaded;
         let value = |result: serde_json::Result<Value>| result.map_err(|e| crashed(e.to_string()));
         let evaluation = &champion.evaluation;
-        let mut recorded = value(serde_json::to_value(RecordedV5::from(*evaluation)))?;
+        let mut recorded = value(serde_json::to_value(evaluation))?;
         if let Some(recorded) = recorded.as_object_mut() {
             let disqualified = evaluation.disqualified.map(|reason| reason.words());
             recorded.insert("disqualified".to_owned(), json!(disqualified));

@@ -6,7 +6,6 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 use snakes_core::genome::Genome;
 use snakes_core::learn::Episode;
-use snakes_core::save::RecordedV5;
 use snakes_core::score::{Behaviour, Evaluation, Scored};
 use snakes_core::world::{Disqualification, Effort, Stairs};
 
@@ -32,14 +31,15 @@ struct Packed {
 struct PackedResult {
     genome: u64,
     disqualified: Option<Disqualification>,
-    recorded: RecordedV5,
+    recorded: Evaluation,
     episode: Option<Episode>,
 }
 
 impl PackedResult {
     fn unpacked(self) -> PyResult<(u64, Scored)> {
         let Self { genome, disqualified, recorded, episode } = self;
-        let evaluation = Evaluation { disqualified, ..recorded.evaluation().map_err(invalid)? };
+        recorded.check().map_err(invalid)?;
+        let evaluation = Evaluation { disqualified, ..recorded };
         if let Some(episode) = &episode {
             episode.check().map_err(invalid)?;
         }
@@ -101,7 +101,7 @@ impl Evaluations {
         let packed = |(scored, genome): (&Scored, &u64)| PackedResult {
             genome: *genome,
             disqualified: scored.evaluation.disqualified,
-            recorded: scored.evaluation.into(),
+            recorded: scored.evaluation,
             episode: scored.episode.clone(),
         };
         let results = self.scored.iter().zip(&self.genomes).map(packed).collect();

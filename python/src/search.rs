@@ -153,9 +153,8 @@ impl Search {
     #[getter]
     fn is_over(&self) -> PyResult<bool> {
         let state = self.state()?;
-        let next = state.evaluated + state.strategy.population() as u64;
-        let last = self.plan.settings.evolution.generations;
-        Ok(state.finished >= last || next > self.plan.budget())
+        let next = state.strategy.population() as u64;
+        Ok(self.plan.is_over(state.finished, state.evaluated, next))
     }
 
     /// The points of the next generation.

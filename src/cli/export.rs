@@ -106,7 +106,6 @@ fn with_progress(
     if wanted.until_input_ends {
         cancel_at_end_of_input(&control).map_err(HeadlessError::from)?;
     }
-    let is_cancelled = || control.is_cancelled();
     let saved = if args.json {
         let told = Cell::new(None);
         let show = |share: f64| {
@@ -117,12 +116,12 @@ fn with_progress(
                 let _ = print_json(&json!({"type": "progress", "progress": progress}));
             }
         };
-        work(&ExportProgress::new(&show, &is_cancelled))?
+        work(&ExportProgress::new(&show, &control))?
     } else {
         let bar = bar_of(PER_MILLE as u64, "‰");
         bar.enable_steady_tick(Duration::from_millis(200));
         let show = |share: f64| bar.set_position((share * PER_MILLE) as u64);
-        let result = work(&ExportProgress::new(&show, &is_cancelled));
+        let result = work(&ExportProgress::new(&show, &control));
         bar.finish_and_clear();
         result?
     };

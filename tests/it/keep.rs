@@ -201,6 +201,8 @@ fn evolve_changing(run: &mut RecordedRun, last: u32) {
         let next = run.experiment.finished() + 1;
         for (_, field, value) in CHANGES.iter().filter(|(of, _, _)| *of == next) {
             let field = format!("evolution.{field}");
+            let change = run.experiment.next_plan().change_of_text(next, &field, value);
+            let value = change.expect("allowed").value;
             run.recorder.change_setting(&mut run.experiment, &field, value).expect("allowed");
         }
         let report = run.experiment.run_generation(&pool, &RunControl::default());

@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::names::check_name;
 use super::wire::{WireError, parse_line};
-use snakes_core::check::within;
-use snakes_core::save::hash_of;
+use snakes_core::check::{hash_of, within};
 use snakes_core::schema::Choices;
 use snakes_core::{ENGINE_VERSION, Processors};
 

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::wire::{WireError, line_of, parse_line};
 use snakes_core::check::{Invalid, quoted, within};
 use snakes_core::learn::Episode;
-use snakes_core::save::RecordedV5;
 use snakes_core::score::{Evaluation, ExamEnd, Scored};
 use snakes_core::world::Disqualification;
 use snakes_lab::run::EvaluationResult;
@@ -37,7 +36,7 @@ enum OutcomeLine {
 #[serde(deny_unknown_fields)]
 struct ScoredLine {
     disqualified: Option<Disqualification>,
-    recorded: RecordedV5,
+    recorded: Evaluation,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     episode: Option<Episode>,
 }
@@ -49,7 +48,7 @@ impl Outcome {
         line_of(&match self {
             Self::Scored(Ok(Scored { evaluation, episode })) => OutcomeLine::Scored(ScoredLine {
                 disqualified: evaluation.disqualified,
-                recorded: evaluation.into(),
+                recorded: evaluation,
                 episode,
             }),
             Self::Scored(Err(message)) => OutcomeLine::Panicked(short(message)),
@@ -69,7 +68,8 @@ impl Outcome {
         };
         Ok(match parse_line(line)? {
             OutcomeLine::Scored(ScoredLine { disqualified, recorded, episode }) => {
-                let evaluation = Evaluation { disqualified, ..recorded.evaluation()? };
+                recorded.check()?;
+                let evaluation = Evaluation { disqualified, ..recorded };
                 if let Some(episode) = &episode {
                     episode.check()?;
                 }
@@ -145,7 +145,7 @@ mod tests {
         for (from, to, problem) in [
             ("\"fitness\":", "\"fitness\":1e30,\"x\":", "unknown field `x`"),
             ("\"steps\":", "\"steps\":-", "invalid value"),
-            ("\"trace_hash\":\"", "\"trace_hash\":\"g", "trace_hash is"),
+            ("\"trace_hash\":\"", "\"trace_hash\":\"g", "hash is"),
         ] {
             let error = Outcome::read(&line.replace(from, to)).expect_err("refused").to_string();
             assert!(error.contains(problem), "{error}");

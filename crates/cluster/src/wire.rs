@@ -8,8 +8,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::names::check_name;
 use super::packing::{pack, unpack};
-use snakes_core::check::{Invalid, within};
-use snakes_core::save::hash_of;
+use snakes_core::check::{Invalid, hash_of, within};
 
 /// The number of the messages' format. A worker of another format does not receive them: see [`super::proof`].
 pub const WIRE_FORMAT: u32 = 1;

@@ -71,6 +71,32 @@ pub fn no_device(field: &str, value: &str) -> Result<(), Invalid> {
     Ok(())
 }
 
+/// A hash of 64 bits from its 16 hexadecimal digits.
+///
+/// # Errors
+/// `text` is something else; the error calls it `field`.
+pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
+    let digits = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let hash = u64::from_str_radix(text, 16).ok().filter(|_| digits);
+    hash.ok_or_else(|| Invalid::new(field, quoted(text), "16 hexadecimal digits"))
+}
+
+/// A hash of 64 bits in files: 16 hexadecimal digits. For `#[serde(with = "hex_hash")]`.
+pub mod hex_hash {
+    use serde::{Deserialize, Deserializer, Serializer, de};
+
+    #[expect(missing_docs, reason = "serde asks for it")]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+    pub fn serialize<S: Serializer>(hash: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{hash:016x}"))
+    }
+
+    #[expect(missing_docs, reason = "serde asks for it")]
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        super::hash_of("hash", &String::deserialize(deserializer)?).map_err(de::Error::custom)
+    }
+}
+
 /// A text from outside in an error: quoted, at most 60 characters, without control characters.
 pub fn quoted(text: &str) -> String {
     format!("{:?}", text.chars().take(60).collect::<String>())

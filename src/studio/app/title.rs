@@ -64,11 +64,10 @@ fn update(
     };
     let from = run.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
-        "Snakes & Stairs - {}, seed {}{from} - {} of {} generations, {status} - showing {shown}{stopped}",
+        "Snakes & Stairs - {}, seed {}{from} - {}, {status} - showing {shown}{stopped}",
         run.preset_in_words(),
         run.seed(),
-        run.reports().len(),
-        run.settings().evolution.generations,
+        run.generations_in_words(),
     );
     if window.title != title {
         window.title = title;

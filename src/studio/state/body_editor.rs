@@ -311,8 +311,8 @@ impl Edited {
         let (genome, trial) = (self.genome.clone(), self.trial());
         self.attempts += 1;
         let size = (TUNING, self.attempts);
-        let task = BackgroundTask::start_counted(TUNING, move |progress| {
-            tune_controller(&genome, &trial, size, progress)
+        let task = BackgroundTask::start_counted(TUNING, move |control| {
+            tune_controller(&genome, &trial, size, control)
         });
         self.tuning = Some(task.map_err(|error| format!("Tuning could not start: {error}."))?);
         Ok(())

@@ -19,6 +19,7 @@ use super::milestones::Milestones;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
 use snakes_core::save::{ExistingRun, RunSummary};
+use snakes_core::schema::SettingValue;
 use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
 };
@@ -58,7 +59,7 @@ pub(crate) struct CurrentRun {
     /// The plan of the next run.
     plan_next: RunPlan,
     /// Requested changes of the current run that wait for its next generation: full dotted names and values.
-    pending: Vec<(String, String)>,
+    pending: Vec<(String, SettingValue)>,
     background: Option<BackgroundRun>,
     /// Evaluates the run on other computers, too, while it may, and the number of generations that were finished before.
     shared: Option<(Arc<dyn Evaluator>, usize)>,
@@ -131,6 +132,16 @@ impl CurrentRun {
             Some(background) if background.is_paused() => RunStatus::Paused,
             Some(_) => RunStatus::Running,
         }
+    }
+
+    /// The greatest number of generations of the current run in words, with all its changes: "40" or "at most 40".
+    pub fn most_generations_in_words(&self) -> String {
+        self.plan_now.most_generations_in_words()
+    }
+
+    /// The finished generations of the current run in words: "3 of 40 generations".
+    pub fn generations_in_words(&self) -> String {
+        self.plan_now.generations_in_words(self.reports.len() as u32, self.run_hash.is_some())
     }
 
     /// Maximum number of evaluations of the current run, with all its changes.

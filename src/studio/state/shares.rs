@@ -97,11 +97,11 @@ impl Shares {
         let writer =
             Writer { leash: Arc::clone(&leash), arguments: arguments(format, &path, look) };
         let failed = |error| format!("{} could not be written: {error}.", path.display());
-        let work = BackgroundTask::start_counted(PARTS, move |progress| {
+        let work = BackgroundTask::start_counted(PARTS, move |control| {
             let champions: Vec<(String, Champion)> =
                 shared.into_iter().map(SharedChampion::evaluated).collect();
             written(&writer, &champions, |share| {
-                progress.set_done((share * PARTS as f64) as usize);
+                control.set_done((share * PARTS as f64) as u32);
             })
         });
         let work = work.map_err(failed)?;

@@ -2,8 +2,6 @@
 //!
 //! An exam belongs to a genome and its own trial, wherever and however the champion is shown.
 
-use std::sync::Arc;
-
 use bevy::prelude::*;
 
 use crate::studio::commands::panel::PanelKind;
@@ -15,7 +13,7 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::Champion;
 use snakes_core::score::{ExamEnd, ExamSuite, StairsCell, StairsGrid};
 use snakes_lab::run::exam::{examine_on_stairs, stairs_trials};
-use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, RunControl, available_cores};
+use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, available_cores};
 
 /// The exams of this session.
 #[derive(Resource, Debug, Default)]
@@ -36,8 +34,6 @@ struct FinishedExam {
 struct ExamUnderWay {
     champion: Champion,
     name: String,
-    trials: u32,
-    control: Arc<RunControl>,
     work: BackgroundTask<Result<Vec<StairsGrid>, Cancelled>>,
 }
 
@@ -59,7 +55,7 @@ const SUBJECT: &str = "exam on stairs";
 
 impl Drop for ExamUnderWay {
     fn drop(&mut self) {
-        self.control.cancel();
+        self.work.cancel();
     }
 }
 
@@ -78,7 +74,7 @@ impl StairsExams {
             ExamCommand::Examine => self.examine(selected?)?,
             ExamCommand::Cancel => {
                 if let Some(under_way) = &self.under_way {
-                    under_way.control.cancel();
+                    under_way.work.cancel();
                 }
             }
             ExamCommand::Watch { suite, cell } => {
@@ -112,12 +108,14 @@ impl StairsExams {
         let failed = |error: &dyn std::fmt::Display| format!("The exam could not start: {error}.");
         // The run keeps at least half of the processor.
         let pool = LocalPool::new(available_cores().div_ceil(2)).map_err(|error| failed(&error))?;
-        let control = Arc::new(RunControl::default());
-        let (examined, shared) = (champion.clone(), Arc::clone(&control));
-        let work = BackgroundTask::start(move || examine_on_stairs(&examined, &pool, &shared));
+        let examined = champion.clone();
+        let trials = stairs_trials(&champion) as usize;
+        let work = BackgroundTask::start_counted(trials, move |control| {
+            examine_on_stairs(&examined, &pool, control)
+        });
         let work = work.map_err(|error| failed(&error))?;
-        let (name, trials) = (staged.name().to_owned(), stairs_trials(&champion));
-        self.under_way = Some(ExamUnderWay { champion, name, trials, control, work });
+        let name = staged.name().to_owned();
+        self.under_way = Some(ExamUnderWay { champion, name, work });
         Ok(())
     }
 
@@ -135,8 +133,8 @@ impl StairsExams {
     pub fn progress(&self) -> Option<ExamProgress> {
         self.under_way.as_ref().map(|exam| ExamProgress {
             name: exam.name.clone(),
-            done: exam.control.done().min(exam.trials),
-            trials: exam.trials,
+            done: exam.work.done().min(exam.work.total()) as u32,
+            trials: exam.work.total() as u32,
         })
     }
 

@@ -40,7 +40,7 @@ fn offer(
 
 /// The run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
 fn offer_text(run: &RunSummary) -> String {
-    let (plan, generations) = (&run.plan, run.plan.settings.evolution.generations);
+    let (plan, generations) = (&run.plan, run.plan.most_generations_in_words());
     format!(
         "{}, seed {} stopped after generation {} of {generations}.",
         plan.preset, plan.seed, run.finished

@@ -15,6 +15,7 @@ use snakes_core::save::LoadedChampion;
 use snakes_core::score::{Trial, evaluate};
 use snakes_core::world::{JointTorque, Simulation, Vector, WorldPlan};
 use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource, ExportedChampion};
+use snakes_lab::run::RunControl;
 
 use super::{peer_python, peer_script, succeed};
 use crate::program::{folder, snakes};
@@ -254,7 +255,7 @@ pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
         ExportedChampion { name: name.to_owned(), file: path.to_owned(), loaded, note: None };
     let source = ExportSource { champions: vec![exported], run: None };
     let order = ExportOrder::new(source, path.to_owned()).expect("a known ending");
-    order.carry_out(&ExportProgress::new(&|_| (), &|| false)).expect("written");
+    order.carry_out(&ExportProgress::new(&|_| (), &RunControl::default())).expect("written");
 }
 
 /// A random snake that nothing has found.

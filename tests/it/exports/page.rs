@@ -9,6 +9,7 @@ use snakes_core::evolve::{Champion, Origin, begin};
 use snakes_core::save::{champion_text, load_champion, parse_champion, shipped_champion};
 use snakes_core::score::evaluate;
 use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource};
+use snakes_lab::run::RunControl;
 use snakes_lab::run::verify::golden_plans;
 
 use super::{peer, peer_script, succeed};
@@ -27,7 +28,8 @@ fn browser(test: &str) -> Option<Command> {
 fn export(files: &[&Path], page: &Path) {
     let files: Vec<_> = files.iter().map(|file| file.to_path_buf()).collect();
     let order = ExportOrder::new(ExportSource::read(&files).expect("read"), page.to_owned());
-    let progress = ExportProgress::new(&|_| (), &|| false);
+    let control = RunControl::default();
+    let progress = ExportProgress::new(&|_| (), &control);
     order.expect("allowed").carry_out(&progress).expect("written");
 }
 

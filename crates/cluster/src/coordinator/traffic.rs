@@ -14,7 +14,6 @@ use crate::packing::pack;
 use crate::puller::{Pulled, Puller};
 use crate::store::RETRY_PAUSE;
 use crate::wire::ResultBatch;
-use snakes_core::save::hash_of;
 use snakes_lab::run::headless::say;
 
 /// Maximum number of results that are fetched at once.

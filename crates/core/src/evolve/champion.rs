@@ -1,5 +1,7 @@
 //! An individual worth keeping, with its origin.
 
+use serde::{Deserialize, Serialize};
+
 use crate::genome::Genome;
 use crate::score::{Evaluation, Fitness, Trial};
 use crate::world::BodyPlan;
@@ -65,7 +67,8 @@ impl Champion {
 }
 
 /// The run that found an individual, and its generation and index there.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Origin {
     /// Name of the preset.
     pub preset: String,

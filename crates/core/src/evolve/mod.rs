@@ -5,6 +5,7 @@
 mod archives;
 mod candidate;
 mod champion;
+mod generation;
 mod parents;
 mod plan;
 mod settings;
@@ -18,6 +19,9 @@ pub use archives::{
 };
 pub use candidate::{Candidate, OwnStairs};
 pub use champion::{Champion, Origin};
+pub use generation::{
+    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, Statistics, run_hash,
+};
 pub use parents::{IndividualId, Parents};
 pub use plan::{
     Founder, MOST_CHANGES, RunPlan, SettingChange, SettingChanges, may_change_during_run,
@@ -26,9 +30,9 @@ pub use settings::{
     BodyProtection, CmaEsSettings, Crossover, EvolutionSettings, ExplorationSettings, GaSettings,
     HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, MccSettings, Mutation,
     NeatSettings, NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind,
-    Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, check_effects, fields,
-    with_field, with_fields, with_fields_and_engine,
+    Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, changed_values,
+    check_effects, fields, with_field, with_fields, with_fields_and_engine, with_value,
 };
-pub use stairs_tree::{Agent, StairsNode, StairsTree, Transfer};
+pub use stairs_tree::{Agent, StairsCount, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};

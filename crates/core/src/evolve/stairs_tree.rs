@@ -135,6 +135,57 @@ impl StairsTree {
     }
 }
 
+/// Numbers of the stairs of a run whose stairs evolve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StairsCount {
+    /// Finished rounds.
+    pub rounds: u32,
+    /// All stairs so far.
+    pub all: u32,
+    /// Stairs whose snakes still learn.
+    pub active: u32,
+    /// Stairs that were solved.
+    pub solved: u32,
+    /// Solved stairs that were neither too easy nor too hard for any snake when they came (ANNECS).
+    pub challenges: u32,
+}
+
+impl StairsCount {
+    /// The numbers of a tree.
+    pub fn of(tree: &StairsTree) -> Self {
+        Self {
+            rounds: tree.rounds,
+            all: tree.nodes.len() as u32,
+            active: tree.active() as u32,
+            solved: tree.solved() as u32,
+            challenges: tree.solved_challenges() as u32,
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> String {
+        let Self { rounds, all, active, solved, challenges } = self;
+        let round = rounds.saturating_add(1);
+        let words = format!("round {round}, {all} stairs, {active} active, {solved} solved");
+        match challenges {
+            // Not every strategy knows new challenges.
+            0 => words,
+            _ => format!("{words}, {challenges} new challenges"),
+        }
+    }
+
+    /// Checks that these numbers go together.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(self) -> Result<(), Invalid> {
+        within("stairs.active", self.active, 0..=self.all)?;
+        within("stairs.solved", self.solved, 0..=self.all)?;
+        within("stairs.challenges", self.challenges, 0..=self.solved)
+    }
+}
+
 /// Greatest score in a file. A share is at most 1.1.
 const MOST_SCORE: f32 = 10.0;
 

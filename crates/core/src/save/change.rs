@@ -24,8 +24,8 @@ pub struct ChangeRecord {
 
 impl From<&SettingChange> for ChangeRecord {
     fn from(change: &SettingChange) -> Self {
-        let SettingChange { generation, field, value } = change.clone();
-        Self { generation, field, value }
+        let SettingChange { generation, field, value } = change;
+        Self { generation: *generation, field: field.clone(), value: value.to_string() }
     }
 }
 
@@ -53,14 +53,14 @@ pub fn parse_changes(
     plan: &RunPlan,
 ) -> Result<Vec<SettingChange>, SaveError> {
     let records: Vec<ChangeRecord> = parse_log(path, bytes)?;
-    let changes: Vec<SettingChange> = records
-        .into_iter()
-        .map(|ChangeRecord { generation, field, value }| SettingChange { generation, field, value })
-        .collect();
-    let checked = within("changes", changes.len(), 0..=MOST_CHANGES)
-        .and_then(|()| plan.in_generation(u32::MAX, &changes));
-    checked.map_err(SaveError::invalid(path))?;
-    Ok(changes)
+    let mut plan = plan.clone();
+    let read = |ChangeRecord { generation, field, value }| {
+        let change = plan.change_of_text(generation, &field, &value)?;
+        plan.change(&change).map(|()| change)
+    };
+    let changes = within("changes", records.len(), 0..=MOST_CHANGES)
+        .and_then(|()| records.into_iter().map(read).collect());
+    changes.map_err(SaveError::invalid(path))
 }
 
 #[cfg(test)]
@@ -73,16 +73,15 @@ mod tests {
         RunPlan::new("test", 1, Settings::default())
     }
 
-    fn change(generation: u32, field: &str, value: &str) -> SettingChange {
-        let field = format!("evolution.{field}");
-        SettingChange { generation, field, value: value.to_owned() }
+    fn change(generation: u32, field: &str, value: &str) -> ChangeRecord {
+        ChangeRecord { generation, field: format!("evolution.{field}"), value: value.to_owned() }
     }
 
-    fn read(changes: &[SettingChange]) -> Result<Vec<SettingChange>, SaveError> {
+    fn read(changes: &[ChangeRecord]) -> Result<Vec<SettingChange>, SaveError> {
         let folder = tempfile::tempdir().expect("a folder");
         let mut log = Log::open(&folder.path().join(CHANGES_FILE), 0).expect("opened");
         for change in changes {
-            log.append(&ChangeRecord::from(change)).expect("written");
+            log.append(change).expect("written");
         }
         read_changes(folder.path(), &plan())
     }
@@ -95,7 +94,9 @@ mod tests {
             change(3, "generations", "9"),
             change(8, "population", "50"),
         ];
-        assert_eq!(read(&changes).expect("allowed"), changes);
+        let read_back: Vec<_> =
+            read(&changes).expect("allowed").iter().map(ChangeRecord::from).collect();
+        assert_eq!(read_back, changes);
         assert_eq!(read(&[]).expect("none"), []);
     }
 

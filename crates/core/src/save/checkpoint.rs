@@ -4,17 +4,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::Xxh3Default;
 
-use super::files::{Header, hash_of, numbered, parse, read_bytes, refuse_link, store_ron, text_of};
+use super::SaveError;
+use super::files::{Header, numbered, parse, read_bytes, refuse_link, store_ron, text_of};
 use super::run_name::fingerprint;
 use super::same_engine::check_engine;
-use super::v5::RecordedV5;
-use super::{GenerationRecord, SaveError};
-use crate::check::{Invalid, quoted, within};
+use crate::check::{Invalid, hash_of, quoted, within};
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
-use crate::evolve::{Front, FrontMember, RunPlan, StrategyState, resume};
-use crate::genome::Genome;
+use crate::evolve::{
+    Front, FrontMember, GenerationRecord, RunPlan, StrategyState, resume, run_hash,
+};
 use crate::schema::is_default;
 
 const KIND: &str = "snakes-and-stairs checkpoint";
@@ -39,16 +38,7 @@ struct CheckpointV3 {
     run_hash: String,
     /// Stored as the strategy wrote it: a checkpoint belongs to one engine only.
     strategy: StrategyState,
-    front: Vec<FrontMemberV3>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FrontMemberV3 {
-    generation: u32,
-    individual: u32,
-    recorded: RecordedV5,
-    genome: Genome,
+    front: Vec<FrontMember>,
 }
 
 /// The state of a search: everything that a run needs to continue.
@@ -68,12 +58,6 @@ pub fn store_checkpoint(
     run_hash: u64,
     knowledge: &SearchState,
 ) -> Result<(), SaveError> {
-    let member = |member: &FrontMember| FrontMemberV3 {
-        generation: member.generation,
-        individual: member.individual,
-        recorded: member.evaluation.into(),
-        genome: member.genome.clone(),
-    };
     let checkpoint = CheckpointV3 {
         kind: KIND.to_owned(),
         format: FORMAT,
@@ -83,7 +67,7 @@ pub fn store_checkpoint(
         generation,
         run_hash: format!("{run_hash:016x}"),
         strategy: knowledge.strategy.clone(),
-        front: knowledge.front.members().map(member).collect(),
+        front: knowledge.front.members().cloned().collect(),
     };
     store_ron(&checkpoint_path(folder, generation), &checkpoint)
 }
@@ -124,14 +108,14 @@ pub fn load_checkpoint(
     let path = checkpoint_path(folder, generation);
     refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     let text = text_of(&path, read_bytes(&path, LARGEST_MIB)?)?;
-    let (found, run_hash, state) = parse_checkpoint(&path, &text, plan)?;
+    let (found, found_hash, state) = parse_checkpoint(&path, &text, plan)?;
     let checked = within("generation", found, generation..=generation).and_then(|()| {
-        let expected = run_hash_of(records)?;
-        if run_hash == expected {
+        let expected = run_hash(records);
+        if found_hash == expected {
             return Ok(());
         }
         let allowed = format!("{expected:016x}, as in its log");
-        Err(Invalid::new("run_hash", format!("{run_hash:016x}"), allowed))
+        Err(Invalid::new("run_hash", format!("{found_hash:016x}"), allowed))
     });
     checked.map_err(|source| SaveError::Invalid { path, source })?;
     Ok(state)
@@ -170,25 +154,16 @@ pub fn parse_checkpoint(
     read().map_err(SaveError::invalid(path))
 }
 
-fn read_front(members: Vec<FrontMemberV3>, plan: &RunPlan) -> Result<Front, Invalid> {
+fn read_front(members: Vec<FrontMember>, plan: &RunPlan) -> Result<Front, Invalid> {
     let mut front = Front::default();
     let trial = &plan.settings.trial;
     for (index, member) in members.into_iter().enumerate() {
         let place = format!("front[{index}]");
-        let FrontMemberV3 { generation, individual, recorded, genome } = member;
-        let evaluation = recorded.evaluation().map_err(|error| error.inside(&place))?;
-        trial.check_genome(&genome).map_err(|error| error.inside(&place))?;
-        let start_y_m = trial.middle_start_y_m(&genome);
-        front.add(FrontMember { genome, evaluation, generation, individual }, start_y_m);
+        let FrontMember { evaluation, genome, .. } = &member;
+        evaluation.check().map_err(|error| error.inside(&place))?;
+        trial.check_genome(genome).map_err(|error| error.inside(&place))?;
+        let start_y_m = trial.middle_start_y_m(genome);
+        front.add(member, start_y_m);
     }
     Ok(front)
-}
-
-/// Hash over the finished generations.
-fn run_hash_of(records: &[GenerationRecord]) -> Result<u64, Invalid> {
-    let mut hash = Xxh3Default::new();
-    for record in records {
-        hash.update(&record.generation_hash()?.to_le_bytes());
-    }
-    Ok(hash.digest())
 }

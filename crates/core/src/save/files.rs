@@ -209,13 +209,6 @@ pub fn single_line(text: &str) -> String {
     plain.take(200).collect()
 }
 
-/// A hash of 64 bits from its 16 hexadecimal digits.
-pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
-    let digits = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let hash = u64::from_str_radix(text, 16).ok().filter(|_| digits);
-    hash.ok_or_else(|| Invalid::new(field, quoted(text), "16 hexadecimal digits"))
-}
-
 /// The part of a file that states its kind and format; the rest is skipped.
 #[derive(Deserialize)]
 pub struct Header {

@@ -12,8 +12,8 @@ use super::notes::{EntryNotes, notes_in_run};
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::whole_file::prepare_folder;
-use super::{GenerationRecord, LoadedChampion, SaveError, load_champion};
-use crate::evolve::{RunPlan, StrategyKind};
+use super::{LoadedChampion, SaveError, load_champion};
+use crate::evolve::RunPlan;
 
 /// The folder of saved champions and runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl SavesFolder {
             let evolution = &plan.settings.evolution;
             let mut is_stopped = finished < evolution.generations;
             if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
-                is_stopped = has_generations_left(&plan, &read_records(&folder, &plan).ok()?);
+                is_stopped = !plan.has_ended(&read_records(&folder, &plan).ok()?);
             }
             // Notes that cannot be read do not keep a run from being resumed.
             let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
@@ -105,28 +105,6 @@ impl SavesFolder {
     pub fn prepare(&self) -> Result<(), SaveError> {
         prepare_folder(&self.0)
     }
-}
-
-/// Whether a run with these finished generations has evaluations left for another one.
-pub fn has_generations_left(plan: &RunPlan, records: &[GenerationRecord]) -> bool {
-    let evolution = &plan.settings.evolution;
-    if evolution.strategy.info().is_budget_driven && !records.is_empty() {
-        // Generations may grow, so the budget may be spent before the last generation.
-        let spent: u64 = records.iter().map(|record| u64::from(record.evaluations)).sum();
-        let last = records.last().map_or(0, |last| u64::from(last.evaluations));
-        // Those of islands shrink, to two islands in the end.
-        let least = 2 * u64::from(evolution.islands.candidates);
-        let next = match evolution.strategy {
-            StrategyKind::Islands => last.min(least),
-            // Theirs vary; only the state says what comes next.
-            kind if kind.info().evolves_stairs => 1,
-            _ => last,
-        };
-        if spent + next > plan.budget() {
-            return false;
-        }
-    }
-    (records.len() as u64) < u64::from(evolution.generations)
 }
 
 /// A run in a folder of saves.
@@ -150,6 +128,11 @@ impl RunSummary {
     /// Whether generations are left to evolve.
     pub fn is_stopped(&self) -> bool {
         self.is_stopped
+    }
+
+    /// Its finished generations in words: "3 of 40 generations".
+    pub fn generations_in_words(&self) -> String {
+        self.plan.generations_in_words(self.finished, !self.is_stopped)
     }
 }
 

@@ -34,10 +34,11 @@ mod fixtures {
     use tempfile::TempDir;
 
     use super::{LibraryEntry, SavePlace};
-    use crate::evolve::{Champion, Origin, RunPlan, Settings, begin};
+    use crate::evolve::{
+        Champion, GenerationRecord, Origin, RunPlan, Settings, Statistics, begin, run_hash,
+    };
     use crate::save::{
-        ExistingRun, GenerationRecord, RunFolder, SavesFolder, SearchState, Statistics,
-        generations_hash, shipped_champion, store_champion,
+        ExistingRun, RunFolder, SavesFolder, SearchState, shipped_champion, store_champion,
     };
     use crate::score::{Recording, evaluate};
 
@@ -93,7 +94,7 @@ mod fixtures {
             };
             let of_test = GenerationRecord::of_test(generation, asked.len() as u32);
             records.push(GenerationRecord { statistics: Some(statistics), ..of_test });
-            let hash = generations_hash(&records);
+            let hash = run_hash(&records);
             let state = SearchState { strategy: search.state(), front: Default::default() };
             folder
                 .finish_generation(

@@ -1,9 +1,8 @@
 //! The only place that touches files: runs, champions and presets as text, plots and tables, written so that
 //! a kill at any instant loses nothing that was finished.
 //!
-//! Files have types of their own (`v5`, for example), apart from the core's types, so that the core may change without
-//! breaking a file; settings and genomes alone are written as they are. From the first release on, every released
-//! format stays readable (see `v5`).
+//! The outermost type of a file is one of this module; what it contains are mostly types of the core, written as they
+//! are. From the first release on, every released format stays readable (see `v5`).
 //! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
 
 mod champion;
@@ -12,7 +11,6 @@ mod change;
 mod checkpoint;
 mod copies;
 mod engine_2;
-mod file_structs;
 mod files;
 mod folder;
 pub mod library;
@@ -45,7 +43,7 @@ pub use champion_exam::{check_examinable, exam_in_words, store_exam};
 pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
 pub use copies::ChampionCopies;
-pub use files::{SaveError, hash_of, load_text};
+pub use files::{SaveError, load_text};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
@@ -60,10 +58,7 @@ pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_preset_names, shipped_presets,
     store_preset,
 };
-pub use record::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, Statistics,
-    generations_hash, load_log, parse_evaluations, parse_records,
-};
+pub use record::{load_log, parse_evaluations, parse_records};
 pub use run::{ExistingRun, RunFolder, SavedProgress};
 pub use run_name::{fingerprint, run_name, settings_fingerprint};
 pub use stairs_file::{
@@ -73,6 +68,5 @@ pub use study::{
     CURVE_POINTS, MAX_STUDY_RUNS, Protocol, StudiedArm, StudiedRun, StudyRuns, StudyValue,
     load_definition, load_study, parse_definition, store_study,
 };
-pub use v5::RecordedV5;
 pub use whole_file::UnfinishedFile;
 pub use whole_folder::UnfinishedFolder;

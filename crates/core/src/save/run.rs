@@ -21,6 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use super::SaveError;
 use super::champion::{load_champion, store_champion};
 use super::change::{CHANGES_FILE, ChangeRecord, read_changes};
 use super::checkpoint::{
@@ -35,8 +36,7 @@ use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::run_name::fingerprint;
 use super::whole_file::{prepare_folder, remove_unfinished};
-use super::{GenerationRecord, SaveError};
-use crate::evolve::{Champion, RunPlan, SettingChange};
+use crate::evolve::{Champion, GenerationRecord, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};
 
 /// Maximum number of crashed genomes that a run keeps.
@@ -179,7 +179,7 @@ impl RunFolder {
                 generation,
                 individual,
                 disqualified: evaluation.disqualified,
-                recorded: (*evaluation).into(),
+                recorded: *evaluation,
             });
         }
     }

@@ -29,7 +29,7 @@ pub fn settings_fingerprint(plan: &RunPlan) -> String {
 pub fn fingerprint(plan: &RunPlan) -> String {
     let mut text = format!("{} {}", plan.seed, settings_fingerprint(plan));
     for SettingChange { generation, field, value } in plan.changes.made() {
-        text += &format!(" {generation} {field} {value:?}");
+        text += &format!(" {generation} {field} {:?}", value.to_string());
     }
     format!("{:016x}", xxh3_64(text.as_bytes()))
 }

@@ -1,6 +1,6 @@
 //! Settings by name: listing, checking, finding, setting.
 
-use super::value::SettingField;
+use super::value::{SettingField, SettingValue};
 use super::walk::{ListedSetting, SettingGroup, SettingVisitor, walk};
 use crate::check::Invalid;
 
@@ -48,26 +48,54 @@ pub fn check(group: &(impl SettingGroup + Clone)) -> Result<(), Invalid> {
 /// # Errors
 /// There is no such setting, or the text is no value for it.
 pub fn set_text(group: &mut dyn SettingGroup, path: &str, text: &str) -> Result<(), Invalid> {
-    struct Setter<'a> {
+    visit(group, path, &mut |listed, field| {
+        let value = listed.setting.parse(text);
+        let is_set = value.is_some_and(|value| field.set(value));
+        is_set.then_some(()).ok_or_else(|| refused(&listed, format!("{text:?}")))
+    })
+}
+
+/// Sets one setting, by its full dotted name, to a value, which is not checked against its range.
+///
+/// # Errors
+/// There is no such setting, or its values are of another type.
+pub fn set_value(
+    group: &mut dyn SettingGroup,
+    path: &str,
+    value: &SettingValue,
+) -> Result<(), Invalid> {
+    visit(group, path, &mut |listed, field| {
+        let is_set = field.set(value.clone());
+        is_set.then_some(()).ok_or_else(|| refused(&listed, value.to_string()))
+    })
+}
+
+fn refused(listed: &ListedSetting, value: String) -> Invalid {
+    Invalid::new(&listed.path, value, listed.setting.allowed())
+}
+
+/// Visits the one setting with this full dotted name.
+fn visit(
+    group: &mut dyn SettingGroup,
+    path: &str,
+    act: &mut dyn FnMut(ListedSetting, &mut dyn SettingField) -> Result<(), Invalid>,
+) -> Result<(), Invalid> {
+    struct Visit<'a> {
         path: &'a str,
-        text: &'a str,
+        act: &'a mut dyn FnMut(ListedSetting, &mut dyn SettingField) -> Result<(), Invalid>,
         done: Option<Result<(), Invalid>>,
     }
-    impl SettingVisitor for Setter<'_> {
+    impl SettingVisitor for Visit<'_> {
         fn setting(&mut self, listed: ListedSetting, field: &mut dyn SettingField) {
             if listed.path == self.path {
-                let value = listed.setting.parse(self.text);
-                let is_set = value.is_some_and(|value| field.set(value));
-                let text = format!("{:?}", self.text);
-                let refused = || Invalid::new(self.path, text, listed.setting.allowed());
-                self.done = Some(is_set.then_some(()).ok_or_else(refused));
+                self.done = Some((self.act)(listed, field));
             }
         }
     }
-    let mut setter = Setter { path, text, done: None };
-    walk(group, &mut setter);
+    let mut visit = Visit { path, act, done: None };
+    walk(group, &mut visit);
     let unknown = || Invalid::new("setting", format!("{path:?}"), "the full name of a setting");
-    setter.done.unwrap_or_else(|| Err(unknown()))
+    visit.done.unwrap_or_else(|| Err(unknown()))
 }
 
 /// The full dotted name of the one setting that ends like `path`.

@@ -22,7 +22,7 @@ mod value;
 mod walk;
 
 pub use crate::choices;
-pub use access::{check, find, list, set_text};
+pub use access::{check, find, list, set_text, set_value};
 pub use choice::{Choice, Choices};
 pub(crate) use declare::{named_by_info, setting_group, settings};
 pub use display::DisplayUnit;

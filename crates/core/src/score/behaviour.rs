@@ -1,10 +1,14 @@
 //! Measures of how a snake moves, which distinguish a roller from an inchworm.
 
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
 use crate::control::WaveUses;
 use crate::world::{Simulation, Stairs};
 
 /// Measures of an agent's motion over a rollout.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Behaviour {
     /// Steps under the middle limb at the end: see [`Stairs::steps_under`].
     pub steps_climbed: u32,
@@ -18,12 +22,36 @@ pub struct Behaviour {
     pub frequency_hz: f32,
     /// Cost of transport: energy spent per weight and way, `E / (m g d)`, for the way d of the middle limb along the line
     /// of the stairs, treads and rises. None without a way or a weight.
+    #[serde(default)]
     pub cost_of_transport: Option<f32>,
     /// Climbing efficiency: share of the energy spent that lifted the snake up the steps under its middle limb,
     /// `m g Δz / E`. None without energy.
+    #[serde(default)]
     pub climbing_efficiency: Option<f32>,
     /// How often the controller chose each wave of its library. None for a controller without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave_uses: Option<WaveUses>,
+}
+
+impl Behaviour {
+    /// Checks every value that was read from a file.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(self) -> Result<(), Invalid> {
+        within("steps_climbed", self.steps_climbed, 0..=1000)?;
+        for (field, value) in [
+            ("mean_height_m", self.mean_height_m),
+            ("mean_sideways_m", self.mean_sideways_m),
+            ("contact_duty", self.contact_duty),
+            ("frequency_hz", self.frequency_hz),
+            ("cost_of_transport", self.cost_of_transport.unwrap_or(0.0)),
+            ("climbing_efficiency", self.climbing_efficiency.unwrap_or(0.0)),
+        ] {
+            within(field, value, -1.0e6..=1.0e6)?;
+        }
+        Ok(())
+    }
 }
 
 /// What the [`Behaviour`] at a moment needs to know of the rollout.

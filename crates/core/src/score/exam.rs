@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::way_up::{Arrival, mean_steps};
 use super::{Evaluation, Perturbation, Rollout, Trial};
-use crate::check::{Invalid, within};
+use crate::check::{Invalid, quoted, within};
 use crate::genome::{Genome, HELD_OUT_PER_CLASS, StairsClass};
 use crate::schema::{Choices, choices};
 use crate::world::Stairs;
@@ -76,7 +76,8 @@ pub struct ExamEnd {
 }
 
 /// The result of one suite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SuiteResult {
     /// The suite.
     pub suite: ExamSuite,
@@ -225,7 +226,31 @@ fn way(centre_y_m: f32, steps: u32, stairs: &Stairs, start_y_m: f32) -> f32 {
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
 }
 
+/// Maximum number of conditions of a suite in a file.
+const MOST_CONDITIONS: usize = 100;
+
 impl SuiteResult {
+    /// Checks every value that was read from a file.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("trials", self.trials, 1..=1_000_000)?;
+        within("landed", self.landed, 0..=self.trials)?;
+        within("disqualified", self.disqualified, 0..=self.trials)?;
+        within("median_steps", self.median_steps, 0.0..=1000.0)?;
+        within("kept", self.kept, 0.0..=1.0e6)?;
+        within("number of conditions", self.each.len(), 0..=MOST_CONDITIONS)?;
+        for (label, kept) in &self.each {
+            if label.is_empty() || label.chars().count() > 40 || label.contains(char::is_control) {
+                let allowed = "1 to 40 characters without control characters";
+                return Err(Invalid::new("condition", quoted(label), allowed));
+            }
+            within("kept", *kept, 0.0..=1.0e6)?;
+        }
+        Ok(())
+    }
+
     /// The result of a suite, given the end of the champion's own trial, undisturbed for as long as the suite's trials,
     /// and the ends in the suite's conditions.
     pub fn of(

@@ -6,6 +6,7 @@
 
 mod agent;
 mod behaviour;
+mod evaluation;
 mod exam;
 mod fitness;
 mod history;
@@ -22,6 +23,7 @@ mod way_up;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
+pub use evaluation::Evaluation;
 pub use exam::{
     ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, median, varied,
 };
@@ -31,7 +33,7 @@ pub use mirrored::MirroredRollout;
 pub use perturbation::{Perturbation, PerturbationRange, StairsVariation};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
-pub use rollout::{Evaluation, Rollout};
+pub use rollout::Rollout;
 pub use scored::{Scored, evaluate, score, score_together};
 pub use trial::Trial;
 

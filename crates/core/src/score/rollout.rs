@@ -13,68 +13,15 @@ use super::behaviour::{BehaviourMoment, BehaviourObserver};
 use super::fitness::FinalState;
 use super::trial::steps_in;
 use super::way_up::WayUp;
-use super::{Behaviour, Fitness, Perturbation, Trial};
+use super::{Evaluation, Fitness, Perturbation, Trial};
 use crate::control::{ActiveSenses, Activity, ControlLoop, Perception};
 use crate::genome::Genome;
 use crate::learn::Episode;
 use crate::world::{
-    BodyPlan, Disqualification, Effort, JointTorque, LanesCommon, LockStep, Pose, Pull, Shove,
-    Simulation, Stairs, Vector, WorldPlan,
+    BodyPlan, Disqualification, JointTorque, LanesCommon, LockStep, Pose, Pull, Shove, Simulation,
+    Stairs, Vector, WorldPlan,
 };
 use continued::{Conditions, TrialChange};
-
-/// The result of a rollout.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evaluation {
-    /// The fitness by the trial's measure: see [`Fitness`] for the unit. For a disqualified agent, the fitness
-    /// after its last healthy step.
-    pub fitness: f32,
-    /// y of the middle limb's centre at the end, in metres, for every measure of fitness.
-    pub centre_y_m: f32,
-    /// The reason of the disqualification, if there was one.
-    pub disqualified: Option<Disqualification>,
-    /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
-    /// one included.
-    pub trace_hash: u64,
-    /// Healthy physics steps taken.
-    pub steps: u32,
-    /// Energy, speeds and distances over these steps. `None` in records from before they were measured.
-    pub effort: Option<Effort>,
-    /// Measures of the motion. `None` in records from before they were measured.
-    pub behaviour: Option<Behaviour>,
-}
-
-impl Evaluation {
-    /// A healthy evaluation with this fitness, for tests.
-    pub fn of_fitness(fitness: f32) -> Self {
-        Self {
-            fitness,
-            centre_y_m: fitness,
-            disqualified: None,
-            trace_hash: 0,
-            steps: 1,
-            effort: None,
-            behaviour: None,
-        }
-    }
-
-    /// Whether both have the same bits. A value that one of them lacks is not compared.
-    pub fn agrees_with(&self, other: &Self) -> bool {
-        fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
-            a.is_none() || b.is_none() || a == b
-        }
-        let bare = |evaluation: &Self| Self { effort: None, behaviour: None, ..*evaluation };
-        bare(self) == bare(other)
-            && agree(self.effort, other.effort)
-            && agree(self.behaviour, other.behaviour)
-    }
-
-    /// Whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
-    pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
-        let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
-        self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps
-    }
-}
 
 /// Time at the end of a trial over which a fitness counts, in s: a snake that is thrown up the stairs in the last instant
 /// has not climbed them.

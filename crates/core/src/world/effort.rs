@@ -1,7 +1,12 @@
 //! Energy, speeds and distances of a rollout, which show how near it came to disqualification.
 
+use serde::{Deserialize, Serialize};
+
+use crate::check::{Invalid, within};
+
 /// Totals and maxima over the healthy steps so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Effort {
     /// Energy that the joints spent, in J: the integral of |torque × joint rate| over both axes of all
     /// joints. Energy that flows back from a joint driven against its torque counts as spent, too. With a holding power, the
@@ -16,6 +21,23 @@ pub struct Effort {
 }
 
 impl Effort {
+    /// Checks every value that was read from a file.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(self) -> Result<(), Invalid> {
+        let Effort { energy_j, top_speed_m_s, joint_drift_m, sideways_m } = self;
+        for (field, value) in [
+            ("energy_j", energy_j),
+            ("top_speed_m_s", top_speed_m_s),
+            ("joint_drift_m", joint_drift_m),
+            ("sideways_m", sideways_m),
+        ] {
+            within(field, value, 0.0..=1.0e12)?;
+        }
+        Ok(())
+    }
+
     /// The effort of two consecutive parts of a rollout.
     pub fn and(self, later: Self) -> Self {
         Self {

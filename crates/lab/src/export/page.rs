@@ -90,6 +90,7 @@ fn filled(template: &str, parts: &[(&str, String)]) -> String {
 mod tests {
     use super::*;
     use crate::export::ExportedChampion;
+    use crate::run::RunControl;
     use snakes_core::save::shipped_champion;
 
     #[test]
@@ -100,7 +101,8 @@ mod tests {
         let name = "{{core}}".to_owned();
         let champion = ExportedChampion { name, file: "a.ron".into(), loaded, note: None };
         let source = ExportSource { champions: vec![champion], run: None };
-        let progress = ExportProgress::new(&|_| (), &|| false);
+        let control = RunControl::default();
+        let progress = ExportProgress::new(&|_| (), &control);
         let data = PageData::recorded(&source, &progress).expect("not cancelled");
         let parts = parts(&source, &data);
         let of_template = TEMPLATE.split("{{").skip(1).filter_map(|text| text.split_once("}}"));

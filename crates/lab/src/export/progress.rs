@@ -1,20 +1,21 @@
 //! Progress and cancellation of an export.
 
 use super::ExportError;
+use crate::run::RunControl;
 
 /// Shows the progress of an export, and asks whether to go on.
 #[derive(Clone, Copy)]
 pub struct ExportProgress<'p> {
     show: &'p dyn Fn(f64),
-    is_cancelled: &'p dyn Fn() -> bool,
+    control: &'p RunControl,
     /// Start and end of the present part, as shares of the whole.
     part: [f64; 2],
 }
 
 impl<'p> ExportProgress<'p> {
-    /// Progress that is shown by `show`, as a share of the whole from 0 to 1.
-    pub fn new(show: &'p dyn Fn(f64), is_cancelled: &'p dyn Fn() -> bool) -> Self {
-        Self { show, is_cancelled, part: [0.0, 1.0] }
+    /// Progress that is shown by `show`, as a share of the whole from 0 to 1, until `control` is cancelled.
+    pub fn new(show: &'p dyn Fn(f64), control: &'p RunControl) -> Self {
+        Self { show, control, part: [0.0, 1.0] }
     }
 
     /// The progress of part number `index` of `count` equal parts.
@@ -29,7 +30,7 @@ impl<'p> ExportProgress<'p> {
     /// # Errors
     /// [`ExportError::Cancelled`], if the user cancelled the export.
     pub fn reach(&self, share: f64) -> Result<(), ExportError> {
-        if (self.is_cancelled)() {
+        if self.control.is_cancelled() {
             return Err(ExportError::Cancelled);
         }
         let [start, end] = self.part;

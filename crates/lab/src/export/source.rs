@@ -5,10 +5,8 @@ use std::path::{Path, PathBuf};
 use super::ExportError;
 use snakes_core::Engine;
 use snakes_core::check::Invalid;
-use snakes_core::evolve::RunPlan;
-use snakes_core::save::{
-    GenerationRecord, LoadedChampion, load_champion_and_note, load_log, load_run,
-};
+use snakes_core::evolve::{GenerationRecord, RunPlan};
+use snakes_core::save::{LoadedChampion, load_champion_and_note, load_log, load_run};
 use snakes_core::score::evaluate;
 
 /// A champion with the name under which it appears.

@@ -15,6 +15,7 @@ use super::recorder::{RecordedRun, RunRecorder, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::{Archive, Champion, Front, RunPlan, SettingChange, StairsTree};
+use snakes_core::schema::SettingValue;
 
 /// News about a run in the background.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,13 +122,13 @@ struct BackgroundState {
     /// Size of the generation in progress. Some strategies change it.
     population: AtomicU32,
     /// Requested changes of settings: full dotted names and values.
-    requests: Mutex<VecDeque<(String, String)>>,
+    requests: Mutex<VecDeque<(String, SettingValue)>>,
     /// The evaluator of the next generation.
     evaluator: Mutex<Arc<dyn Evaluator>>,
 }
 
 impl BackgroundState {
-    fn requests(&self) -> MutexGuard<'_, VecDeque<(String, String)>> {
+    fn requests(&self) -> MutexGuard<'_, VecDeque<(String, SettingValue)>> {
         self.requests.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -200,7 +201,7 @@ impl BackgroundRun {
     /// Requests changes of settings, by their full dotted names, before the next generation begins; if the run is
     /// held between two generations, at once. Each is answered by [`RunEvent::SettingChanged`] or
     /// [`RunEvent::SettingNotChanged`], unless the setting has that value already.
-    pub fn request_changes(&self, changes: impl IntoIterator<Item = (String, String)>) {
+    pub fn request_changes(&self, changes: impl IntoIterator<Item = (String, SettingValue)>) {
         self.shared.requests().extend(changes);
         self.shared.control.wake();
     }
@@ -348,8 +349,8 @@ impl RunWorker {
     fn serve_requests(&self, experiment: &mut Experiment, recorder: &mut RunRecorder) {
         loop {
             self.show_next_generation(experiment);
-            let Some((field, text)) = self.shared.requests().pop_front() else { return };
-            let event = match recorder.change_setting(experiment, &field, &text) {
+            let Some((field, value)) = self.shared.requests().pop_front() else { return };
+            let event = match recorder.change_setting(experiment, &field, value) {
                 Ok(None) => continue,
                 Ok(Some(change)) => {
                     let plan_now = Box::new(experiment.plan_now().into_owned());
@@ -366,7 +367,7 @@ impl RunWorker {
     /// Shows the progress of the next generation, of which nothing is done; after the last one, of that one.
     fn show_next_generation(&self, experiment: &Experiment) {
         if !experiment.is_over() {
-            self.shared.control.start_generation();
+            self.shared.control.set_done(0);
         }
         self.shared.population.store(experiment.population(), Ordering::Relaxed);
     }

@@ -2,43 +2,19 @@
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
 use crossbeam_channel::{Receiver, TryRecvError, bounded};
 
 use super::panics::caught;
+use super::run_control::RunControl;
 
 /// Work in progress that ends with one result. Dropping this does not end the work: see [`Self::cancel`].
 #[derive(Debug)]
 pub struct BackgroundTask<T> {
     result: Receiver<Result<T, String>>,
-    pub(super) progress: Arc<TaskProgress>,
+    pub(super) control: Arc<RunControl>,
     total: usize,
-}
-
-/// Shared between the work and its [`BackgroundTask`].
-#[derive(Debug, Default)]
-pub struct TaskProgress {
-    done: AtomicUsize,
-    is_cancelled: AtomicBool,
-}
-
-impl TaskProgress {
-    /// Number of items finished.
-    pub fn done(&self) -> usize {
-        self.done.load(Ordering::Relaxed)
-    }
-
-    /// Publishes the number of items finished.
-    pub fn set_done(&self, done: usize) {
-        self.done.store(done, Ordering::Relaxed);
-    }
-
-    /// Whether the work should stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
-    }
 }
 
 impl BackgroundTask<String> {
@@ -65,26 +41,26 @@ impl<T: Send + 'static> BackgroundTask<T> {
         Self::start_counted(1, |_| work())
     }
 
-    /// Starts work on `total` items that publishes its progress and stops early when cancelled.
+    /// Starts work on `total` items that counts them with its control and stops early when that is cancelled.
     ///
     /// # Errors
     /// The thread could not be started.
     pub fn start_counted(
         total: usize,
-        work: impl FnOnce(&TaskProgress) -> T + Send + 'static,
+        work: impl FnOnce(&RunControl) -> T + Send + 'static,
     ) -> io::Result<Self> {
         let (sender, result) = bounded(1);
-        let progress = Arc::new(TaskProgress::default());
-        let shared = Arc::clone(&progress);
+        let control = Arc::new(RunControl::default());
+        let shared = Arc::clone(&control);
         // A send fails only when the task was dropped.
         let run = move || drop(sender.send(caught(|| work(&shared))));
         thread::Builder::new().name("background task".to_owned()).spawn(run)?;
-        Ok(Self { result, progress, total })
+        Ok(Self { result, control, total })
     }
 
     /// Number of items finished.
     pub fn done(&self) -> usize {
-        self.progress.done()
+        self.control.done() as usize
     }
 
     /// Number of items in all.
@@ -94,7 +70,7 @@ impl<T: Send + 'static> BackgroundTask<T> {
 
     /// Asks the work to stop after the current item.
     pub fn cancel(&self) {
-        self.progress.is_cancelled.store(true, Ordering::Relaxed);
+        self.control.cancel();
     }
 
     /// The result, once and as soon as it is there; the message of the panic if the work panicked.
@@ -128,16 +104,16 @@ impl<T: Send + 'static> BackgroundTask<Vec<T>> {
         act: impl Fn(I) -> T + Send + 'static,
         skip: impl Fn(I) -> T + Send + 'static,
     ) -> io::Result<Self> {
-        Self::start_counted(items.len(), move |progress| {
-            let each = |(index, item)| {
-                if progress.is_cancelled() {
+        Self::start_counted(items.len(), move |control| {
+            let each = |item| {
+                if control.is_cancelled() {
                     return skip(item);
                 }
                 let result = act(item);
-                progress.set_done(index + 1);
+                control.count_one();
                 result
             };
-            items.into_iter().enumerate().map(each).collect()
+            items.into_iter().map(each).collect()
         })
     }
 }

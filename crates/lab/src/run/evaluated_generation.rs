@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 
 use super::generation_trials::GenerationTrials;
-use snakes_core::evolve::{Candidate, Champion, Front, FrontMember, Origin, RunPlan, ranking};
-use snakes_core::save::Rung;
+use snakes_core::evolve::{
+    Candidate, Champion, Front, FrontMember, Origin, RunPlan, Rung, ranking,
+};
 use snakes_core::score::Evaluation;
 
 /// A generation that was just evaluated.

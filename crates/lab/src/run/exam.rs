@@ -26,7 +26,7 @@ pub fn examine(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<SuiteResult>, Cancelled> {
-    control.start_generation();
+    control.set_done(0);
     let suites = suites.iter().filter(|suite| suite.concerns(&champion.genome));
     let suites = suites.map(|suite| (*suite, suite.conditions(&champion.trial)));
     let result = |(suite, mut conditions): (ExamSuite, Vec<ExamCondition>)| {
@@ -54,7 +54,7 @@ pub fn examine_on_stairs(
     evaluator: &dyn Evaluator,
     control: &RunControl,
 ) -> Result<Vec<StairsGrid>, Cancelled> {
-    control.start_generation();
+    control.set_done(0);
     let grid = |(suite, conditions): (ExamSuite, Vec<ExamCondition>)| {
         let ends = exam_ends(&champion.genome, &conditions, evaluator, control)?;
         Ok(StairsGrid::of(suite, &champion.trial, &conditions, &ends))

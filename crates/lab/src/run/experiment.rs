@@ -101,9 +101,7 @@ impl Experiment {
             experiment.front = front.clone();
         }
         for record in &progress.records {
-            // Reading the log has checked it.
-            let hash = record.generation_hash().unwrap_or(0);
-            experiment.hash.update(&hash.to_le_bytes());
+            experiment.hash.update(&record.hash.to_le_bytes());
         }
         experiment.ladder = Ladder::after(&experiment.plan.settings, &progress.records)?;
         experiment.finished = finished;
@@ -132,9 +130,7 @@ impl Experiment {
 
     /// Whether all generations are done, or the next would cost more evaluations than are left.
     pub fn is_over(&self) -> bool {
-        let plan = self.next_plan();
-        self.finished >= plan.settings.evolution.generations
-            || self.evaluated + u64::from(self.population()) > plan.budget()
+        self.next_plan().is_over(self.finished, self.evaluated, self.population().into())
     }
 
     /// Number of individuals in the next generation.
@@ -244,7 +240,7 @@ impl Experiment {
         record: impl Fn(u32, u32, &Evaluation) + Sync,
     ) -> Result<GenerationReport, Cancelled> {
         let started = Instant::now();
-        control.start_generation();
+        control.set_done(0);
         self.apply_due_changes();
         let generation = self.finished + 1;
         // If this generation is cancelled, the strategy is asked again.

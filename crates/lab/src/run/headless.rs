@@ -11,8 +11,8 @@ use super::progress_bar::{beside_bar, run_generation_with_bar};
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
-use snakes_core::evolve::{Champion, RunPlan, SettingChange};
-use snakes_core::save::{Rung, SaveError, SpeciesCount, StairsCount};
+use snakes_core::evolve::{Champion, RunPlan, Rung, SettingChange, SpeciesCount, StairsCount};
+use snakes_core::save::SaveError;
 
 /// A headless command failed.
 #[derive(Debug, thiserror::Error)]
@@ -34,8 +34,8 @@ pub enum HeadlessError {
     Stopped {
         /// Number of generations that are finished.
         finished: u32,
-        /// Number of generations in the run.
-        generations: u32,
+        /// The greatest number of generations of the run, in words.
+        generations: String,
         /// The run's folder.
         folder: PathBuf,
         /// The flags that name its evaluator: see [`Evaluator::flags`].
@@ -158,7 +158,7 @@ pub fn evolve(
         let finished = experiment.finished();
         let report = report.map_err(|Cancelled| HeadlessError::Stopped {
             finished,
-            generations,
+            generations: experiment.next_plan().most_generations_in_words(),
             folder: folder.clone(),
             flags: evaluator.flags(),
         })?;
@@ -299,7 +299,7 @@ fn about(champion: &Champion) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::save::Statistics;
+    use snakes_core::evolve::{GenerationRecord, Statistics};
 
     fn report() -> GenerationReport {
         let statistics = Statistics {
@@ -312,31 +312,22 @@ mod tests {
             lower_quartile: None,
             upper_quartile: None,
         };
-        GenerationReport {
-            generation: 1,
-            evaluations: 500,
+        let record = GenerationRecord {
             disqualified: 12,
-            reasons: Default::default(),
-            crashed: 0,
-            crashes: Vec::new(),
-            on_landing: 0,
-            first_on_landing: None,
-            rung: None,
-            stairs: None,
             statistics: Some(statistics),
-            species: Vec::new(),
-            meaning: "starting position".to_owned(),
-            hash: 0,
-            elapsed_s: 0.0,
-            champion: None,
-        }
+            ..GenerationRecord::of_test(1, 500)
+        };
+        GenerationReport::of_record(record, None, &Trial::default())
     }
 
     #[test]
     fn the_first_on_the_landing_is_counted_over_generations() {
         let mut landing = Landing::default();
         for (evaluations, first_on_landing) in [(50, None), (50, Some(7)), (50, Some(0))] {
-            landing.add(&GenerationReport { evaluations, first_on_landing, ..report() });
+            let mut report = report();
+            report.record.evaluations = evaluations;
+            report.record.first_on_landing = first_on_landing;
+            landing.add(&report);
         }
         assert_eq!(landing.first, Some(58));
     }
@@ -349,6 +340,6 @@ mod tests {
             let end_of = |line: &str, word: &str| line.find(word).map(|at| at + word.len());
             assert_eq!(end_of(&row, number), end_of(TABLE_HEAD, column), "{row}\n{TABLE_HEAD}");
         }
-        assert_eq!(row.find("starting"), TABLE_HEAD.find("mean in words"));
+        assert_eq!(row.find(&report.meaning), TABLE_HEAD.find("mean in words"));
     }
 }

@@ -27,10 +27,10 @@ impl Lookahead {
     }
 
     fn run(steps: u32, begin: impl FnOnce() -> Rollout + Send + 'static) -> Self {
-        let task = BackgroundTask::start_counted(steps as usize, move |progress| {
+        let task = BackgroundTask::start_counted(steps as usize, move |control| {
             let goes_on = |step: u32| {
-                progress.set_done(step as usize);
-                !progress.is_cancelled()
+                control.set_done(step);
+                !control.is_cancelled()
             };
             KeyframeHistory::of_rollout(begin(), goes_on)
         });
@@ -88,14 +88,14 @@ mod tests {
 
         let long = Trial { duration_s: 600.0, ..champion.trial };
         let lookahead = Lookahead::begin(&champion.genome, &long);
-        let progress = Arc::clone(&lookahead.task.as_ref().expect("a thread").progress);
+        let control = Arc::clone(&lookahead.task.as_ref().expect("a thread").control);
         drop(lookahead);
         let started = Instant::now();
         // The thread releases its handle when it ends.
-        while Arc::strong_count(&progress) > 1 {
+        while Arc::strong_count(&control) > 1 {
             assert!(started.elapsed() < Duration::from_secs(60), "the work goes on");
             std::thread::sleep(Duration::from_millis(1));
         }
-        assert!(progress.done() < long.steps() as usize);
+        assert!(control.done() < long.steps());
     }
 }

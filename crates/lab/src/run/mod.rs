@@ -29,7 +29,7 @@ pub mod verify;
 mod whole_runs;
 
 pub use background::{BackgroundRun, Exploration, OpenedRun, RunEvent};
-pub use background_task::{BackgroundTask, TaskProgress};
+pub use background_task::BackgroundTask;
 pub(crate) use evaluator::evaluate_in_order;
 pub use evaluator::{
     EvaluationResult, Evaluator, Job, LocalPool, THREADS_RANGE, WorkersError, available_cores,

@@ -165,7 +165,7 @@ impl Mujoco {
         evaluator: &dyn Evaluator,
         control: &RunControl,
     ) -> Result<MujocoResult, MujocoError> {
-        control.start_generation();
+        control.set_done(0);
         let starts = PerturbationRange { friction: 0.0, rise: 0.0, ..PerturbationRange::default() };
         let conditions = varied(&champion.trial, &starts, TRIALS, SEED);
         let here = exam_ends(&champion.genome, &conditions, evaluator, control)?;

@@ -7,6 +7,7 @@ use super::report::{Crash, GenerationReport};
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{RunPlan, SettingChange};
 use snakes_core::save::{ExistingRun, RunFolder, SaveError, SavesFolder, load_plan};
+use snakes_core::schema::SettingValue;
 use snakes_core::score::{Evaluation, Recording};
 
 /// A run whose folder is open.
@@ -86,12 +87,10 @@ impl RunSource {
         let experiment = Experiment::resumed(self.plan.clone(), &progress)
             .map_err(|source| SaveError::Invalid { path: run_file, source })?;
         let settings = experiment.settings().into_owned();
-        let pairs = progress.records.iter().zip(progress.champions);
-        let reports: Vec<GenerationReport> = pairs
-            .map(|(record, champion)| {
-                GenerationReport::of_record(record, champion, &settings.trial)
-            })
-            .collect();
+        let pairs = progress.records.into_iter().zip(progress.champions);
+        let report =
+            |(record, champion)| GenerationReport::of_record(record, champion, &settings.trial);
+        let reports: Vec<GenerationReport> = pairs.map(report).collect();
         let mut recorder = RunRecorder { folder, best: None };
         for report in &reports {
             if let Some(rank) = report.champion_rank() {
@@ -129,11 +128,12 @@ impl RunRecorder {
         &mut self,
         experiment: &mut Experiment,
         field: &str,
-        text: &str,
+        value: SettingValue,
     ) -> Result<Option<SettingChange>, ChangeError> {
-        let Some(change) = experiment.propose_change(field, text)? else { return Ok(None) };
+        let Some(proposed) = experiment.propose_change(field, value)? else { return Ok(None) };
+        let change = proposed.change.clone();
         self.folder.change(&change)?;
-        experiment.apply_change(&change)?;
+        experiment.apply_change(proposed);
         Ok(Some(change))
     }
 
@@ -160,7 +160,7 @@ impl RunRecorder {
             self.folder.note_lineage(lineage);
         }
         let path = self.folder.finish_generation(
-            &report.record(),
+            &report.record,
             champion.zip(recording.as_ref()),
             &experiment.knowledge(),
             experiment.run_hash(),

@@ -2,56 +2,42 @@
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::ops::Deref;
 use std::time::Duration;
 
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::evaluated_generation::EvaluatedGeneration;
 use crate::statistics::Quartiles;
-use snakes_core::evolve::{Champion, StairsTree};
-use snakes_core::save::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, Statistics,
+use snakes_core::evolve::{
+    Champion, GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StairsTree,
+    Statistics,
 };
 use snakes_core::score::{Evaluation, Trial};
 use snakes_core::world::Disqualification;
 
-/// The result of one generation.
+/// The result of one generation: the numbers of its record, which it has as fields of its own, too, and what the log does
+/// not keep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GenerationReport {
-    /// Its number; the first is 1.
-    pub generation: u32,
-    /// Number of individuals that were evaluated.
-    pub evaluations: u32,
-    /// Number of them that were disqualified, for any reason.
-    pub disqualified: u32,
+    /// Its numbers, as the log keeps them.
+    pub record: GenerationRecord,
     /// Number of disqualified individuals by reason; empty for a generation that was read from its log.
     pub reasons: BTreeMap<Disqualification, u32>,
-    /// Number of them whose simulation panicked.
-    pub crashed: u32,
-    /// The first few of these.
+    /// The first few individuals whose simulation panicked.
     pub crashes: Vec<Crash>,
-    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads, and where stairs
-    /// evolve, of their own.
-    pub on_landing: u32,
-    /// The index of the first of them.
-    pub first_on_landing: Option<u32>,
-    /// The rung of the ladder on which it was evaluated; none without a ladder.
-    pub rung: Option<Rung>,
-    /// Numbers of the stairs after it; none unless stairs evolve.
-    pub stairs: Option<StairsCount>,
-    /// Fitness statistics over the healthy ones; none if all were disqualified.
-    pub statistics: Option<Statistics>,
-    /// Its largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
-    /// numbers of blocks. Empty for a strategy without both and in logs of earlier versions of the program.
-    pub species: Vec<SpeciesCount>,
     /// Meaning of the mean, in the words of the report's Table 1.
     pub meaning: String,
-    /// Hash over the bits of every evaluation, in the order of the individuals.
-    pub hash: u64,
-    /// Wall-clock time the generation took, in seconds. Not part of any hash.
-    pub elapsed_s: f64,
     /// The best individual; none if all were disqualified.
     pub champion: Option<Champion>,
+}
+
+impl Deref for GenerationReport {
+    type Target = GenerationRecord;
+
+    fn deref(&self) -> &GenerationRecord {
+        &self.record
+    }
 }
 
 /// An individual whose simulation panicked.
@@ -80,34 +66,37 @@ impl GenerationReport {
             Some(Crash { individual: evaluated.individual(index), message: message? })
         });
         let reasons = reasons(evaluations);
-        let statistics = statistics(evaluations);
         let landed =
             |index: &usize| is_goal && evaluations[*index].is_on_landing(&trials.of(*index).stairs);
         let first_on_landing = (0..evaluations.len()).find(landed);
-        Self {
+        let record = GenerationRecord {
             generation,
-            on_landing: (0..evaluations.len()).filter(landed).count() as u32,
-            first_on_landing: first_on_landing.map(|index| index as u32),
             evaluations: evaluations.len() as u32,
             disqualified: reasons.values().sum(),
             crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
-            reasons,
-            crashes: crashes.take(MAX_CRASHES).collect(),
+            on_landing: (0..evaluations.len()).filter(landed).count() as u32,
+            first_on_landing: first_on_landing.map(|index| index as u32),
+            statistics: statistics(evaluations),
+            chosen_by: champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
+            species: species(&evaluated.species(), evaluations),
             rung,
             stairs: None,
-            statistics,
-            species: species(&evaluated.species(), evaluations),
-            meaning: meaning(statistics.as_ref(), &trials.common, rung),
             hash: generation_hash(evaluations),
             elapsed_s: elapsed.as_secs_f64(),
+        };
+        Self {
+            meaning: meaning(&record, &trials.common),
+            record,
+            reasons,
+            crashes: crashes.take(MAX_CRASHES).collect(),
             champion,
         }
     }
 
     /// Adds the numbers of the stairs that evolve, if they do.
     pub fn set_stairs(&mut self, tree: Option<&StairsTree>) {
-        self.stairs = tree.map(StairsCount::of);
-        if let Some(count) = self.stairs {
+        self.record.stairs = tree.map(StairsCount::of);
+        if let Some(count) = self.record.stairs {
             self.meaning = count.words();
         }
     }
@@ -122,59 +111,23 @@ impl GenerationReport {
         }
     }
 
-    /// This report as a line of the log.
-    pub fn record(&self) -> GenerationRecord {
-        GenerationRecord {
-            generation: self.generation,
-            evaluations: self.evaluations,
-            disqualified: self.disqualified,
-            crashed: self.crashed,
-            on_landing: self.on_landing,
-            first_on_landing: self.first_on_landing,
-            statistics: self.statistics,
-            chosen_by: self.champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
-            species: self.species.clone(),
-            rung: self.rung,
-            stairs: self.stairs,
-            hash: format!("{:016x}", self.hash),
-            elapsed_s: self.elapsed_s,
-        }
-    }
-
-    /// The report that a line of the log stands for, under the trial of its run.
-    pub fn of_record(record: &GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
-        Self {
-            generation: record.generation,
-            evaluations: record.evaluations,
-            disqualified: record.disqualified,
-            reasons: BTreeMap::new(),
-            crashed: record.crashed,
-            crashes: Vec::new(),
-            on_landing: record.on_landing,
-            first_on_landing: record.first_on_landing,
-            rung: record.rung,
-            stairs: record.stairs,
-            statistics: record.statistics,
-            species: record.species.clone(),
-            meaning: match record.stairs {
-                Some(count) => count.words(),
-                None => meaning(record.statistics.as_ref(), trial, record.rung),
-            },
-            // Reading the log has checked it.
-            hash: record.generation_hash().unwrap_or(0),
-            elapsed_s: record.elapsed_s,
-            champion,
-        }
+    /// The report of a generation that was read from its log, under the trial of its run.
+    pub fn of_record(record: GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
+        let meaning = meaning(&record, trial);
+        Self { record, reasons: BTreeMap::new(), crashes: Vec::new(), meaning, champion }
     }
 }
 
-/// Meaning of a generation's mean, and the rung of the ladder.
-fn meaning(statistics: Option<&Statistics>, trial: &Trial, rung: Option<Rung>) -> String {
-    let words = match statistics {
+/// Meaning of a generation's mean, and the rung of the ladder; where stairs evolve, their numbers.
+fn meaning(record: &GenerationRecord, trial: &Trial) -> String {
+    if let Some(count) = record.stairs {
+        return count.words();
+    }
+    let words = match record.statistics {
         Some(statistics) => trial.meaning(statistics.mean_centre_y_m),
         None => "all disqualified".to_owned(),
     };
-    match rung {
+    match record.rung {
         Some(Rung { rise_m, .. }) => {
             format!("{words}, rise {} m", (rise_m * 1000.0).round() / 1000.0)
         }
@@ -209,10 +162,10 @@ fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
     species
 }
 
-/// Statistics over the healthy ones among `evaluations`, summed in a fixed order.
+/// Statistics over the healthy ones among `evaluations`, summed in a fixed order; none if all were disqualified.
 fn statistics(evaluations: &[Evaluation]) -> Option<Statistics> {
-    let healthy = evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
-    let mut fitness: Vec<f64> = healthy.clone().map(|e| f64::from(e.fitness)).collect();
+    let healthy = || evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
+    let mut fitness: Vec<f64> = healthy().map(|e| f64::from(e.fitness)).collect();
     fitness.sort_by(f64::total_cmp);
     let (&worst, &best) = (fitness.first()?, fitness.last()?);
     let count = fitness.len() as f64;
@@ -226,9 +179,9 @@ fn statistics(evaluations: &[Evaluation]) -> Option<Statistics> {
         median: (low + high) / 2.0,
         std: variance.sqrt(),
         worst,
-        mean_centre_y_m: healthy.map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count,
-        lower_quartile: quartiles.as_ref().map(|quartiles| quartiles.low),
-        upper_quartile: quartiles.as_ref().map(|quartiles| quartiles.high),
+        mean_centre_y_m: healthy().map(|e| f64::from(e.centre_y_m)).sum::<f64>() / count,
+        lower_quartile: quartiles.map(|quartiles| quartiles.low),
+        upper_quartile: quartiles.map(|quartiles| quartiles.high),
     })
 }
 
@@ -262,12 +215,12 @@ mod tests {
             evaluation(1.0, None),
             evaluation(5.0, None),
         ];
-        let of_four = statistics(&evaluations).expect("four are healthy");
-        assert_eq!((of_four.mean, of_four.median), (2.0, 2.5));
-        assert_eq!((of_four.best, of_four.worst), (5.0, -2.0));
-        assert_eq!(of_four.mean_centre_y_m, 3.0);
-        assert_eq!(of_four.std, 7.5_f64.sqrt());
-        assert_eq!(of_four.quartiles(), Some((0.25, 4.25)), "of -2, 1, 4, 5");
+        let found = statistics(&evaluations).expect("four are healthy");
+        assert_eq!((found.mean, found.median), (2.0, 2.5));
+        assert_eq!((found.best, found.worst), (5.0, -2.0));
+        assert_eq!(found.mean_centre_y_m, 3.0);
+        assert_eq!(found.std, 7.5_f64.sqrt());
+        assert_eq!(found.quartiles(), Some((0.25, 4.25)), "of -2, 1, 4, 5");
         assert_eq!(statistics(&evaluations[1..2]), None);
     }
 

@@ -30,7 +30,7 @@ pub fn robustness(
     control: &RunControl,
 ) -> Result<Robustness, Cancelled> {
     let trial = &champion.trial;
-    control.start_generation();
+    control.set_done(0);
     let ends =
         exam_ends(&champion.genome, &varied(trial, range, trials, seed), evaluator, control)?;
     let reached = |steps: u32| ends.iter().filter(|end| end.steps >= steps).count() as u32;

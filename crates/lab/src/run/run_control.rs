@@ -1,16 +1,16 @@
-//! Pauses and cancels the workers of a run, and counts their progress.
+//! Pauses and cancels work on other threads, such as that of a run, and counts its progress.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// A run was cancelled before its generation was finished.
+/// Work was cancelled before it was finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Shared between the workers of a run and its user interface.
+/// Shared between the workers of a run, or other work in the background, and its user interface.
 ///
-/// Workers pass a gate before each evaluation. Pausing and cancelling therefore take effect within
+/// Workers of a run pass a gate before each evaluation. Pausing and cancelling therefore take effect within
 /// one evaluation (some milliseconds with the shipped presets), and cannot change a result: they decide
 /// when an evaluation happens, not its value.
 #[derive(Debug, Default)]
@@ -29,7 +29,7 @@ enum Gate {
 }
 
 impl RunControl {
-    /// Number of evaluations of the current generation that are finished.
+    /// Number of finished items: of a run, the evaluations of the current generation.
     pub fn done(&self) -> u32 {
         self.done.load(Ordering::Relaxed)
     }
@@ -88,11 +88,13 @@ impl RunControl {
         self.gate_moved.notify_all();
     }
 
-    pub(super) fn start_generation(&self) {
-        self.done.store(0, Ordering::Relaxed);
+    /// Sets the number of finished items.
+    pub fn set_done(&self, done: u32) {
+        self.done.store(done, Ordering::Relaxed);
     }
 
-    pub(super) fn count_one(&self) {
+    /// Counts one more finished item.
+    pub fn count_one(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 

@@ -1,8 +1,8 @@
 //! Tuning the controller of a snake to its body by a few evaluations: a (1+4) evolution strategy with a step that adapts
 //! by the rule of one fifth (Rechenberg, Evolutionsstrategie, 1973).
 
-use super::background_task::TaskProgress;
 use super::panics::caught;
+use super::run_control::RunControl;
 use snakes_core::genome::{Genome, GenomeSpace};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::score::{Evaluation, Trial, evaluate};
@@ -39,18 +39,18 @@ pub fn tune_controller(
     genome: &Genome,
     trial: &Trial,
     (evaluations, attempt): (usize, u32),
-    progress: &TaskProgress,
+    control: &RunControl,
 ) -> Option<Tuned> {
     let evaluated = |genome: &Genome| caught(|| evaluate(genome, trial)).ok();
     let before = evaluated(genome)?;
     let space = GenomeSpace::default().widened_for(genome);
     let (mut best, mut best_evaluation, mut step) = (genome.clone(), before, FIRST_STEP);
-    progress.set_done(1);
+    control.set_done(1);
     for first in (1..evaluations).step_by(CHILDREN) {
         let parent = best.clone();
         let mut has_improved = false;
         for number in first..(first + CHILDREN).min(evaluations) {
-            if progress.is_cancelled() {
+            if control.is_cancelled() {
                 return Some(Tuned { genome: best, evaluation: best_evaluation, before });
             }
             let mut rng = stream(genome.hash(), attempt, number as u32, Purpose::Study);
@@ -61,7 +61,7 @@ pub fn tune_controller(
             {
                 (best, best_evaluation, has_improved) = (child, found, true);
             }
-            progress.set_done(number + 1);
+            control.count_one();
         }
         step *= if has_improved { GROWTH } else { SHRINKAGE };
     }
@@ -79,13 +79,13 @@ mod tests {
         let own = trial.with_own_blocks(&champion.genome).expect("a gait");
         let mut changed = own.clone();
         changed.body.segments[1].length_m = 1.2;
-        let progress = TaskProgress::default();
-        let tuned = tune_controller(&changed, &trial, (13, 1), &progress).expect("it simulates");
-        assert_eq!(progress.done(), 13);
+        let control = RunControl::default();
+        let tuned = tune_controller(&changed, &trial, (13, 1), &control).expect("it simulates");
+        assert_eq!(control.done(), 13);
         assert_eq!(tuned.genome.body, changed.body);
         assert!(worth(&tuned.evaluation) >= worth(&tuned.before));
         assert_eq!(evaluate(&tuned.genome, &trial), tuned.evaluation);
-        let again = tune_controller(&changed, &trial, (13, 1), &TaskProgress::default());
+        let again = tune_controller(&changed, &trial, (13, 1), &RunControl::default());
         assert_eq!(again, Some(tuned), "the same each time");
     }
 }

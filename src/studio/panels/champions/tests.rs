@@ -4,7 +4,8 @@ use super::*;
 use crate::studio::panels::testing::{Sent, clicked, report_of, shows};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use snakes_core::save::{StairsCount, shipped_champion};
+use snakes_core::evolve::StairsCount;
+use snakes_core::save::shipped_champion;
 
 /// The panel of these champions, of which two can race in each generation.
 fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> Sent<'a> {
@@ -25,7 +26,8 @@ fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> S
 
 /// The report of a generation whose best snake has this fitness.
 fn report(generation: u32, fitness: f32) -> GenerationReport {
-    let mut report = GenerationReport { generation, ..report_of(1) };
+    let mut report = report_of(1);
+    report.record.generation = generation;
     let champion = report.champion.as_mut().expect("a healthy snake");
     champion.origin.generation = generation;
     champion.evaluation.fitness = fitness;
@@ -89,8 +91,8 @@ fn better_ones_only_lists_the_generations_that_improved_on_all_before() {
 #[test]
 fn of_a_run_whose_stairs_evolve_only_generations_with_a_champion_are_listed() {
     let stairs = StairsCount { rounds: 1, all: 1, active: 1, solved: 0, challenges: 0 };
-    let mut reports = [1, 2, 3]
-        .map(|of| GenerationReport { stairs: Some(stairs), ..report(of, 1.0 + of as f32) });
+    let mut reports = [1, 2, 3].map(|of| report(of, 1.0 + of as f32));
+    reports.iter_mut().for_each(|report| report.record.stairs = Some(stairs));
     reports[1].champion = None;
     let panel = panel(&[], &reports);
     assert_eq!(listed(&panel), [1, 3]);

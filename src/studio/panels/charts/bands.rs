@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use super::fitness::generations;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use snakes_core::evolve::{IndividualId, Settings};
-use snakes_core::save::SpeciesCount;
+use snakes_core::evolve::{IndividualId, Settings, SpeciesCount};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::GenerationReport;
 
@@ -244,11 +243,11 @@ mod tests {
     /// A run of 6 snakes with these species: the first number is the generation of the first report.
     fn view_of(first: u32, generations: &[&[SpeciesCount]]) -> ChartView {
         let run = species_run();
-        let of = |(generation, species): (u32, &&[SpeciesCount])| GenerationReport {
-            generation,
-            evaluations: 6,
-            species: species.to_vec(),
-            ..run.reports()[0].clone()
+        let of = |(generation, species): (u32, &&[SpeciesCount])| {
+            let mut report = run.reports()[0].clone();
+            (report.record.generation, report.record.evaluations) = (generation, 6);
+            report.record.species = species.to_vec();
+            report
         };
         let reports: Vec<GenerationReport> = (first..).zip(generations).map(of).collect();
         view(&SPECIES, run.settings(), &reports)

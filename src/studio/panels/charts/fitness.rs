@@ -4,8 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use snakes_core::evolve::{IndividualId, Settings};
-use snakes_core::save::Statistics;
+use snakes_core::evolve::{GenerationRecord, IndividualId, Settings, Statistics};
 use snakes_core::score::Fitness;
 use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use snakes_lab::run::GenerationReport;
@@ -56,7 +55,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
 fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     let statistics = report.statistics?;
     let Statistics { mean, best, median, std, worst, .. } = statistics;
-    let GenerationReport { generation, disqualified, evaluations, .. } = *report;
+    let GenerationRecord { generation, disqualified, evaluations, .. } = report.record;
     let words = move || {
         let quarters = statistics.quartiles().map_or(String::new(), |(low, high)| {
             format!("middle 50 % {low:.2} to {high:.2}{unit}\n")
@@ -178,8 +177,8 @@ mod tests {
         assert_eq!(head, expected);
         // Logs of earlier versions have no quartiles.
         let mut old = report;
-        if let Some(statistics) = &mut old.statistics {
-            statistics.lower_quartile = None;
+        if let Some(statistics) = &mut old.record.statistics {
+            (statistics.lower_quartile, statistics.upper_quartile) = (None, None);
         }
         let view = super::view(&settings, &[old]);
         assert!(!view.hits[0][0].words().contains("middle 50 %"));

@@ -10,8 +10,7 @@ use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
-use snakes_core::evolve::RunPlan;
-use snakes_core::save::Statistics;
+use snakes_core::evolve::{GenerationRecord, RunPlan, Statistics};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 
 /// Colours of the other runs, in the order of their selection.
@@ -29,20 +28,18 @@ struct Curves {
 pub(super) fn view(run: &CurrentRun) -> ChartView {
     let fitness = run.settings().trial.fitness;
     let unit = fitness.unit();
-    let own = run.reports().iter().filter_map(|report| {
-        let Statistics { best, median, .. } = report.statistics?;
-        Some([f64::from(report.generation), best, median])
-    });
+    let point = |record: &GenerationRecord| {
+        let Statistics { best, median, .. } = record.statistics?;
+        Some([f64::from(record.generation), best, median])
+    };
+    let own = run.reports().iter().filter_map(|report| point(&report.record));
     let name = format!("this run ({}, seed {})", run.preset(), run.seed());
     let mut curves = vec![Curves { name: name.into(), role: Role::First, points: own.collect() }];
     let mut rewards_differ = false;
     for (compared, role) in run.others().compared().iter().zip(ROLES) {
         let Some(Ok(other)) = &compared.read else { continue };
         rewards_differ |= other.plan.settings.trial.fitness != fitness;
-        let points = other.records.iter().filter_map(|record| {
-            let Statistics { best, median, .. } = record.statistics?;
-            Some([f64::from(record.generation), best, median])
-        });
+        let points = other.records.iter().filter_map(point);
         let mut name = title(&other.plan);
         if curves.iter().any(|known| *known.name == *name) {
             // The folder distinguishes runs with equal preset and seed.
@@ -119,10 +116,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
         for other in choices {
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
-            let finished = other.finished;
-            let all = other.plan.settings.evolution.generations;
             let name = other.name.clone().unwrap_or_else(|| title(&other.plan));
-            let name = format!("{name}, {finished} of {all} generations");
+            let name = format!("{name}, {}", other.generations_in_words());
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());

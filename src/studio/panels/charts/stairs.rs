@@ -3,8 +3,9 @@
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
-use snakes_core::evolve::{IndividualId, StairsNode, StairsTree, StrategyKind, Transfer};
-use snakes_core::save::StairsCount;
+use snakes_core::evolve::{
+    IndividualId, StairsCount, StairsNode, StairsTree, StrategyKind, Transfer,
+};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::GenerationReport;
 

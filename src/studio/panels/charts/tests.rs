@@ -202,8 +202,9 @@ fn long_reports(generations: u32) -> Vec<snakes_lab::run::GenerationReport> {
     let run = explored_run();
     let last = run.reports().last().expect("explored");
     let of = |generation| {
-        let mut report = snakes_lab::run::GenerationReport { generation, ..last.clone() };
-        if let Some(statistics) = &mut report.statistics {
+        let mut report = last.clone();
+        report.record.generation = generation;
+        if let Some(statistics) = &mut report.record.statistics {
             statistics.best += f64::from(generation % 100) * 0.01;
         }
         report

@@ -146,7 +146,7 @@ fn evolution(run: &CurrentRun) -> Option<String> {
     if run.is_lent() {
         return None;
     }
-    let (done, all) = (run.reports().len(), run.settings().evolution.generations);
+    let (done, all) = (run.reports().len(), run.most_generations_in_words());
     match run.status() {
         RunStatus::Running => Some(format!("Evolution: generation {} of {all}", done + 1)),
         RunStatus::Paused => Some(format!("Evolution paused after generation {done}")),

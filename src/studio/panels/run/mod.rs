@@ -247,16 +247,16 @@ fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Comma
             explain(ui, "There are no unfinished runs.");
         }
         for summary in stopped {
-            let RunPlan { preset, seed, settings, .. } = &summary.plan;
-            let (finished, all) = (summary.finished, settings.evolution.generations);
+            let RunPlan { preset, seed, .. } = &summary.plan;
             let name = || format!("{preset}, seed {seed}");
             let name = summary.name.clone().unwrap_or_else(name);
-            let behind = format!("{finished} of {all}");
+            let generations = summary.generations_in_words();
+            let behind = generations.trim_end_matches(" generations");
             let hint = format!(
-                "{finished} of {all} generations are finished. The current run stays saved.\n{}",
+                "{generations} are finished. The current run stays saved.\n{}",
                 summary.folder.display()
             );
-            if row(ui, false, &name, &behind).on_hover_text(hint).clicked() {
+            if row(ui, false, &name, behind).on_hover_text(hint).clicked() {
                 commands.push(Command::Run(RunCommand::Continue(summary.folder.clone())));
             }
         }

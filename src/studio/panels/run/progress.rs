@@ -30,7 +30,8 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
                 RunStatus::Paused => ", paused",
                 RunStatus::Running | RunStatus::Finished => "",
             };
-            let text = format!("Generation {} of {generations}{suffix}", finished + 1);
+            let most = run.most_generations_in_words();
+            let text = format!("Generation {} of {most}{suffix}", finished + 1);
             (text, done as f32 / population.max(1) as f32)
         }
     };
@@ -154,7 +155,9 @@ mod tests {
 
     /// Report of a small generation with the given duration.
     fn report(elapsed_s: f64) -> GenerationReport {
-        GenerationReport { elapsed_s, ..report_of(1) }
+        let mut report = report_of(1);
+        report.record.elapsed_s = elapsed_s;
+        report
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use snakes_core::evolve::RunPlan;
-use snakes_core::save::{GenerationRecord, RunSummary, SavesFolder, load_log};
+use snakes_core::evolve::{GenerationRecord, RunPlan};
+use snakes_core::save::{RunSummary, SavesFolder, load_log};
 use snakes_lab::run::BackgroundTask;
 
 /// Known runs, and those compared with the current one.

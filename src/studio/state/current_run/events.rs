@@ -103,6 +103,7 @@ mod tests {
     use crate::studio::state::run_context::RunContext;
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
+    use snakes_core::schema::SettingValue;
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
@@ -235,9 +236,10 @@ mod tests {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
             // The strategy cannot change during a run: this change is refused, those before and after it are made.
-            run.change_running("evolution.population", "5")?;
-            run.background()?.request_changes([("evolution.strategy".to_owned(), "ga".to_owned())]);
-            run.change_running("evolution.halving.parents", "2")
+            run.change_running("evolution.population", SettingValue::Whole(5))?;
+            run.background()?
+                .request_changes([("evolution.strategy".to_owned(), SettingValue::Name("ga"))]);
+            run.change_running("evolution.halving.parents", SettingValue::Whole(2))
         });
         wait_until(&mut app, |run| run.changes().len() == 2);
         let run = app.world().resource::<CurrentRun>();
@@ -255,7 +257,9 @@ mod tests {
     #[test]
     fn a_run_that_failed_can_be_resumed() {
         let (_folder, mut app) = paused_studio();
-        act(&mut app, |run| run.change_running("evolution.halving.parents", "2"));
+        act(&mut app, |run| {
+            run.change_running("evolution.halving.parents", SettingValue::Whole(2))
+        });
         wait_until(&mut app, |run| run.changes().len() == 1);
         act(&mut app, |run| {
             run.open_again();
@@ -281,7 +285,7 @@ mod tests {
             assert!(run.next_run_differs(), "in its friction");
             run.set_field("surface.friction", "1")?;
             assert!(!run.next_run_differs(), "the run will soon be like the next");
-            run.change_running("evolution.generations", "4")
+            run.change_running("evolution.generations", SettingValue::Whole(4))
         });
         wait_until(&mut app, |run| run.changes().len() == 3);
         act(&mut app, |run| {

@@ -5,9 +5,9 @@ use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::options::Options;
 use crate::studio::ui::notifications::Notices;
-use snakes_core::evolve::{RunPlan, StrategyKind};
+use snakes_core::evolve::{RunPlan, Rung, StrategyKind};
 use snakes_core::genome::ControllerKind;
-use snakes_core::save::{Rung, SavesFolder, shipped_champion, store_csv};
+use snakes_core::save::{SavesFolder, shipped_champion, store_csv};
 use snakes_core::score::evaluate;
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
@@ -78,9 +78,9 @@ fn evolved_run(mut settings: Settings) -> CurrentRun {
 pub fn landed_run() -> CurrentRun {
     let mut run = explored_run();
     let mut report = run.reports.last().expect("two generations").clone();
-    report.generation += 1;
+    report.record.generation += 1;
     report.champion = Some(shipped_champion().expect("well formed").champion);
-    report.on_landing = 1;
+    report.record.on_landing = 1;
     run.note_milestone(&report);
     run.reports.push(report);
     run
@@ -179,7 +179,7 @@ fn elites_and_front_members_are_evaluated_as_they_were_found() {
 #[test]
 fn snakes_of_a_ladders_generation_stand_on_the_stairs_of_its_rung() {
     let mut run = explored_run();
-    run.reports[0].rung = Some(Rung { rise_m: 0.15, successes: 1 });
+    run.reports[0].record.rung = Some(Rung { rise_m: 0.15, successes: 1 });
     let rise_m = |generation| run.trial_in(generation).stairs.step_rise_m(0);
     assert_eq!([1, 2].map(rise_m), [0.15, 0.5]);
 }

@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use super::{CurrentRun, RunStatus};
 use snakes_core::check::within;
 use snakes_core::evolve::{
-    Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_field,
+    Champion, Founder, RunPlan, SettingChange, Settings, may_change_during_run, with_value,
 };
-use snakes_core::schema::{Setting, list};
+use snakes_core::schema::{Setting, SettingValue, list};
 use snakes_lab::run::THREADS_RANGE;
 
 impl CurrentRun {
@@ -38,10 +38,14 @@ impl CurrentRun {
     }
 
     /// Changes a setting of the current run, by its full dotted name, from its next generation on.
-    pub(super) fn change_running(&mut self, field: &str, text: &str) -> Result<(), String> {
+    pub(super) fn change_running(
+        &mut self,
+        field: &str,
+        value: SettingValue,
+    ) -> Result<(), String> {
         self.run_allows(field).map_err(str::to_owned)?;
-        let change = (field.to_owned(), text.to_owned());
-        with_field(&self.requested_settings(), field, text).map_err(|error| error.to_string())?;
+        with_value(&self.requested_settings(), field, &value).map_err(|error| error.to_string())?;
+        let change = (field.to_owned(), value);
         if let Some(background) = &self.background {
             background.request_changes([change.clone()]);
         }
@@ -60,9 +64,9 @@ impl CurrentRun {
         if self.pending.is_empty() {
             return Cow::Borrowed(&self.plan_now.settings);
         }
-        let change = |settings: Settings, (field, text): &(String, String)| {
+        let change = |settings: Settings, (field, value): &(String, SettingValue)| {
             // A setting of an option that is no longer selected does not exist and can be skipped.
-            with_field(&settings, field, text).unwrap_or(settings)
+            with_value(&settings, field, value).unwrap_or(settings)
         };
         Cow::Owned(self.pending.iter().fold(self.plan_now.settings.clone(), change))
     }
@@ -146,7 +150,7 @@ pub(crate) fn news_of(change: &SettingChange) -> String {
     let setting = setting_of(field);
     let unit = setting.map(|setting| setting.shown_unit()).filter(|unit| !unit.is_empty());
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
-    let value = setting.map_or_else(|| value.clone(), |setting| setting.shown_text(value));
+    let value = setting.map_or_else(|| value.to_string(), |setting| setting.shown_value(value));
     let value = value.replace('_', " ");
     format!("From generation {generation}: {} {value}{unit}", name_of(field))
 }
@@ -176,13 +180,13 @@ mod tests {
 
     #[test]
     fn a_change_is_described_in_words() {
-        let change = |field: &str, value: &str| {
-            let (field, value) = (format!("evolution.{field}"), value.to_owned());
-            news_of(&SettingChange { generation: 8, field, value })
+        let change = |field: &str, value| {
+            news_of(&SettingChange { generation: 8, field: format!("evolution.{field}"), value })
         };
-        let range = change("halving.mutation_range_nm", "50");
+        let range = change("halving.mutation_range_nm", SettingValue::Number(50.0));
         assert_eq!(range, "From generation 8: mutation range 50 N·m");
-        assert_eq!(change("ga.crossover", "one_point"), "From generation 8: crossover one point");
+        let crossover = change("ga.crossover", SettingValue::Name("one_point"));
+        assert_eq!(crossover, "From generation 8: crossover one point");
         let refusal = refusal_in_words("evolution.halving.mutation_range_nm", "the run has ended");
         assert_eq!(refusal, "Mutation range was not changed in the current run: the run has ended");
     }
@@ -190,7 +194,8 @@ mod tests {
     #[test]
     fn a_run_that_has_not_started_accepts_no_changes() {
         let mut run = prepared_run();
-        let reason = run.change_running("evolution.generations", "9").expect_err("refused");
+        let nine = SettingValue::Whole(9);
+        let reason = run.change_running("evolution.generations", nine).expect_err("refused");
         assert!(reason.starts_with("No run is in progress"), "{reason}");
         assert_eq!(run.changes(), []);
     }

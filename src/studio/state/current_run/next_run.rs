@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::CurrentRun;
 use snakes_core::check::Invalid;
-use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
+use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_engine};
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
@@ -84,11 +84,9 @@ impl CurrentRun {
         let before = std::mem::replace(&mut self.plan_next, plan);
         let next = &self.plan_next;
         if is_edit && suited_run && !self.is_lent && before.preset == next.preset {
-            let known = fields(&before.settings);
-            let all = fields(&next.settings).into_iter();
-            for (field, text) in all.filter(|field| !known.contains(field)).collect::<Vec<_>>() {
+            for (field, value) in changed_values(&before.settings, &next.settings) {
                 if self.run_allows(&field).is_ok() {
-                    self.change_running(&field, &text)?;
+                    self.change_running(&field, value)?;
                 }
             }
         }

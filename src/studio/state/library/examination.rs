@@ -8,7 +8,7 @@ use snakes_core::save::library::SavePlace;
 use snakes_core::save::{LoadedChampion, exam_in_words, load_champion, store_exam};
 use snakes_core::score::ExamSuite;
 use snakes_lab::run::exam::{exam_trials, examine};
-use snakes_lab::run::{BackgroundTask, LocalPool, RunControl, TaskProgress};
+use snakes_lab::run::{BackgroundTask, LocalPool, RunControl};
 
 /// Notices about an exam replace each other.
 const SUBJECT: &str = "exam";
@@ -108,19 +108,19 @@ impl Examination {
 fn examined(
     champions: Vec<(PathBuf, LoadedChampion)>,
     control: &RunControl,
-    progress: &TaskProgress,
+    progress: &RunControl,
 ) -> Vec<ExamOutcome> {
     let pool = match LocalPool::new(1) {
         Ok(pool) => pool,
         Err(error) => return vec![Some(Err(format!("The exam could not be started: {error}")))],
     };
-    let each = |(index, (path, loaded)): (usize, (PathBuf, LoadedChampion))| {
+    let each = |(path, loaded): (PathBuf, LoadedChampion)| {
         let results = examine(&loaded.champion, &ExamSuite::USUAL, &pool, control).ok()?;
         let stored = store_exam(&path, &loaded, &results).map_err(|error| error.to_string());
-        progress.set_done(index + 1);
+        progress.count_one();
         Some(stored.map(|()| exam_in_words(&results).unwrap_or_default()))
     };
-    champions.into_iter().enumerate().map(each).collect()
+    champions.into_iter().map(each).collect()
 }
 
 #[cfg(test)]

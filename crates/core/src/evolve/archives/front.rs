@@ -5,20 +5,24 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::genome::Genome;
 use crate::score::Evaluation;
 
 /// A member of the front.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FrontMember {
-    /// The individual.
-    pub genome: Genome,
-    /// Its evaluation.
-    pub evaluation: Evaluation,
     /// The generation that found it; the first is 1.
     pub generation: u32,
     /// Its index in that generation.
     pub individual: u32,
+    /// Its evaluation.
+    #[serde(rename = "recorded")]
+    pub evaluation: Evaluation,
+    /// The individual.
+    pub genome: Genome,
 }
 
 /// The front: for each [`BOX_M`] of distance the member that spent the least energy, unless one that got further

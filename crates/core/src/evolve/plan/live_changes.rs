@@ -5,18 +5,18 @@
 
 use super::RunPlan;
 use crate::check::{Invalid, within};
-use crate::evolve::settings::{HalvingSettings, Settings, fields, with_field};
-use crate::schema::list;
+use crate::evolve::settings::{HalvingSettings, Settings, with_value};
+use crate::schema::{Setting, SettingValue, list};
 
 /// A change of one setting of a run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SettingChange {
     /// The first generation that it applies to; the first of a run is 1.
     pub generation: u32,
-    /// The full dotted name of the setting: see [`fields`].
+    /// The full dotted name of the setting, such as `evolution.population`.
     pub field: String,
-    /// Its new value, as text.
-    pub value: String,
+    /// Its new value.
+    pub value: SettingValue,
 }
 
 /// The changes since a run began, and the earlier values that still matter.
@@ -41,7 +41,7 @@ struct MutationRangeChange {
 
 /// Maximum number of changes of a run, more than anyone makes by hand.
 pub const MOST_CHANGES: usize = 2000;
-/// Maximum length of a new value, in bytes.
+/// Maximum length of the text of a new value, in bytes.
 const LONGEST_VALUE: usize = 60;
 
 const UNKNOWN: &str = "There is no such setting.";
@@ -52,8 +52,13 @@ const UNKNOWN: &str = "There is no such setting.";
 /// # Errors
 /// It may not; why.
 pub fn may_change_during_run(field: &str, settings: &Settings) -> Result<(), &'static str> {
-    let listed = list(settings).into_iter().find(|listed| listed.path == field);
-    listed.map_or(Err(UNKNOWN), |listed| listed.live)
+    live_setting(field, settings).map(drop)
+}
+
+/// The row of a setting that may change while a run of these settings goes on.
+fn live_setting(field: &str, settings: &Settings) -> Result<Setting, &'static str> {
+    let listed = list(settings).into_iter().find(|listed| listed.path == field).ok_or(UNKNOWN)?;
+    listed.live.map(|()| listed.setting)
 }
 
 impl SettingChanges {
@@ -64,26 +69,30 @@ impl SettingChanges {
 }
 
 impl RunPlan {
-    /// The change of a setting to the value that a text says, from a generation on; none if the setting has that value.
-    /// The plan stays as it is.
+    /// This plan with a change; none if the setting has that value already.
     ///
     /// # Errors
     /// As [`Self::change`].
-    pub fn proposed(
+    pub fn changed(&self, change: &SettingChange) -> Result<Option<Self>, Invalid> {
+        let mut plan = self.clone();
+        plan.change(change)?;
+        Ok((plan.settings != self.settings).then_some(plan))
+    }
+
+    /// The change of a setting to the value that a text says, from a generation on. The plan stays as it is.
+    ///
+    /// # Errors
+    /// The setting may not change during a run, or the text is no value for it.
+    pub fn change_of_text(
         &self,
         generation: u32,
         field: &str,
         text: &str,
-    ) -> Result<Option<SettingChange>, Invalid> {
-        allow(field, text, &self.settings)?;
-        let changed = with_field(&self.settings, field, text)?;
-        // The canonical text of the value, independent of the spelling.
-        let value = fields(&changed).into_iter().find(|(name, _)| name == field);
-        let value = value.map_or_else(|| text.to_owned(), |(_, value)| value);
-        let change = SettingChange { generation, field: field.to_owned(), value };
-        let mut plan = self.clone();
-        plan.change(&change)?;
-        Ok((plan.settings != self.settings).then_some(change))
+    ) -> Result<SettingChange, Invalid> {
+        let setting = allow(field, text, &self.settings)?;
+        let refused = || Invalid::new(field, format!("{text:?}"), setting.allowed());
+        let value = setting.parse(text).ok_or_else(refused)?;
+        Ok(SettingChange { generation, field: field.to_owned(), value })
     }
 
     /// Makes a change: the plan is then that of the generation from which on the change applies.
@@ -102,8 +111,8 @@ impl RunPlan {
         let last = self.settings.evolution.generations + u32::from(is_length);
         within("generation", *generation, latest..=last.max(latest))?;
         within("changes", self.changes.made.len() + 1, 1..=MOST_CHANGES)?;
-        allow(field, value, &self.settings)?;
-        let settings = with_field(&self.settings, field, value)?;
+        allow(field, &value.to_string(), &self.settings)?;
+        let settings = with_value(&self.settings, field, value)?;
         // Finished generations and the next one cannot be dropped.
         within("evolution.generations", settings.evolution.generations, *generation..=10_000)?;
         let before = &self.settings.evolution;
@@ -185,13 +194,14 @@ impl RunPlan {
     }
 }
 
-fn allow(field: &str, value: &str, settings: &Settings) -> Result<(), Invalid> {
+/// The row of a setting that may change to a value with this text.
+fn allow(field: &str, value: &str, settings: &Settings) -> Result<Setting, Invalid> {
     let short = |text: &str| text.chars().take(LONGEST_VALUE).collect::<String>();
     if value.len() > LONGEST_VALUE {
         let allowed = format!("up to {LONGEST_VALUE} bytes");
         return Err(Invalid::new(short(field), format!("{:?}", short(value)), allowed));
     }
-    may_change_during_run(field, settings).map_err(|reason| {
+    live_setting(field, settings).map_err(|reason| {
         let (first, rest) = reason.trim_end_matches('.').split_at(1);
         let reason = format!("{}{rest}", first.to_lowercase());
         let allowed = format!("a setting that may change during a run ({reason})");

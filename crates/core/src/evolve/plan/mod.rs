@@ -1,5 +1,6 @@
 //! The plan of a run: everything that determines its bits, and its name.
 
+mod end;
 mod founder;
 mod live_changes;
 

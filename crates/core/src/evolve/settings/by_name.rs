@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::check::Invalid;
-use crate::schema::{find, list, set_text};
+use crate::schema::{SettingValue, find, list, set_text, set_value};
 use crate::score::Trial;
 
 /// All settings with their values as text, in the order of their names: `trial.surface.friction`, `1`.
@@ -19,6 +19,32 @@ pub fn fields(settings: &Settings) -> Vec<(String, String)> {
 /// There is no such field (the nearest names are listed), or its value is not allowed.
 pub fn with_field(settings: &Settings, path: &str, text: &str) -> Result<Settings, Invalid> {
     with_fields(settings, [(path, text)])
+}
+
+/// The settings with one field, by its full dotted name, changed to a value, checked as a whole.
+///
+/// # Errors
+/// There is no such field, or its value is not allowed.
+pub fn with_value(
+    settings: &Settings,
+    path: &str,
+    value: &SettingValue,
+) -> Result<Settings, Invalid> {
+    let mut settings = settings.clone();
+    set_value(&mut settings, path, value)?;
+    settings.check()?;
+    Ok(settings)
+}
+
+/// The fields of `after` whose values `before` does not have, in the order of their full dotted names.
+pub fn changed_values(before: &Settings, after: &Settings) -> Vec<(String, SettingValue)> {
+    let known = list(before);
+    let is_known =
+        |of: &(String, SettingValue)| known.iter().any(|k| (&k.path, &k.value) == (&of.0, &of.1));
+    let all = list(after).into_iter().map(|listed| (listed.path, listed.value));
+    let mut changed: Vec<_> = all.filter(|of| !is_known(of)).collect();
+    changed.sort_by(|a, b| a.0.cmp(&b.0));
+    changed
 }
 
 /// The settings with some fields changed, checked as a whole after the last.

@@ -7,16 +7,13 @@ use super::shipped::{SHIPPED, shipped_text};
 use super::thumbnail::Thumbnail;
 use crate::Engine;
 use crate::check::Invalid;
-use crate::evolve::{Origin, StrategyKind};
+use crate::evolve::{GenerationRecord, Origin, StrategyKind};
 use crate::genome::ControllerKind;
 use crate::save::champion::note;
 use crate::save::files::{numbered, read_text, refuse_link};
-use crate::save::folder::has_generations_left;
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
-use crate::save::{
-    GenerationRecord, LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion,
-};
+use crate::save::{LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion};
 use crate::score::Fitness;
 use crate::world::PhysicsEngine;
 
@@ -208,7 +205,7 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
         Some(of) => Thumbnail::of_champion(&of.champion, of.recording.as_ref()),
         None => Thumbnail::of_trial(&plan.settings.trial),
     };
-    let is_finished = !has_generations_left(&plan, &records);
+    let is_finished = plan.has_ended(&records);
     let ended = is_finished.then(|| "all its generations are finished".to_owned());
     let settings = &plan.settings;
     // A run whose first generation is larger has fewer of them than planned.

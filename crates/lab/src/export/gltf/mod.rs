@@ -161,6 +161,7 @@ fn looking(direction: Vector) -> UnitQuaternion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::RunControl;
     use snakes_core::save::shipped_champion;
 
     /// A number at a place in little endian.
@@ -190,7 +191,8 @@ mod tests {
             note: None,
         };
         let champions = [named("a"), named("<b>\"")];
-        let progress = ExportProgress::new(&|_| (), &|| false);
+        let control = RunControl::default();
+        let progress = ExportProgress::new(&|_| (), &control);
         let bytes = scene(&champions, &progress).expect("not cancelled").expect("in memory");
         let root = json_of(&bytes);
         let names: Vec<&str> = root.nodes.iter().filter_map(|node| node.name.as_deref()).collect();
@@ -201,7 +203,8 @@ mod tests {
         assert_eq!((limbs, root.animations[0].channels.len()), (10, 20));
         let extras = root.asset.extras.expect("facts");
         assert!(extras.get().contains(&format!("{:016x}", loaded.champion.evaluation.trace_hash)));
-        let cancelled = ExportProgress::new(&|_| (), &|| true);
+        control.cancel();
+        let cancelled = ExportProgress::new(&|_| (), &control);
         assert!(matches!(scene(&champions, &cancelled), Err(ExportError::Cancelled)));
     }
 }

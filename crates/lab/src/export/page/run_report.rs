@@ -2,8 +2,8 @@
 
 use super::markup::escaped;
 use crate::export::source::ExportedRun;
-use snakes_core::evolve::{SettingChanges, fields};
-use snakes_core::save::{generations_hash, shipped_presets};
+use snakes_core::evolve::{SettingChanges, Statistics, fields, run_hash};
+use snakes_core::save::shipped_presets;
 
 /// Size of the chart, in its own units.
 const SIZE: [f32; 2] = [720.0, 260.0];
@@ -31,13 +31,14 @@ pub fn of(run: &ExportedRun) -> String {
             format!("<tr><td><code>{}</code></td><td>{}</td></tr>\n", escaped(path), escaped(value))
         })
         .collect();
-    let (finished, planned) = (run.records.len(), settings.evolution.generations);
-    let stopped = match finished < planned as usize {
-        true => format!(
-            "<p class=\"note\">Stopped after {finished} of {planned} generations. The run hash is that of these {finished}; the \
-             command computes all {planned}.</p>\n"
+    let has_ended = run.plan.has_ended(&run.records);
+    let generations = run.plan.generations_in_words(run.records.len() as u32, has_ended);
+    let stopped = match has_ended {
+        true => String::new(),
+        false => format!(
+            "<p class=\"note\">Stopped after {generations}. The run hash is that of these; the command computes the whole \
+             run.</p>\n"
         ),
-        false => String::new(),
     };
     let changes = match run.plan.changes == SettingChanges::default() {
         true => String::new(),
@@ -53,7 +54,7 @@ pub fn of(run: &ExportedRun) -> String {
          <tr><th scope=\"row\">Repeat it</th><td><code>{}</code></td></tr></table>\n{stopped}{changes}\
          <details><summary>All settings</summary><table>\n{rows}</table></details></section>\n",
         chart(run),
-        generations_hash(&run.records),
+        run_hash(&run.records),
         escaped(&command(run)),
     )
 }
@@ -106,7 +107,7 @@ fn chart(run: &ExportedRun) -> String {
     let [width, height] = [SIZE[0] - left - right, SIZE[1] - top - bottom];
     let x = |generation: f32| left + width * (generation - first) / (last - first).max(1.0);
     let y = |value: f64| top + height * (1.0 - ((value - low) / (high - low).max(1e-9)) as f32);
-    let line = |of: fn(&snakes_core::save::Statistics) -> f64, style: &str| {
+    let line = |of: fn(&Statistics) -> f64, style: &str| {
         let points = statistics.iter().map(|(generation, statistics)| {
             format!("{:.1},{:.1}", x(*generation), y(of(statistics)))
         });
@@ -140,4 +141,24 @@ fn chart(run: &ExportedRun) -> String {
             .to_owned(),
     ]
     .join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use snakes_core::evolve::{GenerationRecord, RunPlan, Settings, StrategyKind};
+
+    #[test]
+    fn r1_a_page_calls_a_run_stopped_only_if_evaluations_are_left() {
+        let mut settings = Settings::default();
+        settings.evolution.strategy = StrategyKind::CmaEs;
+        (settings.evolution.population, settings.evolution.generations) = (200, 40);
+        let mut records = vec![GenerationRecord::of_test(1, 800)];
+        records.extend((2..=37).map(|generation| GenerationRecord::of_test(generation, 200)));
+        let plan = RunPlan::new("climb", 1, settings);
+        let mut run = ExportedRun { plan, records, generations: Vec::new() };
+        assert!(!of(&run).contains("Stopped"), "800 and 36 * 200 are all of its 8,000 evaluations");
+        run.records.pop();
+        assert!(of(&run).contains("Stopped after 36 of at most 40 generations."));
+    }
 }

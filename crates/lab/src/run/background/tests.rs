@@ -4,6 +4,7 @@ use super::*;
 use crate::run::LocalPool;
 use snakes_core::evolve::{RunPlan, Settings, with_field};
 use snakes_core::save::{ExistingRun, SavesFolder};
+use snakes_core::schema::SettingValue;
 
 fn plan() -> RunPlan {
     let mut settings = Settings::default();
@@ -242,19 +243,20 @@ fn progress_counts_the_current_generation_of_any_size() {
 fn a_change_takes_effect_with_the_next_generation_and_at_once_while_held() {
     let folder = tempfile::tempdir().expect("a folder");
     let background = start(&folder);
-    let setting = |field: &str, value: &str| (format!("evolution.{field}"), value.to_owned());
+    let whole = SettingValue::Whole;
+    let setting = |field: &str, value| (format!("evolution.{field}"), value);
     background.run_single_generation();
     assert!(matches!(next(&background), RunEvent::Generation(_)));
     background.request_changes([
-        setting("halving.parents", "2"),
-        setting("halving.parents", "2"),
-        setting("halving.parents", "0"),
-        setting("strategy", "ga"),
-        setting("population", "5"),
-        setting("generations", "4"),
+        setting("halving.parents", whole(2)),
+        setting("halving.parents", whole(2)),
+        setting("halving.parents", whole(0)),
+        setting("strategy", SettingValue::Name("ga")),
+        setting("population", whole(5)),
+        setting("generations", whole(4)),
     ]);
     let mut plan_now = plan();
-    let mut assert_changed = |field: &str, value: &str| {
+    let mut assert_changed = |field: &str, value| {
         let (field, value) = setting(field, value);
         let expected = SettingChange { generation: 2, field, value };
         let RunEvent::SettingChanged { change, plan_now: changed } = next(&background) else {
@@ -270,11 +272,11 @@ fn a_change_takes_effect_with_the_next_generation_and_at_once_while_held() {
         };
         assert!(field.ends_with(of) && reason.contains(why), "{field}: {reason}");
     };
-    assert_changed("halving.parents", "2");
+    assert_changed("halving.parents", whole(2));
     assert_refused("parents", "is 0; allowed: 1 to");
     assert_refused("strategy", "another strategy cannot use");
-    assert_changed("population", "5");
-    assert_changed("generations", "4");
+    assert_changed("population", whole(5));
+    assert_changed("generations", whole(4));
     assert_eq!(background.poll(), None, "and nothing more");
     assert!(background.is_paused());
     assert_eq!(background.progress(), (0, 5));
@@ -307,7 +309,7 @@ fn a_run_in_its_last_generation_can_be_made_longer() {
         background.run_single_generation();
         assert!(matches!(next(&background), RunEvent::Generation(_)));
     }
-    background.request_changes([("evolution.generations".to_owned(), "5".to_owned())]);
+    background.request_changes([("evolution.generations".to_owned(), SettingValue::Whole(5))]);
     background.resume();
     let mut events = 0;
     while !matches!(next(&background), RunEvent::Finished { .. }) {

@@ -3,8 +3,18 @@
 use std::borrow::Cow;
 
 use super::Experiment;
-use snakes_core::check::{Invalid, within};
+use snakes_core::check::Invalid;
 use snakes_core::evolve::{RunPlan, SettingChange, Settings};
+use snakes_core::schema::SettingValue;
+
+/// A change that was checked, to be recorded and applied before the next generation begins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProposedChange {
+    /// The change.
+    pub change: SettingChange,
+    /// The plan of the next generation with it.
+    plan: RunPlan,
+}
 
 impl Experiment {
     /// The settings of the next generation.
@@ -34,8 +44,8 @@ impl Experiment {
         plan
     }
 
-    /// The change of a setting from the next generation on that a user asks for; none if it changes nothing. This
-    /// only checks it: see [`Self::apply_change`].
+    /// The change of a setting, by its full dotted name, from the next generation on that a user asks for; none if it
+    /// changes nothing. This only checks it: see [`Self::apply_change`].
     ///
     /// # Errors
     /// The setting may not change during a run, its value is not allowed, or an earlier change has not taken effect
@@ -43,8 +53,8 @@ impl Experiment {
     pub fn propose_change(
         &self,
         field: &str,
-        text: &str,
-    ) -> Result<Option<SettingChange>, Invalid> {
+        value: SettingValue,
+    ) -> Result<Option<ProposedChange>, Invalid> {
         let next = self.finished + 1;
         if let Some(later) = self.ahead.iter().find(|change| change.generation > next) {
             let later = later.generation;
@@ -52,28 +62,23 @@ impl Experiment {
                 format!("none before generation {later}, for which a change is already recorded");
             return Err(Invalid::new("changed setting", format!("{field:?}"), allowed));
         }
-        self.next_plan().proposed(next, field, text)
+        let change = SettingChange { generation: next, field: field.to_owned(), value };
+        let plan = self.next_plan().changed(&change)?;
+        Ok(plan.map(|plan| ProposedChange { change, plan }))
     }
 
-    /// Applies a proposed change, which takes effect with the next generation. Known evaluations of that generation
-    /// were made under the old setting and are dropped.
-    ///
-    /// # Errors
-    /// As [`Self::propose_change`]; nothing is changed then.
-    pub fn apply_change(&mut self, change: &SettingChange) -> Result<(), Invalid> {
-        let next = self.finished + 1;
-        within("generation", change.generation, next..=next)?;
+    /// Applies the change that was proposed last, which takes effect with the next generation. Known evaluations of that
+    /// generation were made under the old setting and are dropped.
+    pub fn apply_change(&mut self, proposed: ProposedChange) {
         self.apply_due_changes();
-        self.adopt(change)?;
+        self.adopt(proposed.plan);
         self.known.clear();
-        Ok(())
     }
 
-    fn adopt(&mut self, change: &SettingChange) -> Result<(), Invalid> {
-        self.plan.change(change)?;
+    fn adopt(&mut self, plan: RunPlan) {
+        self.plan = plan;
         self.strategy.apply_settings(&self.plan);
         self.asked.take();
-        Ok(())
     }
 
     /// Applies the recorded changes of the next generation.
@@ -81,8 +86,10 @@ impl Experiment {
         let next = self.finished + 1;
         // One by one, as they were made: changing a setting there and back differs from not changing it.
         while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
+            let mut plan = self.plan.clone();
             // All were checked before.
-            let _ = self.adopt(&change);
+            let _ = plan.change(&change);
+            self.adopt(plan);
         }
     }
 }

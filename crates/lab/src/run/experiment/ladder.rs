@@ -1,8 +1,7 @@
 //! The ladder of a run: which rise its next generation has.
 
 use snakes_core::check::Invalid;
-use snakes_core::evolve::{LadderSettings, Settings};
-use snakes_core::save::{GenerationRecord, Rung};
+use snakes_core::evolve::{GenerationRecord, LadderSettings, Rung, Settings};
 use snakes_core::score::{Evaluation, ExamEnd, Trial};
 
 /// The place on a ladder, between two generations.

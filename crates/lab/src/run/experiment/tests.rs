@@ -98,7 +98,7 @@ fn an_evaluation_that_panics_is_void_and_counted_and_its_genome_kept() {
     let champion = healthy.champion.expect("one is healthy");
     let evaluator = TestEvaluator { fails_on: champion.genome.clone(), leaves_out: usize::MAX };
     let report = experiment.run_generation(&evaluator, &control).expect("not cancelled");
-    assert_eq!((report.crashed, report.disqualified), (1, healthy.disqualified + 1));
+    assert_eq!((report.crashed, report.disqualified), (1, healthy.record.disqualified + 1));
     let crash = report.crashes.first().expect("reported");
     assert_eq!(crash.individual.genome, champion.genome);
     assert_eq!(crash.individual.origin, champion.origin);

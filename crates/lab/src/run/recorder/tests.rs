@@ -87,7 +87,7 @@ fn the_species_of_all_generations_are_there_after_a_resume() {
     let evaluator = LocalPool::new(1).expect("threads");
     while !experiment.is_over() {
         let report = experiment.run_generation(&evaluator, &RunControl::default());
-        expected.push(report.expect("not cancelled").species);
+        expected.push(report.expect("not cancelled").record.species);
     }
     assert!(expected.iter().all(|of| of.iter().map(|species| species.size).sum::<u32>() == 8));
     assert!(expected.iter().any(|of| of.len() > 1), "{expected:?}");
@@ -261,6 +261,17 @@ fn changing_plan(strategy: StrategyKind) -> RunPlan {
     plan
 }
 
+/// Changes a setting of a recorded run, by its full dotted name, to the value that a text says.
+fn change(
+    run: &mut RecordedRun,
+    field: &str,
+    text: &str,
+) -> Result<Option<SettingChange>, ChangeError> {
+    let next = run.experiment.finished() + 1;
+    let value = run.experiment.next_plan().change_of_text(next, field, text)?.value;
+    run.recorder.change_setting(&mut run.experiment, field, value)
+}
+
 /// Evolves a recorded run to its end or to the end of a generation, and makes those changes that it does not have
 /// yet.
 fn evolve_changing(run: &mut RecordedRun, changes: &[PlannedChange], last: u32) {
@@ -269,8 +280,7 @@ fn evolve_changing(run: &mut RecordedRun, changes: &[PlannedChange], last: u32) 
         for (_, field, value) in changes.iter().filter(|(of, _, _)| *of == next) {
             let field = format!("evolution.{field}");
             let known = run.recorder.changes().iter().any(|known| known.field == field);
-            let made =
-                run.recorder.change_setting(&mut run.experiment, &field, value).expect("allowed");
+            let made = change(run, &field, value).expect("allowed");
             assert_ne!(made.is_some(), known, "made once: {field}");
         }
         evolve(run, 1);
@@ -288,7 +298,7 @@ fn a_setting_changed_there_and_back_has_the_same_effect_after_a_resume() {
         evolve(&mut run, 1);
         for parents in ["1", "4"] {
             let field = "evolution.halving.parents";
-            run.recorder.change_setting(&mut run.experiment, field, parents).expect("allowed");
+            change(&mut run, field, parents).expect("allowed");
         }
         if is_stopped {
             drop(run);
@@ -326,10 +336,7 @@ fn a_changed_run_stopped_after_any_generation_continues_bit_for_bit() {
             assert_eq!(again.reports.len() as u32, stop);
             for (_, field, value) in changes.iter().filter(|(of, _, _)| *of == stop + 1) {
                 let field = format!("evolution.{field}");
-                again
-                    .recorder
-                    .change_setting(&mut again.experiment, &field, value)
-                    .expect("allowed");
+                change(&mut again, &field, value).expect("allowed");
             }
             drop(again);
             let mut again = source(saves.path()).open("a test").expect("opened");
@@ -361,7 +368,7 @@ fn a_changed_run_without_its_latest_checkpoints_repeats_its_changes_at_their_gen
         assert_eq!(again.reports.len(), 1);
         let later = changes.iter().any(|(generation, _, _)| *generation > 2);
         let field = "evolution.generations";
-        let refused = again.recorder.change_setting(&mut again.experiment, field, "30").err();
+        let refused = change(&mut again, field, "30").err();
         assert_eq!(refused.is_some(), later, "{strategy}: nothing before what is ahead");
         if refused.is_some() {
             evolve(&mut again, 30);
@@ -377,10 +384,7 @@ fn a_finished_run_can_be_made_longer() {
     evolve(&mut run, 9);
     assert!(run.experiment.is_over());
     let field = "evolution.generations";
-    run.recorder
-        .change_setting(&mut run.experiment, field, "8")
-        .expect("allowed")
-        .expect("a change");
+    change(&mut run, field, "8").expect("allowed").expect("a change");
     assert!(!run.experiment.is_over());
     drop(run);
     let mut again = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
@@ -404,7 +408,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
         .open("a test")
         .expect("opened");
     evolve(&mut straight, 1);
-    straight.recorder.change_setting(&mut straight.experiment, field, "700").expect("allowed");
+    change(&mut straight, field, "700").expect("allowed");
     evolve(&mut straight, 1);
     // A run with saved evaluations of another second generation.
     let mut run = source.clone().open("a test").expect("opened");
@@ -433,7 +437,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
     drop(run);
     // They are known after opening and dropped by the change, also when their file is restored.
     let mut run = source.clone().open("a test").expect("opened");
-    run.recorder.change_setting(&mut run.experiment, field, "700").expect("allowed");
+    change(&mut run, field, "700").expect("allowed");
     drop(run);
     fs::write(folder.join(notes), of_before).expect("written");
     let mut run = source.open("a test").expect("opened");
@@ -447,7 +451,7 @@ fn a_run_whose_changes_were_edited_is_refused() {
     let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
     evolve(&mut run, 1);
     let field = "evolution.halving.parents";
-    run.recorder.change_setting(&mut run.experiment, field, "2").expect("allowed");
+    change(&mut run, field, "2").expect("allowed");
     evolve(&mut run, 2);
     let file = run.recorder.folder().join("changes.jsonl");
     drop(run);

@@ -16,15 +16,16 @@ fn plan(strategy: StrategyKind) -> RunPlan {
     RunPlan::new("test", 1, settings)
 }
 
-fn change(generation: u32, field: &str, value: &str) -> SettingChange {
-    let (field, value) = (format!("evolution.{field}"), value.to_owned());
-    SettingChange { generation, field, value }
+/// Makes the change of a setting below `evolution` to the value that a text says.
+fn change(plan: &mut RunPlan, generation: u32, field: &str, text: &str) -> Result<(), Invalid> {
+    let change = plan.change_of_text(generation, &format!("evolution.{field}"), text)?;
+    plan.change(&change)
 }
 
 fn changed(plan: &RunPlan, changes: &[(u32, &str, &str)]) -> RunPlan {
     let mut plan = plan.clone();
     for (generation, field, value) in changes {
-        plan.change(&change(*generation, field, value)).expect("allowed");
+        change(&mut plan, *generation, field, value).expect("allowed");
     }
     plan
 }
@@ -303,11 +304,11 @@ fn refused_changes_leave_the_plan_as_it_was() {
             "changed setting is \"evolution.ga.elites\"; allowed: a setting that may change during a run (takes effect with the next run, because the current run",
         ),
     ] {
-        let error = plan.change(&change(generation, field, value)).expect_err("refused");
+        let error = change(&mut plan, generation, field, value).expect_err("refused");
         assert!(error.to_string().starts_with(complaint), "{error}");
         assert_eq!(plan, before);
     }
-    let long = plan.change(&change(4, "population", &"1".repeat(100_000))).expect_err("refused");
+    let long = change(&mut plan, 4, "population", &"1".repeat(100_000)).expect_err("refused");
     assert!(long.to_string().len() < 200, "{long}");
 }
 
@@ -315,8 +316,10 @@ fn refused_changes_leave_the_plan_as_it_was() {
 fn a_change_stores_the_canonical_value_and_no_change_is_none() {
     let plan = plan(StrategyKind::Halving);
     let field = "evolution.halving.mutation_range_nm";
-    let proposed = plan.proposed(3, field, "5e1").expect("allowed").expect("a change");
-    assert_eq!((proposed.generation, &*proposed.value), (3, "50"));
-    assert_eq!(plan.proposed(3, field, "100.0"), Ok(None));
-    assert!(plan.proposed(3, "mutation_range_nm", "50").is_err(), "by its full name only");
+    let of_text = |text| plan.change_of_text(3, field, text).expect("allowed");
+    let change = of_text("5e1");
+    assert_eq!((change.generation, &*change.value.to_string()), (3, "50"));
+    assert!(plan.changed(&change).expect("allowed").is_some());
+    assert_eq!(plan.changed(&of_text("100.0")), Ok(None));
+    assert!(plan.change_of_text(3, "mutation_range_nm", "50").is_err(), "by its full name only");
 }

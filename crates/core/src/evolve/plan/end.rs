@@ -1,0 +1,91 @@
+//! What limits a run, and whether it has ended.
+//!
+//! A run has two limits: its number of generations, and as many evaluations as that many generations of its population
+//! have ([`RunPlan::budget`]). Generations of some strategies are larger than the population, as the first one of CMA-ES
+//! is. Such a run ends when its evaluations are spent, after fewer generations.
+
+use super::RunPlan;
+use crate::evolve::generation::GenerationRecord;
+use crate::evolve::settings::StrategyKind;
+
+impl RunPlan {
+    /// Whether a run ends after so many finished generations with so many evaluations, if the next generation has `next`
+    /// individuals.
+    pub fn is_over(&self, finished: u32, evaluated: u64, next: u64) -> bool {
+        finished >= self.settings.evolution.generations || evaluated + next > self.budget()
+    }
+
+    /// Whether a run has ended with the finished generations of its log.
+    pub fn has_ended(&self, records: &[GenerationRecord]) -> bool {
+        let evaluated = records.iter().map(|record| u64::from(record.evaluations)).sum();
+        let next = records.last().map_or(0, |last| self.least_after(last.evaluations.into()));
+        self.is_over(records.len() as u32, evaluated, next)
+    }
+
+    /// The least number of individuals in the generation after one of `last` individuals.
+    fn least_after(&self, last: u64) -> u64 {
+        let evolution = &self.settings.evolution;
+        match evolution.strategy {
+            // Generations of islands shrink, to two islands in the end.
+            StrategyKind::Islands => last.min(2 * u64::from(evolution.islands.candidates)),
+            // Those with stairs vary; only the state of the strategy says what comes next.
+            kind if kind.info().evolves_stairs => 1,
+            kind if kind.info().is_budget_driven => last,
+            _ => 0,
+        }
+    }
+
+    /// The number of generations in words: "40", or "at most 40" if larger generations may make it smaller.
+    pub fn most_generations_in_words(&self) -> String {
+        let evolution = &self.settings.evolution;
+        let at_most = if evolution.strategy.info().is_budget_driven { "at most " } else { "" };
+        format!("{at_most}{}", evolution.generations)
+    }
+
+    /// The finished generations of a run in words: "37 of at most 40 generations". Once it has ended, "40 of 40 generations",
+    /// or "37 generations" if these spent its evaluations.
+    pub fn generations_in_words(&self, finished: u32, has_ended: bool) -> String {
+        match (has_ended, self.settings.evolution.generations) {
+            (true, planned) if finished < planned => format!("{finished} generations"),
+            (true, planned) => format!("{finished} of {planned} generations"),
+            (false, _) => format!("{finished} of {} generations", self.most_generations_in_words()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evolve::Settings;
+
+    fn plan(strategy: StrategyKind) -> RunPlan {
+        let mut settings = Settings::default();
+        (settings.evolution.strategy, settings.evolution.population) = (strategy, 200);
+        settings.evolution.generations = 40;
+        RunPlan::new("test", 1, settings)
+    }
+
+    #[test]
+    fn r1_a_run_whose_evaluations_are_spent_has_ended() {
+        let plan = plan(StrategyKind::CmaEs);
+        // A first generation of 800 and 36 of 200 spend the 8,000 evaluations of forty generations of 200.
+        let mut records = vec![GenerationRecord::of_test(1, 800)];
+        records.extend((2..=36).map(|generation| GenerationRecord::of_test(generation, 200)));
+        assert!(!plan.has_ended(&records));
+        assert_eq!(plan.generations_in_words(36, false), "36 of at most 40 generations");
+        records.push(GenerationRecord::of_test(37, 200));
+        assert!(plan.has_ended(&records));
+        assert_eq!(plan.generations_in_words(37, true), "37 generations");
+    }
+
+    #[test]
+    fn a_run_of_equal_generations_has_as_many_as_its_plan_says() {
+        let plan = plan(StrategyKind::Halving);
+        let records: Vec<_> = (1..=40).map(|of| GenerationRecord::of_test(of, 200)).collect();
+        assert_eq!(
+            [0, 1, 39, 40].map(|of| plan.has_ended(&records[..of])),
+            [false, false, false, true]
+        );
+        assert_eq!(plan.generations_in_words(39, false), "39 of 40 generations");
+    }
+}

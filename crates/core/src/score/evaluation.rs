@@ -1,0 +1,79 @@
+//! The result of a rollout.
+
+use serde::{Deserialize, Serialize};
+
+use super::behaviour::Behaviour;
+use super::fitness::FITNESS_RANGE;
+use crate::check::{Invalid, hex_hash, within};
+use crate::world::{Disqualification, Effort, Stairs};
+
+/// The result of a rollout.
+///
+/// Files state a disqualification beside it, if at all.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evaluation {
+    /// The fitness by the trial's measure: see [`Fitness`](super::Fitness) for the unit. For a disqualified agent, the fitness
+    /// after its last healthy step.
+    pub fitness: f32,
+    /// y of the middle limb's centre at the end, in metres, for every measure of fitness.
+    pub centre_y_m: f32,
+    /// The reason of the disqualification, if there was one.
+    #[serde(skip)]
+    pub disqualified: Option<Disqualification>,
+    /// Healthy physics steps taken.
+    pub steps: u32,
+    /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
+    /// one included. Files have its 16 hexadecimal digits.
+    #[serde(with = "hex_hash")]
+    pub trace_hash: u64,
+    /// Energy, speeds and distances over these steps. `None` in records from before they were measured.
+    pub effort: Option<Effort>,
+    /// Measures of the motion. `None` in records from before they were measured.
+    pub behaviour: Option<Behaviour>,
+}
+
+impl Evaluation {
+    /// A healthy evaluation with this fitness, for tests.
+    pub fn of_fitness(fitness: f32) -> Self {
+        Self {
+            fitness,
+            centre_y_m: fitness,
+            disqualified: None,
+            trace_hash: 0,
+            steps: 1,
+            effort: None,
+            behaviour: None,
+        }
+    }
+
+    /// Checks every value that was read from a file.
+    ///
+    /// # Errors
+    /// The first that is not allowed.
+    pub fn check(&self) -> Result<(), Invalid> {
+        within("fitness", self.fitness, FITNESS_RANGE)?;
+        within("centre_y_m", self.centre_y_m, -1.0e6..=1.0e6)?;
+        let effort = self.effort.map_or(Ok(()), Effort::check);
+        effort.map_err(|error| error.inside("effort"))?;
+        let behaviour = self.behaviour.map_or(Ok(()), Behaviour::check);
+        behaviour.map_err(|error| error.inside("behaviour"))
+    }
+
+    /// Whether both have the same bits. A value that one of them lacks is not compared.
+    pub fn agrees_with(&self, other: &Self) -> bool {
+        fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
+            a.is_none() || b.is_none() || a == b
+        }
+        let bare = |evaluation: &Self| Self { effort: None, behaviour: None, ..*evaluation };
+        bare(self) == bare(other)
+            && agree(self.effort, other.effort)
+            && agree(self.behaviour, other.behaviour)
+    }
+
+    /// Whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
+    pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
+        let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
+        self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps
+    }
+}
