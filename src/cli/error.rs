@@ -113,8 +113,7 @@ impl From<Invalid> for CliError {
 impl From<SaveError> for CliError {
     fn from(error: SaveError) -> Self {
         match error {
-            SaveError::UnknownPreset(invalid) => of_flag("--preset")(invalid).into(),
-            SaveError::UnknownStairs(invalid) => of_flag("--stairs")(invalid).into(),
+            SaveError::Unknown(invalid) => of_flag(&format!("--{}", invalid.field))(invalid).into(),
             SaveError::Study(invalid) => invalid.into(),
             other => Self::Headless(other.into()),
         }

@@ -85,12 +85,9 @@ pub enum SaveError {
         /// The folder.
         path: PathBuf,
     },
-    /// No preset and no file has this name.
+    /// No built-in preset or stairs and no file have this name; the field says which of them.
     #[error("{0}")]
-    UnknownPreset(Invalid),
-    /// No built-in stairs and no file have this name.
-    #[error("{0}")]
-    UnknownStairs(Invalid),
+    Unknown(Invalid),
     /// A study does not exist, or has a value that is not allowed.
     #[error("{0}")]
     Study(Invalid),

@@ -22,7 +22,7 @@ pub use details::{
     ChampionDetails, EntryDetails, RunDetails, load_entry, read_entry, shipped_champions,
 };
 pub use list::{LibraryEntry, SavePlace, list};
-pub use name::{MAX_NAME_CHARS, check_entry_name, plain_name};
+pub use name::{check_entry_name, plain_name};
 pub use notes::{read_notes, set_notes_text};
 pub use problem::EntryProblem;
 pub use thumbnail::Thumbnail;

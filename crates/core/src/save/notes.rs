@@ -16,7 +16,7 @@ use crate::check::{Invalid, quoted};
 const KIND: &str = "snakes-and-stairs notes";
 const FORMAT: u32 = 1;
 /// Maximum length of a run's name, in characters.
-const MAX_NAME_CHARS: usize = 100;
+pub const MAX_NAME_CHARS: usize = 100;
 /// Maximum length of notes, in characters: a page of text.
 const MAX_NOTES_CHARS: usize = 4000;
 /// Maximum size of the file, in MiB.

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::files::{embedded_names, read_bytes, refuse_link, text_of};
+use super::files::{embedded_names, read_bytes, read_text, refuse_link, text_of};
 use super::whole_file::{prepare_folder, write_new};
 use super::{Preset, SaveError, SavesFolder};
 use crate::check::{self, Invalid};
@@ -17,6 +17,8 @@ pub trait OwnKind: Clone {
     const FOLDER: &'static str;
     /// One of them, in messages: "preset".
     const WORD: &'static str;
+    /// The field and the flag that name one: "preset".
+    const FIELD: &'static str;
 
     /// The built-in files: each with its name and text.
     const EMBEDDED: &'static [(&'static str, &'static str)];
@@ -49,6 +51,24 @@ pub trait OwnKind: Clone {
     /// # Errors
     /// It cannot be written as text.
     fn text(&self, path: &Path) -> Result<String, SaveError>;
+}
+
+/// Loads one by the name of a built-in one, or by the path of a file.
+///
+/// # Errors
+/// There is no such name and no such file, or a value in the file is not allowed.
+pub(super) fn load_named<T: OwnKind>(name_or_path: &str) -> Result<T, SaveError> {
+    let built_in = T::built_in()?.into_iter().find(|of| of.name() == name_or_path);
+    let path = Path::new(name_or_path);
+    match built_in {
+        Some(built_in) => Ok(built_in),
+        None if path.exists() => T::parse(path, &read_text(path)?),
+        None => {
+            let allowed = format!("{}, or a file", T::built_in_names().join(", "));
+            let unknown = Invalid::new(T::FIELD, format!("{name_or_path:?}"), allowed);
+            Err(SaveError::Unknown(unknown))
+        }
+    }
 }
 
 /// A file in the folder of the user's own files of a kind.

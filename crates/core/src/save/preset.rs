@@ -1,10 +1,10 @@
 //! Presets: named and described settings, as RON. The shipped ones are embedded in the program.
 
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::files::{check_format, embedded, parse, pretty, read_text, store_ron};
-use super::own_files::OwnKind;
+use super::files::{check_format, embedded, parse, pretty, store_ron};
+use super::own_files::{OwnKind, load_named};
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
@@ -83,17 +83,7 @@ pub fn shipped_preset_names() -> Vec<&'static str> {
 /// # Errors
 /// There is no such preset or file, or a value in it is not allowed.
 pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
-    let shipped = shipped_presets()?;
-    if let Some(preset) = shipped.iter().find(|preset| preset.name == name_or_path) {
-        return Ok(preset.clone());
-    }
-    let path = PathBuf::from(name_or_path);
-    if path.exists() {
-        return parse_preset(&path, &read_text(&path)?);
-    }
-    let names: Vec<&str> = shipped.iter().map(|preset| preset.name.as_str()).collect();
-    let allowed = format!("{}, or a file", names.join(", "));
-    Err(SaveError::UnknownPreset(Invalid::new("preset", format!("{name_or_path:?}"), allowed)))
+    load_named(name_or_path)
 }
 
 /// Writes a preset as readable text, atomically.
@@ -107,6 +97,7 @@ pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
 impl OwnKind for Preset {
     const FOLDER: &'static str = "presets";
     const WORD: &'static str = "preset";
+    const FIELD: &'static str = "preset";
     const EMBEDDED: &'static [(&'static str, &'static str)] = SHIPPED;
 
     fn name(&self) -> &str {

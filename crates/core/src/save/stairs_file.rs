@@ -1,12 +1,12 @@
 //! Staircases as files: named and described, as RON. The built-in ones are embedded in the program.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
-use super::files::{Header, embedded, parse, pretty, read_text};
-use super::own_files::OwnKind;
+use super::files::{Header, embedded, parse, pretty};
+use super::own_files::{OwnKind, load_named};
 use crate::check::{self, Invalid, quoted, within};
 use crate::schema;
 use crate::world::Stairs;
@@ -68,16 +68,7 @@ pub fn built_in_stairs_names() -> Vec<&'static str> {
 /// # Errors
 /// There are no such stairs and no such file, or a value in it is not allowed.
 pub fn load_stairs(name_or_path: &str) -> Result<NamedStairs, SaveError> {
-    let built_in = built_in_stairs()?;
-    if let Some(stairs) = built_in.iter().find(|stairs| stairs.name == name_or_path) {
-        return Ok(stairs.clone());
-    }
-    let path = PathBuf::from(name_or_path);
-    if path.exists() {
-        return parse_stairs(&path, &read_text(&path)?);
-    }
-    let allowed = format!("{}, or a file", built_in_stairs_names().join(", "));
-    Err(SaveError::UnknownStairs(Invalid::new("stairs", format!("{name_or_path:?}"), allowed)))
+    load_named(name_or_path)
 }
 
 /// Whether a text is that of stairs, perhaps damaged, and not of a champion or another file.
@@ -88,6 +79,7 @@ pub fn is_stairs_file(text: &str) -> bool {
 impl OwnKind for NamedStairs {
     const FOLDER: &'static str = "stairs";
     const WORD: &'static str = "staircase";
+    const FIELD: &'static str = "stairs";
     const EMBEDDED: &'static [(&'static str, &'static str)] = BUILT_IN;
 
     fn name(&self) -> &str {

@@ -303,9 +303,7 @@ impl SuiteResult {
             each,
         }
     }
-}
 
-impl SuiteResult {
     /// The result of the starts in the own engine, followed by the same starts in the other: of the latter, but with the share of
     /// the way from the same start in the own engine, over those from which there is a way.
     fn between_engines(ends: &[ExamEnd]) -> Self {

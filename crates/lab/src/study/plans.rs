@@ -20,7 +20,7 @@ impl Study {
     pub fn plan(&self, arm: &Arm, seed: u64) -> Result<RunPlan, SaveError> {
         let preset = load_preset(arm.preset.as_ref().unwrap_or(&self.preset));
         let mut preset = preset.map_err(|error| match error {
-            SaveError::UnknownPreset(invalid) => {
+            SaveError::Unknown(invalid) => {
                 SaveError::Study(Invalid { field: format!("preset of {}", arm.name), ..invalid })
             }
             other => other,

@@ -34,9 +34,8 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                 // A later restart must not discard the run again.
                 run.source.earlier = ExistingRun::Keep;
                 run.discarded = None;
-                let generations = run.settings().evolution.generations;
-                let last = behind.last().filter(|last| last.generation < generations);
-                if let Some(last) = last {
+                let has_ended = run.plan_now.has_ended(behind.iter().map(|report| &report.record));
+                if let Some(last) = behind.last().filter(|_| !has_ended) {
                     notices
                         .info(format!("The run continues after generation {}.", last.generation));
                 }

@@ -16,10 +16,14 @@ impl RunPlan {
     }
 
     /// Whether a run has ended with the finished generations of its log.
-    pub fn has_ended(&self, records: &[GenerationRecord]) -> bool {
-        let evaluated = records.iter().map(|record| u64::from(record.evaluations)).sum();
-        let next = records.last().map_or(0, |last| self.least_after(last.evaluations.into()));
-        self.is_over(records.len() as u32, evaluated, next)
+    pub fn has_ended<'a>(&self, log: impl IntoIterator<Item = &'a GenerationRecord>) -> bool {
+        let (mut finished, mut evaluated, mut next) = (0, 0, 0);
+        for record in log {
+            let evaluations = u64::from(record.evaluations);
+            (finished, evaluated) = (finished + 1, evaluated + evaluations);
+            next = self.least_after(evaluations);
+        }
+        self.is_over(finished, evaluated, next)
     }
 
     /// The least number of individuals in the generation after one of `last` individuals.

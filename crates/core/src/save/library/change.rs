@@ -4,14 +4,14 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::details::{text_of_file, text_of_shipped};
+use super::details::{path_in_errors, text_of_champion};
 use super::list::SavePlace;
 use super::moving::{move_entry, taken};
 use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
-use super::notes::{copy_notes, name_run, set_notes};
+use super::notes::{add_copy, name_run, set_notes};
 use crate::check::Invalid;
 use crate::save::lock::Lock;
-use crate::save::whole_file::{prepare_folder, write_new};
+use crate::save::whole_file::prepare_folder;
 use crate::save::{EntryNotes, SaveError, SavesFolder};
 
 /// Folder for deleted entries within a folder of saves.
@@ -114,24 +114,14 @@ pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
 /// # Errors
 /// The entry is a run; the file cannot be read, or the copy cannot be written.
 pub fn duplicate(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveError> {
-    let text = match place {
-        SavePlace::Shipped(name) => text_of_shipped(name)?.to_owned(),
-        SavePlace::Champion(path) => text_of_file(path)?,
-        SavePlace::Run(_) => {
-            return Err(refused(place, "only a champion's file can be duplicated"));
-        }
-    };
+    let text = text_of_champion(place)?;
     // Only if needed: preparing writes a file to test the folder, which is slow for ten thousand copies.
     if !saves.path().is_dir() {
         saves.prepare()?;
     }
     let name = shortened(&place.name(), " copy");
     let path = free_path(saves.path(), &name, Some(ENDING));
-    write_new(&path, text.as_bytes())?;
-    if let Some(from) = place.path() {
-        copy_notes(from, &path);
-    }
-    Ok(FileStep::Added { path })
+    add_copy(&text, place.path(), path)
 }
 
 /// Deletes an entry: moves it into a hidden folder of the saves, or of its own folder if that is on another disk.
@@ -163,9 +153,7 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     if !bin.path().is_dir() {
         prepare_folder(bin.path())?;
     }
-    let name = path.file_stem().filter(|_| !is_folder).or(path.file_name()).unwrap_or_default();
-    let ending = path.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
-    let kept = free_path(bin.path(), &name.to_string_lossy(), ending.as_deref());
+    let kept = free_path_like(path, is_folder, bin.path());
     if cfg!(windows) {
         // Windows cannot move a folder in which a file is open.
         drop(lock);
@@ -177,17 +165,22 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     Ok(FileStep::Deleted { from: path.to_owned(), kept })
 }
 
+/// A free path in `folder` for an entry with the name of `path`.
+fn free_path_like(path: &Path, is_folder: bool, folder: &Path) -> PathBuf {
+    let name = path.file_stem().filter(|_| !is_folder).or(path.file_name()).unwrap_or_default();
+    let ending = path.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
+    free_path(folder, &name.to_string_lossy(), ending.as_deref())
+}
+
 /// Moves a deleted entry back; under the next free name if its own is taken by now.
 fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
     let folder = wanted.parent().unwrap_or(Path::new("."));
     let is_folder = kept.is_dir();
-    let name = wanted.file_stem().filter(|_| !is_folder).or(wanted.file_name()).unwrap_or_default();
-    let ending = wanted.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
     let is_free = |path: &Path| path.symlink_metadata().is_err();
     let to = if is_free(wanted) && (is_folder || is_free(&notes_beside(wanted))) {
         wanted.to_owned()
     } else {
-        free_path(folder, &name.to_string_lossy(), ending.as_deref())
+        free_path_like(wanted, is_folder, folder)
     };
     move_entry(kept, &to)?;
     Ok(FileStep::Restored { wanted: wanted.to_owned(), to })
@@ -200,7 +193,7 @@ fn refused(place: &SavePlace, allowed: &str) -> SaveError {
         SavePlace::Run(_) => "a run",
     };
     let source = Invalid::new("entry", found, allowed);
-    SaveError::Invalid { path: place.path().unwrap_or(Path::new(&place.name())).to_owned(), source }
+    SaveError::Invalid { path: path_in_errors(place), source }
 }
 
 #[cfg(test)]
@@ -256,7 +249,7 @@ mod tests {
             let message = result.expect_err("refused").to_string();
             assert!(message.contains(words), "{message}");
         };
-        says(duplicate(&saves, &run), "only a champion's file can be duplicated");
+        says(duplicate(&saves, &run), "entry is a run; allowed: a champion's file");
         says(rename(&shipped, "other"), "entry is built-in");
         says(delete(&saves, &shipped), "a champion's file or a run's folder");
     }

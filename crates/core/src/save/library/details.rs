@@ -1,6 +1,6 @@
 //! The contents of a library entry: read one entry at a time, checked, never simulated.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::list::SavePlace;
 use super::shipped::{SHIPPED, shipped_text};
@@ -93,12 +93,8 @@ pub struct RunDetails {
 /// The entry is unreadable, too large, damaged, a link, of another kind or format, or has a value out of range.
 pub fn read_entry(place: &SavePlace) -> Result<EntryDetails, SaveError> {
     match place {
-        SavePlace::Shipped(name) => {
-            let text = text_of_shipped(name)?;
-            champion(Path::new(name), text)
-        }
-        SavePlace::Champion(path) => champion(path, &text_of_file(path)?),
         SavePlace::Run(folder) => run(folder),
+        SavePlace::Shipped(_) | SavePlace::Champion(_) => champion(place),
     }
 }
 
@@ -108,10 +104,7 @@ pub fn read_entry(place: &SavePlace) -> Result<EntryDetails, SaveError> {
 /// As for [`read_entry`]; or the run has no champion yet.
 pub fn load_entry(place: &SavePlace) -> Result<(LoadedChampion, Option<u32>), SaveError> {
     match place {
-        SavePlace::Shipped(name) => {
-            Ok((parse_champion(Path::new(name), text_of_shipped(name)?)?, None))
-        }
-        SavePlace::Champion(path) => Ok((parse_champion(path, &text_of_file(path)?)?, None)),
+        SavePlace::Shipped(_) | SavePlace::Champion(_) => Ok((loaded_champion(place)?.0, None)),
         SavePlace::Run(folder) => {
             let EntryDetails::Run(details) = run(folder)? else { return Err(no_champion(folder)) };
             let best = details.best.map(|(generation, _)| generation);
@@ -137,11 +130,30 @@ fn no_champion(folder: &Path) -> SaveError {
     SaveError::Unreadable { path: folder.to_owned(), source }
 }
 
-pub fn text_of_shipped(name: &str) -> Result<&'static str, SaveError> {
-    shipped_text(name).ok_or_else(|| SaveError::Invalid {
-        path: name.into(),
-        source: Invalid::new("name", format!("{name:?}"), "the name of a built-in champion"),
-    })
+/// The text of a champion.
+///
+/// # Errors
+/// Its file cannot be read or is a link, or the entry is a run.
+pub fn text_of_champion(place: &SavePlace) -> Result<String, SaveError> {
+    let name = || format!("{:?}", place.name());
+    let invalid = |source| SaveError::Invalid { path: path_in_errors(place), source };
+    match place {
+        SavePlace::Champion(path) => text_of_file(path),
+        SavePlace::Shipped(shipped) => shipped_text(shipped).map(str::to_owned).ok_or_else(|| {
+            invalid(Invalid::new("name", name(), "the name of a built-in champion"))
+        }),
+        SavePlace::Run(_) => Err(invalid(Invalid::new("entry", "a run", "a champion's file"))),
+    }
+}
+
+/// The path of an entry in errors; of a part of the program, its name.
+pub fn path_in_errors(place: &SavePlace) -> PathBuf {
+    place.path().map_or_else(|| place.name().into(), Path::to_owned)
+}
+
+fn loaded_champion(place: &SavePlace) -> Result<(LoadedChampion, String), SaveError> {
+    let text = text_of_champion(place)?;
+    Ok((parse_champion(&path_in_errors(place), &text)?, text))
 }
 
 /// The text of a champion's file, unless it is a link.
@@ -150,8 +162,8 @@ pub fn text_of_file(path: &Path) -> Result<String, SaveError> {
     read_text(path)
 }
 
-fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
-    let loaded = parse_champion(path, text)?;
+fn champion(place: &SavePlace) -> Result<EntryDetails, SaveError> {
+    let (loaded, text) = loaded_champion(place)?;
     let champion = &loaded.champion;
     let evaluation = &champion.evaluation;
     let stairs = &champion.trial.stairs;
@@ -168,7 +180,7 @@ fn champion(path: &Path, text: &str) -> Result<EntryDetails, SaveError> {
         physics: champion.trial.physics.engine,
         controller: champion.genome.controller.kind(),
         exam: exam_in_words(&loaded.exam),
-        note: note(text),
+        note: note(&text),
         thumbnail: Thumbnail::of_champion(champion, loaded.recording.as_ref()),
     })))
 }

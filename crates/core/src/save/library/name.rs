@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::check::{self, Invalid};
+use crate::check::{self, Invalid, quoted};
+use crate::save::notes::{MAX_NAME_CHARS, check_run_name};
 
-/// Maximum length of a name, in characters.
-pub const MAX_NAME_CHARS: usize = 100;
 /// Maximum length of a name, in bytes: with a number and an extension it is still a valid file name on every system.
 const MAX_NAME_BYTES: usize = 200;
 /// The extension of a champion's file.
@@ -30,31 +29,20 @@ const NOT_IN_NAMES: &str = "/\\<>:\"|?*";
 /// or is the name of a device of Windows.
 pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     let invalid = |value: String, allowed: &str| Err(Invalid::new("name", value, allowed));
-    let characters = name.chars().count();
-    let start: String = name.chars().filter(|c| !c.is_control()).take(60).collect();
-    if !(1..=MAX_NAME_CHARS).contains(&characters) {
-        let allowed = format!("1 to {MAX_NAME_CHARS} characters");
-        return invalid(format!("{characters} characters long"), &allowed);
-    }
+    check_run_name(name)?;
     if name.len() > MAX_NAME_BYTES {
         let allowed = format!("up to {MAX_NAME_BYTES} bytes");
         return invalid(format!("{} bytes long", name.len()), &allowed);
     }
     if name.starts_with('.') {
-        return invalid(format!("{start:?}"), "a name that does not begin with a dot");
+        return invalid(quoted(name), "a name that does not begin with a dot");
     }
     if name.contains(|c| NOT_IN_NAMES.contains(c)) {
         let allowed = "a name without the characters / \\ < > : \" | ? *";
-        return invalid(format!("{start:?}"), allowed);
-    }
-    if name.chars().any(char::is_control) {
-        return invalid(format!("{start:?}"), "a name without line breaks and control characters");
-    }
-    if name.trim() != name {
-        return invalid(format!("{start:?}"), "a name without spaces at its ends");
+        return invalid(quoted(name), allowed);
     }
     if name.ends_with('.') {
-        return invalid(format!("{start:?}"), "a name that does not end with a dot");
+        return invalid(quoted(name), "a name that does not end with a dot");
     }
     check::no_device("name", name)
 }
@@ -144,7 +132,10 @@ mod tests {
             ),
             ("COM1", "name is \"COM1\"; allowed: a name that Windows does not keep for a device"),
             (".hidden", "name is \".hidden\"; allowed: a name that does not begin with a dot"),
-            ("a\nb", "name is \"ab\"; allowed: a name without line breaks and control characters"),
+            (
+                "a\nb",
+                "name is \"a\\nb\"; allowed: a name without line breaks and control characters",
+            ),
             (" a", "name is \" a\"; allowed: a name without spaces at its ends"),
         ] {
             assert_eq!(check_entry_name(bad).expect_err("refused").to_string(), message);

@@ -8,6 +8,7 @@ use super::name::notes_beside;
 use crate::check::Invalid;
 use crate::save::SaveError;
 use crate::save::notes::{EntryNotes, notes_in_run};
+use crate::save::whole_file::write_new;
 
 /// The file of an entry's notes; none for a part of the program.
 fn notes_path(place: &SavePlace) -> Option<PathBuf> {
@@ -62,13 +63,19 @@ pub fn set_notes_text(place: &SavePlace, text: &str) -> Result<FileStep, SaveErr
     set_notes(place, &EntryNotes { name, text: text.to_owned() })
 }
 
-/// Copies the notes of a champion's file to a copy of it. Notes that cannot be read are left behind: the copy is whole
-/// without them.
-pub fn copy_notes(from: &Path, to: &Path) {
-    let notes = read_notes(&SavePlace::Champion(from.to_owned())).unwrap_or_default();
+/// Writes a copy of a champion's file, and of the notes beside the original if that is a file. Notes that cannot be read are
+/// left behind: the copy is whole without them.
+///
+/// # Errors
+/// The path is taken, or the copy cannot be written.
+pub fn add_copy(text: &str, original: Option<&Path>, path: PathBuf) -> Result<FileStep, SaveError> {
+    write_new(&path, text.as_bytes())?;
+    let noted = original.map(|from| read_notes(&SavePlace::Champion(from.to_owned())));
+    let notes = noted.and_then(Result::ok).unwrap_or_default();
     if !notes.is_empty() {
-        let _ = set_notes(&SavePlace::Champion(to.to_owned()), &notes);
+        let _ = set_notes(&SavePlace::Champion(path.clone()), &notes);
     }
+    Ok(FileStep::Added { path })
 }
 
 #[cfg(test)]

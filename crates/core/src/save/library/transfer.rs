@@ -4,15 +4,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::change::FileStep;
-use super::details::{text_of_file, text_of_shipped};
+use super::details::{text_of_champion, text_of_file};
 use super::list::SavePlace;
 use super::moving::{move_new, taken};
 use super::name::{ENDING, free_path, plain_name};
-use super::notes::copy_notes;
+use super::notes::add_copy;
 use crate::save::files::read_bytes;
 use crate::save::lock::{LOCK_FILE, Lock, OWNER_FILE};
 use crate::save::plan::{RUN_FILE, load_plan};
-use crate::save::whole_file::{UNFINISHED, prepare_folder, write_new};
+use crate::save::whole_file::{UNFINISHED, prepare_folder};
 use crate::save::{
     KnownFiles, NamedStairs, SaveError, SavedProgress, SavesFolder, is_stairs_file, parse_champion,
     parse_stairs, run_name,
@@ -40,8 +40,7 @@ pub fn export(
     let to = to.unwrap_or(&exports);
     let text = match place {
         SavePlace::Run(run) => return export_run(run, to),
-        SavePlace::Champion(path) => text_of_file(path)?,
-        SavePlace::Shipped(name) => text_of_shipped(name)?.to_owned(),
+        SavePlace::Champion(_) | SavePlace::Shipped(_) => text_of_champion(place)?,
     };
     let is_file = !to.is_dir() && to.extension().is_some_and(|ending| ending == ENDING);
     let path = if is_file {
@@ -53,11 +52,7 @@ pub fn export(
         prepare_folder(to)?;
         free_path(to, &place.name(), Some(ENDING))
     };
-    write_new(&path, text.as_bytes())?;
-    if let Some(from) = place.path() {
-        copy_notes(from, &path);
-    }
-    Ok(FileStep::Added { path })
+    add_copy(&text, place.path(), path)
 }
 
 fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
@@ -105,9 +100,7 @@ pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
     saves.prepare()?;
     let name = from.file_stem().unwrap_or_default().to_string_lossy();
     let path = free_path(saves.path(), &plain_name(&name), Some(ENDING));
-    write_new(&path, text.as_bytes())?;
-    copy_notes(from, &path);
-    Ok(FileStep::Added { path })
+    add_copy(&text, Some(from), path)
 }
 
 fn import_stairs(saves: &SavesFolder, from: &Path, text: &str) -> Result<FileStep, SaveError> {

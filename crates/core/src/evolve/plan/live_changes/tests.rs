@@ -1,7 +1,7 @@
 //! Tests of changes during a run.
 
 use super::*;
-use crate::evolve::{Strategy, StrategyKind, begin, resume};
+use crate::evolve::{Strategy, StrategyKind, begin, fields, resume};
 use crate::genome::{ControllerKind, Genome};
 use crate::score::{Behaviour, Evaluation};
 use crate::world::{Disqualification, Effort};
