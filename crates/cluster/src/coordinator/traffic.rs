@@ -14,6 +14,7 @@ use crate::packing::pack;
 use crate::puller::{Pulled, Puller};
 use crate::store::RETRY_PAUSE;
 use crate::wire::ResultBatch;
+use snakes_core::check::hash_of;
 use snakes_lab::run::headless::say;
 
 /// Maximum number of results that are fetched at once.
