@@ -177,6 +177,27 @@ mod tests {
     }
 
     #[test]
+    fn the_champions_of_the_program_are_written_with_the_bytes_that_they_have() {
+        let content = |text: &str| -> String {
+            let begins = text.find("\n(\n").expect("its first field");
+            // Poses are rounded when they are written.
+            text[begins..].split("poses:").next().unwrap_or_default().to_owned()
+        };
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../saves");
+        let mut count = 0;
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let text = read_text(&path).expect("read");
+            let LoadedChampion { champion, recording, exam, .. } =
+                parse_champion(&path, &text).expect("well formed");
+            let written = champion_text(&champion, recording.as_ref(), &exam).expect("small");
+            assert_eq!(content(&written), content(&text), "{}", path.display());
+            count += 1;
+        }
+        assert!(count > 20, "{count}");
+    }
+
+    #[test]
     fn a_champion_is_read_back_bit_for_bit() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
