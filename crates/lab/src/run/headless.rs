@@ -300,6 +300,7 @@ fn about(champion: &Champion) -> String {
 mod tests {
     use super::*;
     use snakes_core::evolve::{GenerationRecord, Statistics};
+    use snakes_core::score::Trial;
 
     fn report() -> GenerationReport {
         let statistics = Statistics {
