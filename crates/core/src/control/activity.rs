@@ -38,7 +38,7 @@ pub struct NetworkNode {
     pub column: NodeColumn,
     /// Its activity.
     pub value: f32,
-    /// The same from -1 to 1, where 0 is the middle of its range.
+    /// Its activity from -1 to 1, where 0 is the middle of its range.
     pub level: f32,
 }
 

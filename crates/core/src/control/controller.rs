@@ -8,7 +8,7 @@ use crate::world::JointTorque;
 ///
 /// It may keep state between steps. The state is part of a clone: keyframes and replays go on with the bits of
 /// the original.
-pub trait Controller: Send + Sync {
+pub trait Controller: CloneController + Send + Sync {
     /// The senses it needs, the same in every step; none unless it says so.
     fn needs(&self) -> Senses {
         Senses::default()
@@ -23,7 +23,7 @@ pub trait Controller: Send + Sync {
         None
     }
 
-    /// What it is doing, for a person to see: as it acted last, in the joint of this number where each has a network of its
+    /// Its state for display: as it acted last, in the joint of this number where each has a network of its
     /// own. None before the first step, and for a controller that has nothing to show.
     fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
         None
@@ -33,9 +33,18 @@ pub trait Controller: Send + Sync {
     fn finish(&mut self, _observation: &Observation, _is_disqualified: bool) -> Option<Episode> {
         None
     }
+}
 
+/// A controller that can be copied, whatever its type is. Every controller with `Clone` is one.
+pub trait CloneController {
     /// A copy with the same state.
     fn boxed_clone(&self) -> Box<dyn Controller>;
+}
+
+impl<T: Controller + Clone + 'static> CloneController for T {
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
 }
 
 impl Clone for Box<dyn Controller> {

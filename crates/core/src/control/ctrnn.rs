@@ -125,10 +125,6 @@ impl Controller for CtrnnController {
         }
         Some(Activity::Network(shown))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

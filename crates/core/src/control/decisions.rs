@@ -112,7 +112,7 @@ impl DecisionController {
         }
     }
 
-    /// What each posture is worth in a place, as far as it is known. No rule is made: it would change the champion.
+    /// The worth of each posture in a place, as far as it is known. No rule is made: it would change the champion.
     fn known_worths(&self, place: &DecisionPoint) -> Vec<Option<f32>> {
         match &self.genes.policy {
             Policy::Table(table) => {
@@ -123,7 +123,7 @@ impl DecisionController {
         }
     }
 
-    /// What the policy knows about the postures in a place.
+    /// The worth of each posture in a place, and how often it was tried or is advised there.
     fn worths(&self, place: &DecisionPoint, rules: &[ActiveRule]) -> Vec<PostureWorth> {
         let visits = match &self.genes.policy {
             Policy::Table(table) => table.visits(place.state as usize),
@@ -225,88 +225,5 @@ impl Controller for DecisionController {
             barred: Some(self.previous),
             rules,
         }))
-    }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evolve::with_fields;
-    use crate::genome::controllers::TABLE_STATES;
-    use crate::genome::{ControllerGenes, Genome, GenomeSpace};
-    use crate::learn::q_table::{SparseRow, SparseValues};
-    use crate::save::load_preset;
-    use crate::score::{Trial, score};
-
-    /// A genome in the middle of all ranges, whose table always leads from one posture to another.
-    fn cycling(space: &GenomeSpace, trial: &Trial, next: impl Fn(usize) -> usize) -> Genome {
-        let shape = trial.genome_shape();
-        let mut genome = space.genome_at(&vec![0.5; space.dimension(shape)], shape);
-        let per_posture = TABLE_STATES / POSTURES.len();
-        let row = |state: usize| {
-            let mut values = vec![0.0; POSTURES.len()];
-            values[next(state / per_posture)] = 1.0;
-            SparseRow(state, values, vec![1; POSTURES.len()])
-        };
-        let rows = (0..TABLE_STATES).map(row).collect();
-        let saved = SparseValues { states: TABLE_STATES, actions: POSTURES.len(), rows };
-        let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };
-        genes.policy = Policy::Table(Arc::new(saved.try_into().expect("a table")));
-        genome
-    }
-
-    #[test]
-    #[ignore = "takes minutes: cargo test --release -p snakes-core report_the_best_fixed_cycles -- --ignored --nocapture"]
-    fn report_the_best_fixed_cycles() {
-        let mut settings = load_preset("climb").expect("shipped").settings;
-        settings = with_fields(
-            &settings,
-            [
-                ("evolution.strategy", "q_learning"),
-                ("genome.controller", "decisions"),
-                ("wave.angle_range_rad", "1.8"),
-                ("wave.stiffness_max_nm_per_rad", "1000"),
-                ("wave.stiffness_min_nm_per_rad", "1000"),
-                ("agent.density_kg_m3", "8"),
-                ("agent.bend_limit_rad", "1.8"),
-            ],
-        )
-        .expect("allowed");
-        let mut best: Vec<(f32, u32, Vec<usize>)> = Vec::new();
-        let mut consider = |cycle: Vec<usize>| {
-            let next = |posture: usize| {
-                let at = cycle.iter().position(|of| *of == posture);
-                cycle[at.map_or(0, |at| (at + 1) % cycle.len())]
-            };
-            let genome = cycling(&settings.genome, &settings.trial, next);
-            let evaluation = score(&genome, &settings.trial).evaluation;
-            if evaluation.disqualified.is_none() {
-                let steps = evaluation.behaviour.expect("measured").steps_climbed;
-                best.push((evaluation.fitness, steps, cycle));
-            }
-        };
-        for a in 0..POSTURES.len() {
-            for b in a + 1..POSTURES.len() {
-                consider(vec![a, b]);
-                for c in (a + 1..POSTURES.len()).filter(|c| *c != b) {
-                    consider(vec![a, b, c]);
-                    if std::env::var("LONG").is_ok() {
-                        for d in (a + 1..POSTURES.len()).filter(|d| *d != b && *d != c) {
-                            consider(vec![a, b, c, d]);
-                        }
-                    }
-                }
-            }
-        }
-        best.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (fitness, steps, cycle) in best.iter().take(12) {
-            let names: Vec<&str> = cycle.iter().map(|posture| POSTURES[*posture]).collect();
-            println!("{steps} steps, {fitness:.2} m: {}", names.join(" > "));
-        }
-        println!("{} cycles", best.len());
     }
 }

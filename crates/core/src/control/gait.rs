@@ -31,10 +31,6 @@ impl Controller for GaitFollower {
             self.waves.joints.iter().map(|joint| [joint.bend.at(periods), joint.twist.at(periods)]);
         self.servo.pull(observation, targets, torques);
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

@@ -100,8 +100,4 @@ impl Controller for GrownController {
         }
         Some(Activity::Network(shown))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }

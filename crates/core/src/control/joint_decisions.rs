@@ -204,10 +204,6 @@ impl Controller for JointDecisionController {
             rules,
         }))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

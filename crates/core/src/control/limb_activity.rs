@@ -24,7 +24,7 @@ pub struct ActiveLimb {
 }
 
 impl LimbActivity {
-    /// What a neuron does, by its place: the first two drive the joint behind their limb. The tail has none behind it.
+    /// The purpose of a neuron, by its place: the first two drive the joint behind their limb. The tail has none behind it.
     pub fn purpose(&self, limb: usize, neuron: usize) -> &'static str {
         match neuron {
             0 if limb + 1 < self.limbs.len() => "bend target",

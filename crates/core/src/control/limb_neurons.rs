@@ -101,14 +101,10 @@ impl Controller for LimbNeuronController {
     fn activity(&self, observation: &Observation, _joint: usize) -> Option<Activity> {
         self.limbs(observation).map(Activity::Limbs)
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::control::perception::{JointSenses, LimbSenses};
     use crate::genome::controllers::{LimbNeuron, NeuronInput, NeuronKind, NeuronSource};
@@ -126,7 +122,8 @@ mod tests {
         genes
     }
 
-    pub(super) fn standing() -> Observation {
+    /// A snake of five limbs that senses nothing.
+    pub fn standing() -> Observation {
         let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
         observation.joints = vec![Default::default(); 4];
         observation.perception.joints = vec![JointSenses::default(); 4];

@@ -131,7 +131,7 @@ impl ControlLoop {
         self.controller.finish(&self.observation, is_disqualified)
     }
 
-    /// What the controller does at a joint, the first of which is 0: see [`Controller::activity`].
+    /// The state of the controller for display at a joint, the first of which is 0: see [`Controller::activity`].
     pub fn activity(&self, joint: usize) -> Option<Activity> {
         self.controller.activity(&self.observation, joint)
     }
@@ -141,7 +141,7 @@ impl ControlLoop {
         self.active
     }
 
-    /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
+    /// The senses before the last step; empty for a controller that does not sense its surroundings.
     pub fn perception(&self) -> &Perception {
         &self.observation.perception
     }
@@ -171,10 +171,6 @@ mod tests {
             assert_eq!(observation.joints.len(), sensed);
             self.acted += 1.0;
             torques[0].bend_nm = self.acted;
-        }
-
-        fn boxed_clone(&self) -> Box<dyn Controller> {
-            Box::new(self.clone())
         }
     }
 

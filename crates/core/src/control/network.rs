@@ -140,10 +140,6 @@ impl Controller for ModularController {
         shown.link_layer(&self.genes.outputs, inputs.len(), inputs.len() + neurons);
         Some(Activity::Network(shown))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 /// Lets one network act for the whole snake.
@@ -218,16 +214,12 @@ impl Controller for CentralController {
         shown.link_layer(&self.genes.outputs, hidden, hidden + self.hidden.len());
         Some(Activity::Network(shown))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::perception::{JointSenses, LimbSenses};
+    use crate::control::limb_neurons::tests::standing;
     use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;
@@ -238,14 +230,6 @@ mod tests {
         let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
         let ControllerGenes::Modular(network) = genome.controller else { panic!("modular") };
         network
-    }
-
-    fn standing() -> Observation {
-        let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
-        observation.joints = vec![Default::default(); 4];
-        observation.perception.joints = vec![JointSenses::default(); 4];
-        observation.perception.limbs = vec![LimbSenses::default(); 5];
-        observation
     }
 
     #[test]

@@ -176,8 +176,4 @@ impl Controller for PartNeuronController {
             *torque = JointTorque { bend_nm: bend * most_bend_nm, twist_nm: twist * most_twist_nm };
         }
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }

@@ -24,7 +24,7 @@ pub struct Perception {
     readings: Vec<LimbReading>,
 }
 
-/// What a snake senses of one joint: see [`SenseKind`].
+/// The senses of one joint: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointSenses {
     /// [`SenseKind::Bend`].
@@ -37,7 +37,7 @@ pub struct JointSenses {
     pub twist_rate: f32,
 }
 
-/// What a snake senses at one limb: see [`SenseKind`].
+/// The senses of one limb: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LimbSenses {
     /// [`SenseKind::Touch`].
@@ -58,7 +58,7 @@ pub struct LimbSenses {
     pub clearance: f32,
 }
 
-/// What the snake as a whole senses: see [`SenseKind`].
+/// The senses of the snake as a whole: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SnakeSenses {
     /// [`SenseKind::Yaw`].

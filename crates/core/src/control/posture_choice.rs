@@ -12,8 +12,9 @@ pub fn best_posture(worths: &[Option<f32>], present: usize) -> usize {
     best_postures(worths, present).first().copied().unwrap_or(present)
 }
 
-/// The same for an explorer, with a random one among equals; with probability `epsilon` (0 to 1) any other posture than
-/// the present one. It draws two numbers whatever it knows, so that its stream does not depend on what it knows.
+/// The posture that an explorer takes: the best one, a random one among equals; with probability `epsilon` (0 to 1) any
+/// other posture than the present one. It draws two numbers whatever it knows, so that its stream does not depend on what
+/// it knows.
 pub fn explored_posture(
     worths: &[Option<f32>],
     present: usize,

@@ -103,10 +103,6 @@ impl Controller for ReflexFollower {
             shift_rad: self.shifts_rad.get(joint).map_or(0.0, |shift_rad| *shift_rad as f32),
         }))
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

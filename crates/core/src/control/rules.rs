@@ -27,9 +27,9 @@ pub struct RuleFollower {
     servo: JointServos,
     /// Wave of the front and of the rear half since the last decision.
     chosen: [usize; 2],
-    /// The same before it.
+    /// Wave of the front and of the rear half before the last decision.
     before: [usize; 2],
-    /// What the conditions looked at when it decided last; none before the first decision.
+    /// The bits that the conditions looked at when it decided last; none before the first decision.
     bits: Option<u16>,
     /// Way of the middle limb since the last decision, by its speed as it is sensed, in m.
     way_m: f32,
@@ -113,7 +113,7 @@ fn chosen_wave(rules: &[WaveRule], bits: u16, half: JointGroup) -> usize {
     rule.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
 }
 
-/// What the conditions of rules look at, in the order of [`crate::genome::controllers::RULE_SENSES`].
+/// The bits that the conditions of rules look at, in the order of [`crate::genome::controllers::RULE_SENSES`].
 fn bits(senses: &Perception, way_m: f32) -> u16 {
     let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
     let (head, middle) = (limb(0), limb(senses.limbs.len() / 2));
@@ -170,10 +170,6 @@ impl Controller for RuleFollower {
 
     fn wave_uses(&self) -> Option<WaveUses> {
         Some(self.uses)
-    }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
     }
 }
 

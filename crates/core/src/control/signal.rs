@@ -18,10 +18,6 @@ impl Controller for SignalPlayer {
             torque.twist_nm = at_point(&joint.twist_nm);
         }
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }
 
 #[cfg(test)]

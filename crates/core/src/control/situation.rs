@@ -1,4 +1,4 @@
-//! What the snake senses as one of a few situations, by which decisions are learned.
+//! A few situations, by which decisions are learned, as the senses show them.
 
 use super::Perception;
 use super::postures::bend;

@@ -16,8 +16,4 @@ impl Controller for WavePlayer {
             torque.twist_nm = joint.twist.at(periods);
         }
     }
-
-    fn boxed_clone(&self) -> Box<dyn Controller> {
-        Box::new(self.clone())
-    }
 }

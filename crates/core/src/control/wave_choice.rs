@@ -24,7 +24,7 @@ pub struct ActiveWave {
     pub frequency_hz: f32,
     /// The part of its period that has passed, from 0 to 1.
     pub phase: f32,
-    /// What it asks of the joint that is shown, in radians.
+    /// The target angles of the joint that is shown, in radians.
     pub targets: JointWaves,
     /// Share of the decisions so far that were for it, from 0 to 1.
     pub share: f32,
