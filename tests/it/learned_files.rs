@@ -1,5 +1,5 @@
 //! Hostile champions of every family of controllers that learns or senses: each is refused in one line that names the
-//! field, its value and the allowed range.
+//! field, its value and the allowed range. A test of the genome's limits covers each single gene.
 
 use std::fs;
 use std::path::Path;
@@ -32,7 +32,7 @@ fn assert_refuses(file: &str, mark: &str, value: &str, parts: &[&str]) {
     assert_refuses_behind("        controller: ", file, mark, value, parts);
 }
 
-/// The same, of the first mark behind a place of the file.
+/// Checks that a champion with another first value after a mark behind a place of its file is refused.
 fn assert_refuses_behind(place: &str, file: &str, mark: &str, value: &str, parts: &[&str]) {
     let text = champion(file);
     let (before, behind) = text.split_at(text.find(place).expect("the place"));
@@ -153,27 +153,17 @@ fn hostile_rules_of_joints_are_refused_with_field_value_and_range() {
 
 #[test]
 fn hostile_networks_are_refused_with_field_value_and_range() {
-    let cases: [(&str, &str, &str, &str); 21] = [
+    let cases: [(&str, &str, &str, &str); 11] = [
         ("central", "hidden: [[", "NaN", "is NaN; allowed"),
-        ("central", "hidden: [[", "1.0e9", "1000000000"),
-        ("central", "outputs: [[", "-inf", "is -inf; allowed"),
         ("central", "joints: ", "1000000000", "joints is 1000000000"),
         ("central", "joints: ", "3", "allowed"),
         ("modular", "hidden: [[", "NaN", "is NaN; allowed"),
-        ("modular", "frequency_hz: ", "-1.0", "frequency_hz is -1"),
-        ("modular", "lag_rad: ", "inf", "lag_rad is inf"),
         ("ctrnn", "log_time_constant: ", "-9.0", "log_time_constant is -9"),
-        ("ctrnn", "log_time_constant: ", "NaN", "log_time_constant is NaN"),
-        ("ctrnn", "bias: ", "1.0e9", "bias is 1000000000"),
         ("limb-neurons", "weight: ", "NaN", "weight is NaN"),
-        ("limb-neurons", "bias: ", "1.0e9", "bias is 1000000000"),
         ("limb-neurons", "source: ", "own9", "own9"),
         ("neat", "inputs: ", "0", "inputs is 0"),
         ("neat", "outputs: ", "1000", "outputs is 1000"),
         ("neat", "links: [(", "4294967295", "4294967295; allowed"),
-        ("reflex", "reach_rad: ", "-1.0", "reach_rad is -1"),
-        ("reflex", "load_phase_rad_per_s: ", "NaN", "load_phase_rad_per_s is NaN"),
-        ("reflex", "blocked_phase_rad_per_s: ", "1.0e9", "blocked_phase_rad_per_s is"),
         ("reflex", "stiffness_nm_per_rad: ", "-5.0", "stiffness_nm_per_rad is -5"),
     ];
     for (file, mark, value, part) in cases {
@@ -193,9 +183,6 @@ fn hostile_bodies_are_refused_with_field_value_and_range() {
     let place = "        body: ";
     for (mark, value, parts) in [
         ("length_m: ", "NaN", ["segments[0].length_m is NaN", "allowed: 0.1 to 10"]),
-        ("width_m: ", "inf", ["segments[0].width_m is inf", "allowed: 0.1 to 10"]),
-        ("height_m: ", "1.0e-30", ["segments[0].height_m is ", "allowed: 0.1 to 10"]),
-        ("strength: ", "1.5", ["segments[0].strength is 1.5", "allowed: 0 to 1"]),
         (
             "strength: ",
             "1.0,youngs_modulus_pa:Some(NaN)",
@@ -237,11 +224,9 @@ fn hostile_creatures_are_refused_with_field_value_and_range() {
     let body = "        body: ";
     for (mark, value, parts) in [
         ("length_m: ", "NaN", ["nodes[0].length_m is NaN", "allowed: 0.1 to 10"]),
-        ("height_m: ", "1.0e30", ["nodes[0].height_m is ", "allowed: 0.1 to 10"]),
         ("copies: ", "4000000000", ["nodes[0].copies is 4000000000", "allowed: 1 to 5"]),
         ("to: ", "99", ["nodes[0].connections[0].to is 99", "allowed: 0 to "]),
         ("scale: ", "-1.0", ["nodes[0].connections[0].scale is -1", "allowed: 0.5 to 1.5"]),
-        ("bend_start: ", "inf", ["nodes[0].bend_start is inf", "allowed: -1 to 1"]),
         ("joint: ", "spherical", ["spherical", "rigid"]),
         ("bend_limit_rad: ", "0.5", ["bend_limit_rad is 0.5", "allowed: 0, because"]),
     ] {
@@ -249,7 +234,6 @@ fn hostile_creatures_are_refused_with_field_value_and_range() {
     }
     for (mark, value, parts) in [
         ("bias: ", "NaN", ["part_neurons.nodes[0].neurons[0].bias is NaN", "allowed: -100 to 100"]),
-        ("weight: ", "1.0e9", ["inputs[0].weight is 1000000000", "allowed: -100 to 100"]),
         ("joints: ", "40", ["controller joints is 40 joints", "allowed: 4"]),
         ("function: ", "cosine", ["cosine", "sum"]),
     ] {

@@ -1,45 +1,47 @@
 //! The catalogue of senses: their names, units and scales, and the organs that they belong to.
 
-use crate::schema::{setting_group, switch};
+use crate::schema::{listed_values, setting_group, switch};
 
-/// A sense of a limb, of a joint, or of the snake as a whole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SenseKind {
-    /// Angle of a joint's bend.
-    Bend,
-    /// Angle of a joint's twist.
-    Twist,
-    /// Rate of a joint's bend.
-    BendRate,
-    /// Rate of a joint's twist.
-    TwistRate,
-    /// Whether a limb touches ground or stairs.
-    Touch,
-    /// Force of the contacts upwards.
-    Load,
-    /// Force of the contacts against the direction in which the limb points.
-    Blocked,
-    /// Sine of a limb's pitch.
-    Pitch,
-    /// Sine of a limb's roll.
-    Roll,
-    /// Way from a limb's front face to the next riser.
-    Gap,
-    /// Height of the next tread over a limb's lowest corner.
-    StepUp,
-    /// Height of a limb's lowest corner over the surface below it.
-    Clearance,
-    /// Sine of the head's yaw.
-    Yaw,
-    /// Velocity of the middle limb towards the stairs.
-    SpeedAhead,
-    /// Velocity of the middle limb upwards.
-    SpeedUp,
-    /// Distance of the middle limb from the middle of the stairs, over half their width.
-    Aside,
+listed_values! {
+    /// A sense of a joint, of a limb, or of the snake as a whole, in this order.
+    #[derive(PartialOrd, Ord)]
+    pub enum SenseKind {
+        /// Angle of a joint's bend.
+        Bend;
+        /// Angle of a joint's twist.
+        Twist;
+        /// Rate of a joint's bend.
+        BendRate;
+        /// Rate of a joint's twist.
+        TwistRate;
+        /// Whether a limb touches ground or stairs.
+        Touch;
+        /// Force of the contacts upwards.
+        Load;
+        /// Force of the contacts against the direction in which the limb points.
+        Blocked;
+        /// Sine of a limb's pitch.
+        Pitch;
+        /// Sine of a limb's roll.
+        Roll;
+        /// Way from a limb's front face to the next riser.
+        Gap;
+        /// Height of the next tread over a limb's lowest corner.
+        StepUp;
+        /// Height of a limb's lowest corner over the surface below it.
+        Clearance;
+        /// Sine of the head's yaw.
+        Yaw;
+        /// Velocity of the middle limb towards the stairs.
+        SpeedAhead;
+        /// Velocity of the middle limb upwards.
+        SpeedUp;
+        /// Distance of the middle limb from the middle of the stairs, over half their width.
+        Aside;
+    }
 }
 
-/// What a sense tells of. A person can take each away: see [`ActiveSenses`].
+/// A group of senses. A person can take each away: see [`ActiveSenses`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SenseOrgan {
     /// The snake's own joints; always there.
@@ -70,11 +72,11 @@ pub struct SenseInfo {
     pub name: &'static str,
     /// Its unit in read-outs; empty for a pure number.
     pub unit: &'static str,
-    /// What the value 1 that controllers receive is in that unit; none where the scale is not linear.
+    /// The value 1 that controllers receive, in that unit; none where the scale is not linear.
     pub scale: Option<f32>,
     /// The least and the greatest value that controllers receive.
     pub range: [f32; 2],
-    /// What it tells of.
+    /// The organ to which it belongs.
     pub organ: SenseOrgan,
     /// The part that it belongs to.
     pub place: SensePlace,
@@ -90,26 +92,6 @@ pub const GAP_SCALE_M: f32 = 2.0;
 pub const SPEED_SCALE_M_S: f32 = 5.0;
 
 impl SenseKind {
-    /// All senses, in the order of the senses of a part.
-    pub const ALL: [Self; 16] = [
-        Self::Bend,
-        Self::Twist,
-        Self::BendRate,
-        Self::TwistRate,
-        Self::Touch,
-        Self::Load,
-        Self::Blocked,
-        Self::Pitch,
-        Self::Roll,
-        Self::Gap,
-        Self::StepUp,
-        Self::Clearance,
-        Self::Yaw,
-        Self::SpeedAhead,
-        Self::SpeedUp,
-        Self::Aside,
-    ];
-
     /// Its facts.
     pub fn info(self) -> SenseInfo {
         use SenseOrgan::{Balance, Joints, Sight, Touch};

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::chain::{Segment, check_segments, segment_genes};
+use super::chain::{Segment, check_segments, segment_genes, waiting_genes};
 use super::creature::{BodyNode, check_creature, grow, hash_structure, joint_tree, node_genes};
-use super::gene::{Gene, GeneRange, GeneVisitor};
-use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
+use super::gene::{GeneRange, Genes, check_limits};
+use super::limits::{DENSITY, LIMIT};
 use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
 
@@ -80,11 +80,12 @@ impl BodyGenes {
         for segment in &self.segments {
             hash.update(&segment.id.to_le_bytes());
         }
-        if let Some(head) = self.segments.first() {
-            for value in [head.bend_limit_rad, head.twist_limit_rad, head.strength] {
+        self.clone().waiting_genes(
+            &GenomeSpace::default(),
+            &mut Genes::to(&mut |_, value| {
                 hash.update(&value.to_bits().to_le_bytes());
-            }
-        }
+            }),
+        );
     }
 
     /// Genes of a body with these blocks of its own.
@@ -121,31 +122,29 @@ impl BodyGenes {
                 check_segments(&self.segments)
             };
         }
-        within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)
+        check_limits(|genes| self.clone().genes(&GenomeSpace::default(), genes))
     }
 
     /// Visits every gene, in a fixed order.
-    pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+    pub(super) fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
         if self.is_branching() {
-            node_genes(&mut self.nodes, space, visit);
-            return;
+            node_genes(&mut self.nodes, space, genes);
+        } else if self.has_own_blocks() {
+            segment_genes(&mut self.segments, space, genes);
+        } else {
+            let (bend, twist) = (&mut self.bend_limit_rad, &mut self.twist_limit_rad);
+            let range = GeneRange::OneOf(&space.bend_limits_rad);
+            genes.gene("bend_limit_rad", "bend limit", LIMIT, range, bend);
+            let range = GeneRange::OneOf(&space.twist_limits_rad);
+            genes.gene("twist_limit_rad", "twist limit", LIMIT, range, twist);
+            let range = GeneRange::Between(space.density_min_kg_m3, space.density_max_kg_m3);
+            genes.gene("density_kg_m3", "density", DENSITY, range, &mut self.density_kg_m3);
         }
-        if self.has_own_blocks() {
-            let densities = [space.density_min_kg_m3, space.density_max_kg_m3];
-            segment_genes(&mut self.segments, &space.bodies, densities, visit);
-            return;
-        }
-        let range = GeneRange::OneOf(&space.bend_limits_rad);
-        let (field, name) = (format_args!("bend_limit_rad"), format_args!("bend limit"));
-        visit(Gene { field, name, unit: "rad", range }, &mut self.bend_limit_rad);
-        let range = GeneRange::OneOf(&space.twist_limits_rad);
-        let (field, name) = (format_args!("twist_limit_rad"), format_args!("twist limit"));
-        visit(Gene { field, name, unit: "rad", range }, &mut self.twist_limit_rad);
-        let range = GeneRange::Between(space.density_min_kg_m3, space.density_max_kg_m3);
-        let (field, name) = (format_args!("density_kg_m3"), format_args!("density"));
-        visit(Gene { field, name, unit: "kg/m³", range }, &mut self.density_kg_m3);
+    }
+
+    /// Visits the genes that have no effect yet: those of the joint of the head.
+    pub(super) fn waiting_genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        waiting_genes(&mut self.segments, space, genes);
     }
 
     /// Gives every block the gene of its softness, as bodies have it whose softness evolves. A rigid block stays rigid.

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::body::BodyGenes;
 use super::chain::Segment;
-use super::gene::{GeneRange, GenomeShape};
+use super::gene::{GeneRange, Genes, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
@@ -37,7 +37,7 @@ impl GenomeSpace {
 
     /// Visits the genes of a genome that have a choice: one for each coordinate.
     fn search_genes(&self, mut genome: Genome, mut visit: impl FnMut(GeneRange<'_>, f32)) {
-        genome.genes(self, &mut |gene, value| {
+        genome.visit(self, |gene, value| {
             if !gene.range.is_point() {
                 visit(gene.range, *value);
             }
@@ -54,21 +54,24 @@ impl GenomeSpace {
     /// Number of coordinates that belong to the body. They come before those of the controller.
     pub fn body_dimension(&self, shape: GenomeShape) -> usize {
         let mut count = 0;
-        self.zeroed(shape).body.genes(self, &mut |gene, _| {
-            count += usize::from(!gene.range.is_point());
-        });
+        self.zeroed(shape).body.genes(
+            self,
+            &mut Genes::to(&mut |gene, _| {
+                count += usize::from(!gene.range.is_point());
+            }),
+        );
         count
     }
 
     /// The genes with a coordinate, in the order of the coordinates.
     pub fn coordinates(&self, shape: GenomeShape) -> Vec<Coordinate> {
         let mut coordinates = Vec::new();
-        self.zeroed(shape).genes(self, &mut |gene, _| {
+        self.zeroed(shape).visit(self, |gene, _| {
             if !gene.range.is_point() {
                 coordinates.push(Coordinate {
                     field: gene.field.to_string(),
                     name: gene.name.to_string(),
-                    unit: gene.unit,
+                    unit: gene.quantity.unit,
                     allowed: gene.range.words(),
                 });
             }
@@ -96,7 +99,7 @@ impl GenomeSpace {
     ) -> Genome {
         let mut genome = self.zeroed(shape);
         let mut coordinates = point.iter().copied();
-        genome.genes(self, &mut |gene, value| {
+        genome.visit(self, |gene, value| {
             let coordinate = if gene.range.is_point() { None } else { coordinates.next() };
             *value = at(gene.range, coordinate.unwrap_or(0.0));
         });
@@ -116,30 +119,29 @@ impl GenomeSpace {
 
     /// The coordinates of a genome in the unit cube: [`Self::genome_at`] returns the genome, except for rounding.
     pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
-        let mut point = Vec::new();
-        self.search_genes(genome.clone(), |range, value| point.push(range.coordinate(value)));
-        point
+        self.point_by(|range, value| range.coordinate(value), genome)
     }
 
     /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at`] returns the genome to the
     /// last bit if it came from a point itself, otherwise except for rounding.
     pub fn exact_point_of(&self, genome: &Genome) -> Vec<f64> {
-        let mut point = Vec::new();
-        self.search_genes(genome.clone(), |range, value| point.push(range.exact_coordinate(value)));
-        point
+        self.point_by(|range, value| range.exact_coordinate(value), genome)
     }
 
     /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at_fine`] returns the genome to the last bit,
     /// except for the rare values that `GeneRange::fine_coordinate` names.
     pub fn fine_point_of(&self, genome: &Genome) -> Vec<f64> {
+        self.point_by(|range, value| range.fine_coordinate(value), genome)
+    }
+
+    fn point_by(&self, of: impl Fn(GeneRange<'_>, f32) -> f64, genome: &Genome) -> Vec<f64> {
         let mut point = Vec::new();
-        self.search_genes(genome.clone(), |range, value| point.push(range.fine_coordinate(value)));
+        self.search_genes(genome.clone(), |range, value| point.push(of(range, value)));
         point
     }
 
-    /// Lets the kind of controller have the last word on a mutation from one point to another: see
-    /// `ControllerEncoding::after_mutation`. Genes that it leaves alone keep their coordinates to the last bit, and so do those
-    /// that it returns to where they started.
+    /// Lets the kind of controller complete a mutation from one point to another: see `ControllerEncoding::after_mutation`.
+    /// Genes that it leaves alone keep their coordinates to the last bit, and so do those that it returns to where they started.
     pub fn after_mutation(
         &self,
         start: &[f64],
@@ -151,7 +153,7 @@ impl GenomeSpace {
         let mut genome = self.genome_at(point, shape);
         let moved = self.point_of(&genome);
         let mut values = Vec::new();
-        before.controller.encoding_mut().genes(self, &mut |_, value| values.push(*value));
+        before.controller.genes(self, &mut Genes::to(&mut |_, value| values.push(*value)));
         genome.controller.encoding_mut().after_mutation(&values, self, rng);
         let last = self.point_of(&genome);
         let coordinates = point.iter_mut().zip(start).zip(self.point_of(&before));
@@ -223,7 +225,7 @@ mod tests {
 
     #[test]
     fn genomes_of_every_kind_return_from_their_points() {
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             let mut space = space(kind);
             space.wave.harmonics = 2;
             for individual in 0..20 {
@@ -241,7 +243,7 @@ mod tests {
 
     #[test]
     fn every_genome_returns_from_its_fine_point_to_the_last_bit() {
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             let mut space = space(kind);
             space.wave.harmonics = 2;
             for individual in 0..20 {
@@ -251,7 +253,7 @@ mod tests {
                     let again = space.genome_at_fine(&space.fine_point_of(&genome), SHAPE);
                     let values = |mut genome: Genome| {
                         let mut bits = Vec::new();
-                        genome.genes(&space, &mut |_, value| bits.push(value.to_bits()));
+                        genome.visit(&space, |_, value| bits.push(value.to_bits()));
                         bits
                     };
                     assert_eq!(values(again), values(genome), "{kind}");
@@ -302,8 +304,8 @@ mod tests {
     }
 
     #[test]
-    fn only_limb_neurons_have_the_last_word_on_a_mutation() {
-        for kind in ControllerKind::ALL {
+    fn only_limb_neurons_complete_a_mutation() {
+        for &kind in ControllerKind::ALL {
             let space = space(kind);
             let mut rng = stream(1, 1, 0, Purpose::Mutation);
             let (mut kept, mut returned) = (0, 0);

@@ -1,6 +1,6 @@
 //! The features of a genome: its genes by name, or a summary where these are hundreds of torques.
 
-use super::gene::{Feature, Gene};
+use super::gene::{Feature, Gene, Genes};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
@@ -12,14 +12,14 @@ impl GenomeSpace {
         let mut add = |gene: Gene<'_>, value: &mut f32| {
             if !gene.range.is_point() {
                 let name = gene.name.to_string();
-                features.push(Feature::new(name, gene.unit, *value, gene.range));
+                features.push(Feature::new(name, gene.quantity.unit, *value, gene.range));
             }
         };
         let Genome { mut body, mut controller } = genome.clone();
-        body.genes(self, &mut add);
+        body.genes(self, &mut Genes::to(&mut add));
         match controller.encoding().summary(self) {
             Some(summary) => features.extend(summary),
-            None => controller.encoding_mut().genes(self, &mut add),
+            None => controller.genes(self, &mut Genes::to(&mut add)),
         }
         features
     }
@@ -34,7 +34,7 @@ mod tests {
     #[test]
     fn features_have_names_units_and_shares_of_their_ranges() {
         let shape = GenomeShape { joints: 4, duration_s: 2.0 };
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             let mut space = GenomeSpace { controller: kind, ..GenomeSpace::default() };
             space.wave.harmonics = 2;
             let genome = space.random_genome(shape, &mut stream(1, 1, 0, Purpose::Birth));

@@ -2,10 +2,10 @@
 
 use super::chain::{BodySpace, Segment};
 use super::creature::{CreatureSpace, grow};
-use super::gene::{GeneRange, GenomeShape};
+use super::gene::{GeneRange, GenomeShape, check_genes};
 use super::individual::Genome;
 use super::space::GenomeSpace;
-use crate::check::{Invalid, within};
+use crate::check::Invalid;
 
 fn same(field: &str, found: impl ToString, expected: impl ToString) -> Result<(), Invalid> {
     let (found, expected) = (found.to_string(), expected.to_string());
@@ -24,9 +24,20 @@ impl GenomeSpace {
     pub fn check_genome(&self, genome: &Genome, shape: GenomeShape) -> Result<(), Invalid> {
         same("controller", genome.controller.kind(), self.controller)?;
         // A setting that differs says more than the lengths that follow from it.
-        self.check_genes(genome, |range| matches!(range, GeneRange::Fixed(_)))?;
+        let is_setting = |range: &GeneRange<'_>| matches!(range, GeneRange::Fixed(_));
+        check_genes(
+            |gene| Some(gene.range).filter(is_setting),
+            |genes| genome.clone().genes(self, genes),
+        )?;
         self.check_layout(genome, shape)?;
-        self.check_genes(genome, |_| true)
+        check_genes(
+            |gene| Some(gene.range),
+            |genes| {
+                let mut genome = genome.clone();
+                genome.body.waiting_genes(self, genes);
+                genome.genes(self, genes);
+            },
+        )
     }
 
     /// Checks that a genome has the kind, the joints and the lengths of lists that this space prescribes.
@@ -40,7 +51,7 @@ impl GenomeSpace {
         if self.has_creatures() {
             // Each creature has a layout of its own.
             let mut found = Vec::new();
-            genome.controller.encoding().lengths(&mut |_, length| found.push(length));
+            genome.controller.encoding().lengths(&mut |_, length, _| found.push(length));
             return same(
                 "nodes with neurons",
                 found.first().unwrap_or(&0),
@@ -49,12 +60,12 @@ impl GenomeSpace {
         }
         let mut expected = Vec::new();
         let zeroed = self.zeroed(shape);
-        zeroed.controller.encoding().lengths(&mut |_, length| expected.push(length));
+        zeroed.controller.encoding().lengths(&mut |_, length, _| expected.push(length));
         let (mut expected, mut result) = (expected.into_iter(), Ok(()));
-        genome.controller.encoding().lengths(&mut |name, length| {
+        genome.controller.encoding().lengths(&mut |name, length, _| {
             let expected = expected.next().unwrap_or_default();
             if result.is_ok() {
-                result = same(name, length, expected);
+                result = same(&name.to_string(), length, expected);
             }
         });
         result?;
@@ -84,15 +95,6 @@ impl GenomeSpace {
             );
             return Err(Invalid::new("segments", value, allowed));
         }
-        // The genes of the head's joint wait until a block comes before it; no visitor sees them.
-        if let Some(head) = segments.first() {
-            let space = &self.bodies;
-            let bends = space.bend_limit_min_rad..=space.bend_limit_max_rad;
-            within("segments[0].bend_limit_rad", head.bend_limit_rad, bends)?;
-            let twists = space.twist_limit_min_rad..=space.twist_limit_max_rad;
-            within("segments[0].twist_limit_rad", head.twist_limit_rad, twists)?;
-            within("segments[0].strength", head.strength, space.strength_min..=1.0)?;
-        }
         Ok(GenomeShape { joints: segments.len() - 1, ..shape })
     }
 
@@ -115,22 +117,6 @@ impl GenomeSpace {
         Ok(GenomeShape { joints: grown.len() - 1, ..shape })
     }
 
-    /// Checks the genes whose range is of interest.
-    fn check_genes(
-        &self,
-        genome: &Genome,
-        is_of_interest: impl Fn(GeneRange<'_>) -> bool,
-    ) -> Result<(), Invalid> {
-        let mut result = Ok(());
-        genome.clone().genes(self, &mut |gene, value| {
-            if result.is_ok() && is_of_interest(gene.range) && !gene.range.contains(*value) {
-                let (field, allowed) = (gene.field.to_string(), gene.range.words());
-                result = Err(Invalid::new(field, *value, allowed));
-            }
-        });
-        result
-    }
-
     /// A genome with all genes that bodies of this space have: a founder may lack that of softness.
     pub fn with_all_genes(&self, mut genome: Genome) -> Genome {
         if self.bodies.vary && self.bodies.soft {
@@ -145,7 +131,7 @@ impl GenomeSpace {
     pub fn widened_for(&self, genome: &Genome) -> Self {
         let mut space = Self { controller: genome.controller.kind(), ..self.clone() };
         genome.body.widen(&mut space);
-        genome.controller.encoding().widen(&mut space);
+        genome.controller.widen(&mut space);
         space
     }
 }
@@ -154,7 +140,7 @@ impl GenomeSpace {
 mod tests {
     use super::*;
     use crate::genome::controllers::Gait;
-    use crate::genome::{ControllerGenes, ControllerKind};
+    use crate::genome::{ControllerGenes, ControllerKind, NetworkSpace};
     use crate::rng::{Purpose, stream};
     use rand::RngExt;
 
@@ -168,7 +154,7 @@ mod tests {
 
     #[test]
     fn genomes_from_points_return_from_their_exact_points_to_the_last_bit() {
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             let space = space(kind);
             for individual in 0..50 {
                 let mut rng = stream(1, 1, individual, Purpose::Birth);
@@ -194,7 +180,7 @@ mod tests {
 
     #[test]
     fn random_genomes_and_their_children_fit_into_their_space() {
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             let space = space(kind);
             for individual in 0..20 {
                 let mut rng = stream(2, 1, individual, Purpose::Birth);
@@ -220,7 +206,7 @@ mod tests {
         assert_eq!(refusal(&gaits, &gait, longer), "controller joints is 4; allowed: 6");
         let mut other = gaits.clone();
         other.wave.harmonics = 1;
-        assert_eq!(refusal(&other, &gait, SHAPE), "harmonics is 2; allowed: 1");
+        assert_eq!(refusal(&other, &gait, SHAPE), "joints[0].bend.harmonics is 2; allowed: 1");
         let mut genome = gait.clone();
         genome.body.density_kg_m3 = 9.0;
         assert_eq!(refusal(&gaits, &genome, SHAPE), "density_kg_m3 is 9; allowed: 2 to 2.5");
@@ -244,19 +230,28 @@ mod tests {
 
     #[test]
     fn a_widened_space_contains_the_genome() {
-        for (kind, other) in [
-            (ControllerKind::Signal, ControllerKind::Gait),
-            (ControllerKind::Wave, ControllerKind::Signal),
-            (ControllerKind::Gait, ControllerKind::Wave),
-        ] {
+        for &kind in ControllerKind::ALL {
             let mut wide = space(kind);
             wide.wave.harmonics = 3;
             wide.wave.angle_range_rad = 2.9;
             wide.wave.frequency_max_hz = 9.0;
             wide.wave.servo_damping_nms_per_rad = 7.0;
+            wide.network = NetworkSpace {
+                weight_range: 8.0,
+                hidden: 7,
+                reflex_weight_range: 8.0,
+                reflex_reach_rad: 1.0,
+                reflex_phase_rad_per_s: 9.0,
+                ctrnn_weight_range: 30.0,
+                library_waves: 6,
+                wave_rules: 3,
+                limb_neurons_shared: false,
+            };
             wide.torque_range_nm = 5000.0;
             wide.bend_limits_rad = vec![0.33];
             wide.density_max_kg_m3 = 50.0;
+            let is_gait = kind == ControllerKind::Gait;
+            let other = if is_gait { ControllerKind::Wave } else { ControllerKind::Gait };
             let narrow = space(other);
             for individual in 0..20 {
                 let mut rng = stream(3, 1, individual, Purpose::Birth);

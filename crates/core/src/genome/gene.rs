@@ -3,7 +3,10 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f32::consts::TAU;
-use std::fmt::{Arguments, Write};
+use std::fmt::{Arguments, Display, Write};
+use std::ops::RangeInclusive;
+
+use crate::check::Invalid;
 
 /// The shape of a genome: the number of joints that it drives, and how long it has to last.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,14 +24,110 @@ pub struct Gene<'a> {
     pub field: Arguments<'a>,
     /// Its name, for charts: "joint 1 bend, offset".
     pub name: Arguments<'a>,
-    /// Its unit; empty for a pure number.
-    pub unit: &'static str,
-    /// The values it may have.
+    /// Its unit, and its limits in every space.
+    pub quantity: Quantity,
+    /// The values that it may have in the space.
     pub range: GeneRange<'a>,
 }
 
-/// Receives the genes of a genome one by one.
-pub type GeneVisitor<'a> = &'a mut dyn FnMut(Gene<'_>, &mut f32);
+/// The quantity that a gene measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// The unit; empty for a pure number.
+    pub unit: &'static str,
+    /// The least and the greatest value in any file. The ranges of spaces lie within them.
+    pub limits: [f32; 2],
+}
+
+impl Quantity {
+    /// A quantity with a unit and limits.
+    pub const fn new(unit: &'static str, limits: RangeInclusive<f32>) -> Self {
+        Self { unit, limits: [*limits.start(), *limits.end()] }
+    }
+
+    /// Its values in any file.
+    pub(super) fn range(self) -> GeneRange<'static> {
+        let [least, most] = self.limits;
+        GeneRange::Between(least, most)
+    }
+
+    /// A pure number within limits.
+    pub const fn pure(limits: RangeInclusive<f32>) -> Self {
+        Self::new("", limits)
+    }
+}
+
+/// Takes the genes of a genome one by one to a function.
+pub struct Genes<'a> {
+    /// Text in front of the path of each gene.
+    field: &'a dyn Display,
+    /// Text in front of the name of each gene.
+    name: &'a dyn Display,
+    visit: &'a mut dyn FnMut(Gene<'_>, &mut f32),
+}
+
+impl<'a> Genes<'a> {
+    /// Takes each gene to a function.
+    pub fn to(visit: &'a mut dyn FnMut(Gene<'_>, &mut f32)) -> Self {
+        Self { field: &"", name: &"", visit }
+    }
+
+    /// Visits the genes of a part, with a text in front of their paths and names.
+    pub fn inside(
+        &mut self,
+        field: impl Display,
+        name: impl Display,
+        visit_part: impl FnOnce(&mut Genes<'_>),
+    ) {
+        let (before_field, before_name) = (self.field, self.name);
+        visit_part(&mut Genes {
+            field: &format_args!("{before_field}{field}"),
+            name: &format_args!("{before_name}{name}"),
+            visit: self.visit,
+        });
+    }
+
+    /// Visits a gene. Its order among all genes is part of the bits of a run.
+    pub fn gene(
+        &mut self,
+        field: impl Display,
+        name: impl Display,
+        quantity: Quantity,
+        range: GeneRange<'_>,
+        value: &mut f32,
+    ) {
+        let (before_field, before_name) = (self.field, self.name);
+        let field = format_args!("{before_field}{field}");
+        let name = format_args!("{before_name}{name}");
+        (self.visit)(Gene { field, name, quantity, range }, value);
+    }
+}
+
+/// Checks the genes that are visited against what is allowed for each; none means anything.
+///
+/// # Errors
+/// The first gene with a value that is not allowed.
+pub fn check_genes(
+    allowed: impl for<'g> Fn(&Gene<'g>) -> Option<GeneRange<'g>>,
+    genes: impl FnOnce(&mut Genes<'_>),
+) -> Result<(), Invalid> {
+    let mut result = Ok(());
+    genes(&mut Genes::to(&mut |gene, value| {
+        let refused = allowed(&gene).filter(|range| result.is_ok() && !range.contains(*value));
+        if let Some(range) = refused {
+            result = Err(Invalid::new(gene.field.to_string(), *value, range.words()));
+        }
+    }));
+    result
+}
+
+/// Checks the genes that are visited against the limits of every space.
+///
+/// # Errors
+/// The first gene with a value beyond them.
+pub fn check_limits(genes: impl FnOnce(&mut Genes<'_>)) -> Result<(), Invalid> {
+    check_genes(|gene| Some(gene.quantity.range()), genes)
+}
 
 /// A number of a genome that people can compare: a gene, or a summary of many.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,6 +164,11 @@ pub enum GeneRange<'a> {
 }
 
 impl GeneRange<'_> {
+    /// Any value up to this size on both sides of 0.
+    pub fn around_zero(most: f32) -> Self {
+        Self::Between(-most, most)
+    }
+
     /// Whether there is no choice, so that a search needs no coordinate for the gene.
     pub fn is_point(self) -> bool {
         match self {

@@ -5,7 +5,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::body::BodyGenes;
 use super::controllers::ControllerGenes;
-use super::gene::GeneVisitor;
+use super::gene::{Gene, Genes};
 use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
 
@@ -21,9 +21,14 @@ pub struct Genome {
 
 impl Genome {
     /// Visits every gene in a fixed order, with its range in `space`.
-    pub(super) fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.body.genes(space, visit);
-        self.controller.encoding_mut().genes(space, visit);
+    pub(super) fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.body.genes(space, genes);
+        self.controller.genes(space, genes);
+    }
+
+    /// Visits every gene in a fixed order, with its range in `space`.
+    pub(super) fn visit(&mut self, space: &GenomeSpace, mut visit: impl FnMut(Gene<'_>, &mut f32)) {
+        self.genes(space, &mut Genes::to(&mut visit));
     }
 
     /// Checks that neurons of parts belong to a branching body, and each node of such a body has its neurons.
@@ -47,7 +52,7 @@ impl Genome {
     /// Number of genes.
     pub fn gene_count(&self) -> usize {
         let mut count = 0;
-        self.clone().genes(&GenomeSpace::default(), &mut |_, _| count += 1);
+        self.clone().visit(&GenomeSpace::default(), |_, _| count += 1);
         count
     }
 
@@ -56,7 +61,7 @@ impl Genome {
     pub fn hash(&self) -> u64 {
         let mut hash = Xxh3Default::new();
         // Values alone are hashed, so any space serves.
-        self.clone().genes(&GenomeSpace::default(), &mut |_, value| {
+        self.clone().visit(&GenomeSpace::default(), |_, value| {
             hash.update(&value.to_bits().to_le_bytes());
         });
         self.body.hash_descent(&mut hash);

@@ -1,55 +1,61 @@
 //! The kinds of controllers, by name only; `controllers` registers the genes of each kind.
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
 
-/// A kind of controller.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ControllerKind {
-    /// Free torque signals, the report's.
-    #[default]
-    Signal,
-    /// Periodic torques.
-    Wave,
-    /// Periodic joint angles, followed by a servo.
-    Gait,
-    /// A gait with reflexes.
-    Reflex,
-    /// The same small network at each joint.
-    Modular,
-    /// One network for the whole snake.
-    Central,
-    /// A continuous-time recurrent neural network.
-    Ctrnn,
-    /// Learned decisions among a few postures.
-    Decisions,
-    /// Learned decisions of each joint about its bend.
-    JointDecisions,
-    /// Rules that choose among waves.
-    Rules,
-    /// A network that grew.
-    Grown,
-    /// Neurons in the limbs.
-    LimbNeurons,
-    /// Neurons in the parts of a branching body.
-    PartNeurons,
+use crate::schema::{Choices, choices};
+
+choices! {
+    /// A kind of controller.
+    #[derive(Default)]
+    pub enum ControllerKind {
+        #[default]
+        Signal = "signal", "Signal", "Free torque signals, point by point, as in the report.";
+        Wave = "wave", "Wave", "Periodic torques: a wave per joint axis, one frequency.";
+        Gait = "gait", "Gait", "Periodic joint angles, followed by a servo that senses the joint.";
+        Reflex = "reflex", "Reflex", "A gait whose target angles and phases yield to what the snake senses.";
+        Modular = "modular", "Modular", "The same small network at each joint; neighbours exchange messages.";
+        Central = "central", "Central", "One network for the whole snake, from all senses to all joints.";
+        Ctrnn = "ctrnn", "CTRNN", "Continuous-time recurrent network: three leaky neurons at each joint.";
+        Decisions = "decisions", "Decisions",
+            "Takes one of eleven postures four times a second, as it has learned to.";
+        JointDecisions = "joint_decisions", "Joint decisions",
+            "Each joint chooses its bend four times a second, by rules of its own.";
+        Rules = "rules", "Rules", "Rules choose among a few waves by what the snake senses.";
+        Grown = "grown", "Grown", "A network for the whole snake, to which evolution adds nodes and links.";
+        LimbNeurons = "limb_neurons", "Limb neurons",
+            "Four neurons in each limb, wired to one another, to the neighbouring limbs and to senses.";
+        PartNeurons = "part_neurons", "Part neurons",
+            "Neurons in each part of a branching body, which grow with the part.";
+    }
 }
 
 impl ControllerKind {
     /// All kinds, the report's first.
-    pub const ALL: [Self; 13] = [
-        Self::Signal,
-        Self::Wave,
-        Self::Gait,
-        Self::Reflex,
-        Self::Modular,
-        Self::Central,
-        Self::Ctrnn,
-        Self::Decisions,
-        Self::JointDecisions,
-        Self::Rules,
-        Self::Grown,
-        Self::LimbNeurons,
-        Self::PartNeurons,
-    ];
+    pub const ALL: &'static [Self] = Self::OPTIONS;
+
+    /// The name in files; flags may write - for _.
+    pub fn name(self) -> &'static str {
+        self.choice().name
+    }
+
+    /// The name at the head of a list or a chart.
+    pub fn title(self) -> &'static str {
+        self.choice().title
+    }
+
+    /// A sentence about it.
+    pub fn words(self) -> String {
+        self.choice().sentence
+    }
+
+    /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.
+    pub fn senses_surroundings(self) -> bool {
+        !matches!(self, Self::Signal | Self::Wave | Self::Gait)
+    }
+}
+
+impl fmt::Display for ControllerKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
 }

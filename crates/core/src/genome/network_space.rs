@@ -1,8 +1,8 @@
 //! The ranges of controllers that sense their surroundings.
 
-use super::gene::GeneRange;
 use std::ops::RangeInclusive;
 
+use super::gene::{GeneRange, Quantity};
 use crate::schema::{number, setting_group, switch, whole};
 
 setting_group! {
@@ -70,7 +70,7 @@ setting_group! {
 impl NetworkSpace {
     /// The range of weights and biases.
     pub(super) fn weights(&self) -> GeneRange<'static> {
-        GeneRange::Between(-self.weight_range, self.weight_range)
+        GeneRange::around_zero(self.weight_range)
     }
 }
 
@@ -82,5 +82,5 @@ pub const MOST_HIDDEN: u32 = 32;
 pub const MOST_LIBRARY_WAVES: usize = 8;
 /// The most rules that choose among waves.
 pub const MOST_WAVE_RULES: usize = 64;
-/// The range of every weight in a file.
-pub const WEIGHT_RANGE: RangeInclusive<f32> = -100.0..=100.0;
+/// A weight or a bias.
+pub const WEIGHT: Quantity = Quantity::pure(-100.0..=100.0);

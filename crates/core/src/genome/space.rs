@@ -2,6 +2,7 @@
 
 use super::chain::BodySpace;
 use super::creature::CreatureSpace;
+use super::gene::{GeneRange, Quantity};
 use super::kind::ControllerKind;
 use super::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD};
 use super::network_space::NetworkSpace;
@@ -50,6 +51,11 @@ pub const POINTS_PER_S_RANGE: std::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
 /// The largest torque in a file, in N·m: a thousand times the report's.
 pub const LARGEST_TORQUE_NM: f32 = 1.0e6;
+
+/// A number of torque points per second.
+pub const POINTS_PER_S: Quantity = Quantity::new("Hz", POINTS_PER_S_RANGE);
+/// A torque to either side.
+pub const TORQUE: Quantity = Quantity::new("N·m", -LARGEST_TORQUE_NM..=LARGEST_TORQUE_NM);
 
 /// The most torque points in a genome, over all its signals: such a genome still makes a save of less
 /// than the 10 MiB that are read again.
@@ -146,6 +152,11 @@ impl GenomeSpace {
         }
         [&self.bend_limits_rad, &self.twist_limits_rad]
             .map(|limits| limits.iter().any(|limit| *limit > 0.0))
+    }
+
+    /// The range of the density of a part.
+    pub(super) fn densities(&self) -> GeneRange<'static> {
+        GeneRange::Ratio(self.density_min_kg_m3, self.density_max_kg_m3)
     }
 
     /// How many points a signal needs to last `duration_s`.

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::gene::{Gene, GeneRange, GeneVisitor};
+use super::gene::{GeneRange, Genes, Quantity};
 use crate::check::{Invalid, within};
 use crate::schema::{number, setting_group, whole};
 
@@ -39,7 +39,8 @@ setting_group! {
                 .hint("Maximum amplitude of a gait's bends, and maximum offset in either direction")
                 .slider(0.0, 3.0);
 
-        /// The same of a twist. With 0 a joint that may twist is held straight by its servo, and yields under load.
+        /// Greatest amplitude of a target angle of a twist, and of its offset to either side, in radians. With 0 a
+        /// joint that may twist is held straight by its servo, and yields under load.
         #[serde(default = "one_rad")]
         twist_range_rad: f32 = 1.0,
             number("Twist range", 0.0..=super::LARGEST_LIMIT_RAD)
@@ -98,10 +99,27 @@ impl WaveSpace {
     }
 
     /// Visits the gene of a frequency.
-    pub(super) fn frequency_gene(&self, frequency_hz: &mut f32, visit: GeneVisitor<'_>) {
+    pub(super) fn frequency_gene(&self, frequency_hz: &mut f32, genes: &mut Genes<'_>) {
         let range = GeneRange::Between(self.frequency_min_hz, self.frequency_max_hz);
-        let (field, name) = (format_args!("frequency_hz"), format_args!("frequency"));
-        visit(Gene { field, name, unit: "Hz", range }, frequency_hz);
+        genes.gene("frequency_hz", "frequency", FREQUENCY, range, frequency_hz);
+    }
+
+    /// Visits the genes of a servo's stiffness and damping.
+    pub(super) fn servo_genes(
+        &self,
+        [stiffness_nm_per_rad, damping_nms_per_rad]: [&mut f32; 2],
+        genes: &mut Genes<'_>,
+    ) {
+        let range = self.stiffnesses();
+        genes.gene("stiffness_nm_per_rad", "stiffness", STIFFNESS, range, stiffness_nm_per_rad);
+        let (field, name) = ("servo_damping_nms_per_rad", "servo damping");
+        let range = GeneRange::Fixed(self.servo_damping_nms_per_rad);
+        genes.gene(field, name, SERVO_DAMPING, range, damping_nms_per_rad);
+    }
+
+    /// The range of the servo's stiffness.
+    pub(super) fn stiffnesses(&self) -> GeneRange<'static> {
+        GeneRange::Between(self.stiffness_min_nm_per_rad, self.stiffness_max_nm_per_rad)
     }
 }
 
@@ -116,6 +134,12 @@ pub const FREQUENCY_RANGE_HZ: RangeInclusive<f32> = 0.01..=20.0;
 pub const STIFFNESS_RANGE_NM_PER_RAD: RangeInclusive<f32> = 0.0..=1.0e5;
 /// The range of every servo's damping, in N·m·s/rad.
 pub const SERVO_DAMPING_RANGE: RangeInclusive<f32> = 0.0..=1.0e4;
+/// A frequency.
+pub const FREQUENCY: Quantity = Quantity::new("Hz", FREQUENCY_RANGE_HZ);
+/// The stiffness of a servo.
+pub const STIFFNESS: Quantity = Quantity::new("N·m/rad", STIFFNESS_RANGE_NM_PER_RAD);
+/// The damping of a servo.
+pub const SERVO_DAMPING: Quantity = Quantity::new("N·m·s/rad", SERVO_DAMPING_RANGE);
 /// The most terms of a wave.
 pub const MOST_HARMONICS: u32 = 5;
 

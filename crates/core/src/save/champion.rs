@@ -217,7 +217,7 @@ mod tests {
     fn only_files_of_rules_have_uses_of_waves_and_their_conditions_are_readable() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");
-        for controller in ControllerKind::ALL {
+        for &controller in ControllerKind::ALL {
             let champion = champion_of(controller);
             store_champion(&path, &champion, None).expect("written");
             assert_eq!(load_champion(&path).expect("read").champion, champion);

@@ -103,6 +103,53 @@ macro_rules! choices {
     };
 }
 
+/// Declares an enum with the list `ALL` of its values: `pub enum Side { Left; Right; }`.
+macro_rules! listed_values {
+    (
+        $(#[$meta:meta])*
+        pub enum $listed:ident {
+            $($(#[$more:meta])* $value:ident;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $listed { $($(#[$more])* $value,)* }
+
+        impl $listed {
+            /// All values, in their order.
+            pub const ALL: [Self; [$(stringify!($value)),*].len()] = [$(Self::$value),*];
+        }
+    };
+}
+
+/// Declares an enum with the list `ALL` of its values, and with their names: `pub enum Side { Left = "left side"; }`.
+macro_rules! named_values {
+    (
+        $(#[$meta:meta])*
+        pub enum $named:ident {
+            $($(#[$more:meta])* $value:ident = $name:literal;)*
+        }
+    ) => {
+        $crate::schema::listed_values! {
+            $(#[$meta])*
+            pub enum $named {
+                $(
+                    #[doc = concat!("*", $name, "*.")]
+                    $(#[$more])*
+                    $value;
+                )*
+            }
+        }
+
+        impl $named {
+            /// The name, in lower case.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$value => $name,)* }
+            }
+        }
+    };
+}
+
 /// Gives a kind with a row of facts, `info()`, the names in that row: as methods, as its text, and as
 /// [`Choices`](super::Choices) in the order of `ALL`.
 macro_rules! named_by_info {
@@ -140,4 +187,4 @@ macro_rules! named_by_info {
     };
 }
 
-pub(crate) use {named_by_info, setting_group, settings};
+pub(crate) use {listed_values, named_by_info, named_values, setting_group, settings};

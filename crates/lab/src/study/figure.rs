@@ -36,7 +36,7 @@ pub(super) fn study_figure(results: &Results<'_>) -> Figure {
 /// The controllers of some arms, in their usual order.
 pub fn controllers(arms: &[StudiedArm]) -> Vec<ControllerKind> {
     let is_used = |kind: &ControllerKind| arms.iter().any(|arm| arm.protocol.controller == *kind);
-    ControllerKind::ALL.into_iter().filter(is_used).collect()
+    ControllerKind::ALL.iter().copied().filter(is_used).collect()
 }
 
 /// The learning curve of an arm: quartiles of the best fitness so far, at each hundredth of the budget at which all runs have a

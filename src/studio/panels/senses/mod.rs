@@ -121,7 +121,7 @@ impl SensesPanel {
     fn controller(&mut self, ui: &mut egui::Ui, view: &SensesView, activity: Option<&Activity>) {
         let kind = view.kind();
         title(ui, &format!("Controller: {}", kind.title()));
-        explain(ui, kind.words());
+        explain(ui, &kind.words());
         match activity {
             Some(Activity::Network(network)) => network_graph::network_graph(ui, network),
             Some(Activity::Decision(decision)) => {
@@ -145,8 +145,8 @@ fn with_first_senses(rollout: &Rollout) -> Rollout {
 
 /// The controllers that sense their surroundings, in a sentence.
 fn sensing_controllers() -> String {
-    let sensing = ControllerKind::ALL.into_iter().filter(|kind| kind.senses_surroundings());
-    let titles: Vec<&str> = sensing.map(ControllerKind::title).collect();
+    let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
+    let titles: Vec<&str> = sensing.map(|kind| kind.title()).collect();
     format!(
         "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Run panel.",
         titles.join(", ")

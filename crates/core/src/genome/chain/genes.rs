@@ -2,7 +2,9 @@
 
 use super::segment::Segment;
 use super::space::BodySpace;
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
+use crate::genome::gene::{GeneRange, Genes};
+use crate::genome::limits::{DENSITY, LIMIT, MODULUS, SHARE, SIZE};
+use crate::genome::space::GenomeSpace;
 use crate::world::{STIFFEST_M4_S2, modulus_at_pa};
 
 impl Segment {
@@ -29,70 +31,50 @@ impl Segment {
         self.youngs_modulus_pa.unwrap_or(rigid_pa)
     }
 
-    /// Visits the genes that have an effect. The joint of the head has none.
-    fn genes(
-        &mut self,
-        index: usize,
-        space: &BodySpace,
-        [density_min_kg_m3, density_max_kg_m3]: [f32; 2],
-        visit: GeneVisitor<'_>,
-    ) {
-        let limb = index + 1;
-        let thickness = GeneRange::Ratio(space.thickness_min_m, space.thickness_max_m);
-        let sizes = [
-            (
-                "length",
-                &mut self.length_m,
-                GeneRange::Ratio(space.length_min_m, space.length_max_m),
-            ),
-            ("width", &mut self.width_m, thickness),
-            ("height", &mut self.height_m, thickness),
-        ];
-        for (size, value, range) in sizes {
-            let field = format_args!("segments[{index}].{size}_m");
-            visit(
-                Gene { field, name: format_args!("block {limb}, {size}"), unit: "m", range },
-                value,
-            );
-        }
-        let range = GeneRange::Ratio(density_min_kg_m3, density_max_kg_m3);
-        let field = format_args!("segments[{index}].density_kg_m3");
-        let name = format_args!("block {limb}, density");
-        visit(Gene { field, name, unit: "kg/m³", range }, &mut self.density_kg_m3);
-        if let Some(modulus_pa) = &mut self.youngs_modulus_pa {
-            let range = GeneRange::Ratio(space.modulus_min_pa, space.modulus_max_pa);
-            let field = format_args!("segments[{index}].youngs_modulus_pa");
-            let name = format_args!("block {limb}, Young's modulus");
-            visit(Gene { field, name, unit: "Pa", range }, modulus_pa);
-        }
-        if index == 0 {
-            return;
-        }
-        let bend = GeneRange::Between(space.bend_limit_min_rad, space.bend_limit_max_rad);
-        let twist = GeneRange::Between(space.twist_limit_min_rad, space.twist_limit_max_rad);
-        for (axis, value, range) in
-            [("bend", &mut self.bend_limit_rad, bend), ("twist", &mut self.twist_limit_rad, twist)]
-        {
-            let field = format_args!("segments[{index}].{axis}_limit_rad");
-            let name = format_args!("joint {index}, {axis} limit");
-            visit(Gene { field, name, unit: "rad", range }, value);
-        }
-        let range = GeneRange::Between(space.strength_min, 1.0);
-        let field = format_args!("segments[{index}].strength");
-        let name = format_args!("joint {index}, strength");
-        visit(Gene { field, name, unit: "", range }, &mut self.strength);
+    /// Visits the genes of the block.
+    fn block_genes(&mut self, index: usize, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        let (field, name) =
+            (format_args!("segments[{index}]."), format_args!("block {}, ", index + 1));
+        genes.inside(field, name, |genes| {
+            let bodies = &space.bodies;
+            genes.gene("length_m", "length", SIZE, bodies.lengths(), &mut self.length_m);
+            genes.gene("width_m", "width", SIZE, bodies.thicknesses(), &mut self.width_m);
+            genes.gene("height_m", "height", SIZE, bodies.thicknesses(), &mut self.height_m);
+            let density = &mut self.density_kg_m3;
+            genes.gene("density_kg_m3", "density", DENSITY, space.densities(), density);
+            if let Some(modulus_pa) = &mut self.youngs_modulus_pa {
+                let range = GeneRange::Ratio(bodies.modulus_min_pa, bodies.modulus_max_pa);
+                genes.gene("youngs_modulus_pa", "Young's modulus", MODULUS, range, modulus_pa);
+            }
+        });
+    }
+
+    /// Visits the genes of the joint in front of the block.
+    fn joint_genes(&mut self, index: usize, space: &BodySpace, genes: &mut Genes<'_>) {
+        let (field, name) = (format_args!("segments[{index}]."), format_args!("joint {index}, "));
+        genes.inside(field, name, |genes| {
+            let (bend, twist) = (&mut self.bend_limit_rad, &mut self.twist_limit_rad);
+            genes.gene("bend_limit_rad", "bend limit", LIMIT, space.bend_limits(), bend);
+            genes.gene("twist_limit_rad", "twist limit", LIMIT, space.twist_limits(), twist);
+            genes.gene("strength", "strength", SHARE, space.strengths(), &mut self.strength);
+        });
     }
 }
 
-/// Visits the genes of all blocks, from the head.
-pub fn segment_genes(
-    segments: &mut [Segment],
-    space: &BodySpace,
-    densities: [f32; 2],
-    visit: GeneVisitor<'_>,
-) {
+/// Visits the genes of all blocks that have an effect, from the head.
+pub fn segment_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut Genes<'_>) {
     for (index, segment) in segments.iter_mut().enumerate() {
-        segment.genes(index, space, densities, visit);
+        segment.block_genes(index, space, genes);
+        if index > 0 {
+            segment.joint_genes(index, &space.bodies, genes);
+        }
+    }
+}
+
+/// Visits the genes of the joint of the head, which wait until a change of the body puts a block before it.
+pub fn waiting_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut Genes<'_>) {
+    if let Some(head) = segments.first_mut() {
+        head.joint_genes(0, &space.bodies, genes);
     }
 }
 
@@ -101,23 +83,10 @@ impl BodySpace {
     pub(in crate::genome) fn widen(&mut self, segments: &[Segment]) {
         let count = segments.len() as u32;
         (self.limbs_min, self.limbs_max) = (self.limbs_min.min(count), self.limbs_max.max(count));
-        let widen = |[least, most]: [&mut f32; 2], value: f32| {
-            (*least, *most) = (least.min(value), most.max(value));
-        };
         for segment in segments {
-            widen([&mut self.length_min_m, &mut self.length_max_m], segment.length_m);
-            for side in [segment.width_m, segment.height_m] {
-                widen([&mut self.thickness_min_m, &mut self.thickness_max_m], side);
-            }
-            widen(
-                [&mut self.bend_limit_min_rad, &mut self.bend_limit_max_rad],
-                segment.bend_limit_rad,
-            );
-            widen(
-                [&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad],
-                segment.twist_limit_rad,
-            );
-            self.strength_min = self.strength_min.min(segment.strength);
+            self.widen_sizes([segment.width_m, segment.length_m, segment.height_m]);
+            let limits_rad = [segment.bend_limit_rad, segment.twist_limit_rad];
+            self.widen_joints(limits_rad, segment.strength);
         }
         self.soft = segments.iter().any(|segment| segment.youngs_modulus_pa.is_some());
         if self.soft {
@@ -130,4 +99,24 @@ impl BodySpace {
         let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
         self.longest_m = self.longest_m.max(length_m);
     }
+
+    /// Widens the ranges of sizes so that they contain a part: its size across x, along y and along z, in metres.
+    pub(in crate::genome) fn widen_sizes(&mut self, [width_m, length_m, height_m]: [f32; 3]) {
+        widen([&mut self.length_min_m, &mut self.length_max_m], length_m);
+        for side_m in [width_m, height_m] {
+            widen([&mut self.thickness_min_m, &mut self.thickness_max_m], side_m);
+        }
+    }
+
+    /// Widens the ranges of joints so that they contain one with these limits of bend and twist, and this strength.
+    pub(in crate::genome) fn widen_joints(&mut self, [bend, twist]: [f32; 2], strength: f32) {
+        widen([&mut self.bend_limit_min_rad, &mut self.bend_limit_max_rad], bend);
+        widen([&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad], twist);
+        self.strength_min = self.strength_min.min(strength);
+    }
+}
+
+/// Widens a range so that it contains a value.
+fn widen([least, most]: [&mut f32; 2], value: f32) {
+    (*least, *most) = (least.min(value), most.max(value));
 }

@@ -2,7 +2,6 @@
 
 use std::fmt::Display;
 
-use super::segment::Segment;
 use crate::check::Invalid;
 
 /// Largest ratio of the masses of neighbouring blocks. Measured on a swinging chain with one inner iteration: at 10 the
@@ -11,7 +10,7 @@ pub const MASS_RATIO: f64 = 8.0;
 /// Largest ratio of their largest moments of inertia in a file: that of two blocks of the same shape, one of twice the
 /// sides.
 pub const INERTIA_RATIO: f64 = 32.0;
-/// The same in bodies that evolution makes.
+/// Largest ratio of the largest moments of inertia of neighbours in bodies that evolution makes.
 pub const EVOLVED_INERTIA_RATIO: f64 = 10.0;
 
 /// Largest principal moment of inertia of a box, in kg·m².
@@ -48,17 +47,4 @@ pub fn check_pair(
         }
     }
     Ok(())
-}
-
-/// Checks the ratios of all neighbours.
-///
-/// # Errors
-/// The first pair that differs too much.
-pub fn check_neighbours(segments: &[Segment]) -> Result<(), Invalid> {
-    segments.windows(2).enumerate().try_for_each(|(index, pair)| {
-        let of = |measure: fn(&Segment) -> f64| [measure(&pair[0]), measure(&pair[1])];
-        let names = format_args!("segments[{index}] and segments[{}]", index + 1);
-        let values = [of(Segment::mass_kg), of(Segment::inertia_kg_m2)];
-        check_pair(names, values, INERTIA_RATIO)
-    })
 }

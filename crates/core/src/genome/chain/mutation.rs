@@ -39,9 +39,9 @@ impl GenomeSpace {
     pub fn with_small_changes(&self, parent: &Genome, step: f64, rng: &mut ChaCha8Rng) -> Genome {
         let mut child = parent.clone();
         let mut count = 0_usize;
-        child.genes(self, &mut |gene, _| count += usize::from(!gene.range.is_point()));
+        child.visit(self, |gene, _| count += usize::from(!gene.range.is_point()));
         let share = LEAST_SHARE.max(1.0 / count.max(1) as f64);
-        child.genes(self, &mut |gene, value| {
+        child.visit(self, |gene, value| {
             if gene.range.is_point() || rng.random_range(0.0..1.0) >= share {
                 return;
             }

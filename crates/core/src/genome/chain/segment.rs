@@ -2,12 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::limits::{check_neighbours, inertia_kg_m2};
-use crate::check::{Invalid, within};
-use crate::genome::limits::{
-    DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA, SIZE_RANGE_M,
-};
-use crate::world::check_softness;
+use super::limits::inertia_kg_m2;
 
 /// Largest number of blocks in a body.
 pub const MOST_SEGMENTS: u32 = 12;
@@ -53,40 +48,4 @@ impl Segment {
     pub fn inertia_kg_m2(&self) -> f64 {
         inertia_kg_m2(self.mass_kg(), [self.length_m, self.width_m, self.height_m])
     }
-
-    /// Checks every value.
-    fn check(&self) -> Result<(), Invalid> {
-        within("length_m", self.length_m, SIZE_RANGE_M)?;
-        within("width_m", self.width_m, SIZE_RANGE_M)?;
-        within("height_m", self.height_m, SIZE_RANGE_M)?;
-        within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)?;
-        within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("strength", self.strength, 0.0..=1.0)?;
-        let Some(modulus_pa) = self.youngs_modulus_pa else { return Ok(()) };
-        within("youngs_modulus_pa", modulus_pa, MODULUS_RANGE_PA)?;
-        let sides_m = [self.width_m, self.height_m];
-        check_softness("youngs_modulus_pa", modulus_pa, sides_m, self.density_kg_m3)
-    }
-}
-
-/// Checks that a body of these blocks can be built.
-///
-/// # Errors
-/// Their number, a value of one, or the ratio of two neighbours is not allowed, or two have the same id.
-pub fn check_segments(segments: &[Segment]) -> Result<(), Invalid> {
-    within("segments", segments.len(), 2..=MOST_SEGMENTS as usize)?;
-    for (index, segment) in segments.iter().enumerate() {
-        let place = format!("segments[{index}]");
-        segment.check().map_err(|error| error.inside(&place))?;
-        if segments[..index].iter().any(|earlier| earlier.id == segment.id) {
-            let field = format!("{place}.id");
-            return Err(Invalid::new(
-                field,
-                segment.id,
-                "an id that no other block of the body has",
-            ));
-        }
-    }
-    check_neighbours(segments)
 }

@@ -1,6 +1,7 @@
 //! The space of bodies that evolve.
 
 use crate::check::Invalid;
+use crate::genome::gene::GeneRange;
 use crate::genome::limits::{LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
 use crate::schema::{
     Section, SettingGroup, Walk, is_default, number, setting_group, settings, switch, whole,
@@ -214,6 +215,31 @@ impl BodySpace {
     /// The numbers of blocks that a body may have.
     pub fn limbs(&self) -> std::ops::RangeInclusive<u32> {
         self.limbs_min..=self.limbs_max
+    }
+
+    /// The range of the length of a block or part.
+    pub(in crate::genome) fn lengths(&self) -> GeneRange<'static> {
+        GeneRange::Ratio(self.length_min_m, self.length_max_m)
+    }
+
+    /// The range of the width and the height of a block or part.
+    pub(in crate::genome) fn thicknesses(&self) -> GeneRange<'static> {
+        GeneRange::Ratio(self.thickness_min_m, self.thickness_max_m)
+    }
+
+    /// The range of the bend limit of a joint.
+    pub(in crate::genome) fn bend_limits(&self) -> GeneRange<'static> {
+        GeneRange::Between(self.bend_limit_min_rad, self.bend_limit_max_rad)
+    }
+
+    /// The range of the twist limit of a joint.
+    pub(in crate::genome) fn twist_limits(&self) -> GeneRange<'static> {
+        GeneRange::Between(self.twist_limit_min_rad, self.twist_limit_max_rad)
+    }
+
+    /// The range of the strength of a joint.
+    pub(in crate::genome) fn strengths(&self) -> GeneRange<'static> {
+        GeneRange::Between(self.strength_min, 1.0)
     }
 
     /// The shortest and the longest straight body of this number of blocks, in metres. None if there is no such body.

@@ -121,7 +121,8 @@ impl GenomeSpace {
         self.with_body_change_at(parent, change, place, rng)
     }
 
-    /// The same at this place: the index of the block, or of the first of two.
+    /// A genome whose body has this change at a place: the index of the block, or of the first of two. None under the
+    /// conditions of [`Self::with_body_change`].
     pub fn with_body_change_at(
         &self,
         parent: &Genome,

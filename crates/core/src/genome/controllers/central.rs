@@ -2,14 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SERVO_SETTINGS, SettingNames,
+    TWIST_SETTINGS, widen_weights,
+};
 use super::layer::Layer;
 use super::servo::ServoGenes;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::network_space::MOST_HIDDEN;
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
 
 /// Number of senses of a snake with this many joints: four of each joint, eight of each limb, four of the whole.
 pub const fn sense_count(joints: usize) -> usize {
@@ -39,24 +40,13 @@ impl CentralNetwork {
 }
 
 impl ControllerEncoding for CentralNetwork {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "central",
-            title: "Central",
-            words: "One network for the whole snake, from all senses to all joints.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-                "network.weight_range",
-                "network.hidden",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            SERVO_SETTINGS,
+            TWIST_SETTINGS,
+            &["network.weight_range", "network.hidden"],
+        ]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -70,50 +60,35 @@ impl ControllerEncoding for CentralNetwork {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes(space, visit);
-        space.wave.frequency_gene(&mut self.frequency_hz, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes(space, genes);
+        space.wave.frequency_gene(&mut self.frequency_hz, genes);
         let most = space.network.weight_range;
         let sense = |index: usize| format!("input {}", index + 1);
-        self.hidden.genes(["hidden", "hidden"], most, sense, visit);
+        self.hidden.genes(["hidden", "hidden"], most, sense, genes);
         let hidden = |index: usize| format!("hidden {}", index + 1);
-        self.outputs.genes(["outputs", "output"], most, hidden, visit);
+        self.outputs.genes(["outputs", "output"], most, hidden, genes);
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        visit("hidden neurons", self.hidden.neurons());
-        visit("outputs", self.outputs.neurons());
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        let (joints, hidden) = (self.joints as usize, self.hidden.neurons());
+        visit(format_args!("joints"), joints, 1..=MOST_JOINTS);
+        let inputs = sense_count(joints.min(MOST_JOINTS)) + 2;
+        self.hidden.lengths("hidden", 1..=MOST_HIDDEN as usize, inputs, visit);
+        let outputs = Self::outputs_of(joints, &self.servo);
+        self.outputs.lengths("outputs", outputs..=outputs, hidden, visit);
     }
 
     fn joints(&self) -> usize {
         self.joints as usize
     }
 
-    fn frequency_hz(&self) -> f32 {
-        self.frequency_hz
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("central");
-        self.servo.check().map_err(inside)?;
-        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ).map_err(inside)?;
-        within("joints", self.joints, 1..=MOST_JOINTS).map_err(inside)?;
-        let (joints, hidden) = (self.joints as usize, self.hidden.neurons());
-        within("hidden.neurons", hidden, 1..=MOST_HIDDEN as usize).map_err(inside)?;
-        self.hidden.check("hidden", hidden, sense_count(joints) + 2).map_err(inside)?;
-        let outputs = Self::outputs_of(joints, &self.servo);
-        self.outputs.check("outputs", outputs, hidden).map_err(inside)
-    }
-
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        space.wave.widen_frequency(self.frequency_hz);
-        let network = &mut space.network;
-        network.hidden = self.hidden.neurons() as u32;
-        network.weight_range =
-            self.outputs.needed_range(self.hidden.needed_range(network.weight_range));
+        space.network.hidden = self.hidden.neurons() as u32;
+        widen_weights(&mut space.network.weight_range, self);
     }
 }
 
 /// The most joints that a snake may have.
-const MOST_JOINTS: u32 = 11;
+const MOST_JOINTS: usize = 11;

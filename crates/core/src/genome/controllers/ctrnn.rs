@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, SERVO_SETTINGS, SettingNames, TWIST_SETTINGS, widen_weights,
+};
 use super::servo::ServoGenes;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
-use crate::genome::network_space::WEIGHT_RANGE;
+use crate::genome::gene::{GeneRange, Genes, GenomeShape, Quantity};
+use crate::genome::network_space::WEIGHT;
 use crate::genome::space::GenomeSpace;
 
 /// The inputs of a neuron, after the three neurons of its own joint.
@@ -59,6 +60,8 @@ pub struct CtrnnNeuron {
 
 /// The range of the logarithms of time constants: 0.05 s to 2 s, rounded.
 const LOG_TIME_CONSTANTS: [f32; 2] = [-1.3, 0.3];
+/// The decimal logarithm of a time constant in s.
+const LOG_TIME_CONSTANT: Quantity = Quantity { unit: "log s", limits: LOG_TIME_CONSTANTS };
 
 impl CtrnnNeuron {
     const ZEROED: Self = Self {
@@ -73,27 +76,26 @@ impl CtrnnNeuron {
         libm::powf(10.0, self.log_time_constant)
     }
 
-    fn weights(&self) -> impl Iterator<Item = f32> + '_ {
-        [self.bias].into_iter().chain(self.own).chain(self.inputs)
+    fn genes(&mut self, weights: GeneRange<'_>, genes: &mut Genes<'_>) {
+        let [least, most] = LOG_TIME_CONSTANTS;
+        let (range, value) = (GeneRange::Between(least, most), &mut self.log_time_constant);
+        genes.gene("log_time_constant", ", time constant", LOG_TIME_CONSTANT, range, value);
+        genes.gene("bias", ", bias", WEIGHT, weights, &mut self.bias);
+        for (from, weight) in self.own.iter_mut().enumerate() {
+            let (field, name) =
+                (format_args!("own[{from}]"), format_args!(" from neuron {}", from + 1));
+            genes.gene(field, name, WEIGHT, weights, weight);
+        }
+        for (from, (weight, input)) in self.inputs.iter_mut().zip(CTRNN_INPUTS).enumerate() {
+            let (field, name) = (format_args!("inputs[{from}]"), format_args!(" from {input}"));
+            genes.gene(field, name, WEIGHT, weights, weight);
+        }
     }
 }
 
 impl ControllerEncoding for CtrnnGenes {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "ctrnn",
-            title: "CTRNN",
-            words: "Continuous-time recurrent network: three leaky neurons at each joint.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-                "network.ctrnn_weight_range",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[SERVO_SETTINGS, TWIST_SETTINGS, &["network.ctrnn_weight_range"]]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -104,30 +106,13 @@ impl ControllerEncoding for CtrnnGenes {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes(space, visit);
-        let most = space.network.ctrnn_weight_range;
-        let weights = GeneRange::Between(-most, most);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes(space, genes);
+        let weights = GeneRange::around_zero(space.network.ctrnn_weight_range);
         for (index, neuron) in self.neurons.iter_mut().enumerate() {
-            let number = index + 1;
-            let [least, greatest] = LOG_TIME_CONSTANTS;
-            let range = GeneRange::Between(least, greatest);
-            let field = format_args!("neurons[{index}].log_time_constant");
-            let name = format_args!("neuron {number}, time constant");
-            visit(Gene { field, name, unit: "log s", range }, &mut neuron.log_time_constant);
-            let field = format_args!("neurons[{index}].bias");
-            let name = format_args!("neuron {number}, bias");
-            visit(Gene { field, name, unit: "", range: weights }, &mut neuron.bias);
-            for (from, weight) in neuron.own.iter_mut().enumerate() {
-                let field = format_args!("neurons[{index}].own[{from}]");
-                let name = format_args!("neuron {number} from neuron {}", from + 1);
-                visit(Gene { field, name, unit: "", range: weights }, weight);
-            }
-            for (from, (weight, input)) in neuron.inputs.iter_mut().zip(CTRNN_INPUTS).enumerate() {
-                let field = format_args!("neurons[{index}].inputs[{from}]");
-                let name = format_args!("neuron {number} from {input}");
-                visit(Gene { field, name, unit: "", range: weights }, weight);
-            }
+            let (field, name) =
+                (format_args!("neurons[{index}]."), format_args!("neuron {}", index + 1));
+            genes.inside(field, name, |genes| neuron.genes(weights, genes));
         }
     }
 
@@ -135,37 +120,14 @@ impl ControllerEncoding for CtrnnGenes {
         self.joints as usize
     }
 
-    /// That of an oscillator with the mean of the time constants, as an estimate.
-    fn frequency_hz(&self) -> f32 {
+    /// The frequency of an oscillator with the mean of the time constants.
+    fn estimated_frequency_hz(&self) -> Option<f32> {
         let sum_s: f32 = self.neurons.iter().map(CtrnnNeuron::time_constant_s).sum();
-        CTRNN_NEURONS as f32 / (std::f32::consts::TAU * sum_s)
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("ctrnn");
-        self.servo.check().map_err(inside)?;
-        for (index, neuron) in self.neurons.iter().enumerate() {
-            let place = format!("neurons[{index}]");
-            let [least, most] = LOG_TIME_CONSTANTS;
-            let field = format!("{place}.log_time_constant");
-            within(&field, neuron.log_time_constant, least..=most).map_err(inside)?;
-            within(&format!("{place}.bias"), neuron.bias, WEIGHT_RANGE).map_err(inside)?;
-            let lists = [("own", &neuron.own[..]), ("inputs", &neuron.inputs[..])];
-            for (list, weights) in lists {
-                for (from, weight) in weights.iter().enumerate() {
-                    let field = format!("{place}.{list}[{from}]");
-                    within(&field, *weight, WEIGHT_RANGE).map_err(inside)?;
-                }
-            }
-        }
-        Ok(())
+        Some(CTRNN_NEURONS as f32 / (std::f32::consts::TAU * sum_s))
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        let weights = self.neurons.iter().flat_map(CtrnnNeuron::weights);
-        let network = &mut space.network;
-        network.ctrnn_weight_range =
-            weights.map(|weight| weight.abs()).fold(network.ctrnn_weight_range, f32::max);
+        widen_weights(&mut space.network.ctrnn_weight_range, self);
     }
 }

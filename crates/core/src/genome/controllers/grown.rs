@@ -3,12 +3,11 @@
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{ControllerEncoding, FREQUENCY_SETTINGS, SERVO_SETTINGS, SettingNames};
 use super::servo::ServoGenes;
 use crate::check::{Invalid, within};
-use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
 use crate::learn::neat::{NeatRules, NetworkGenome};
 
 /// The inputs of a grown network that a snake has once, after the bend of each joint and the touch of each limb. The last
@@ -64,21 +63,8 @@ impl GrownGenes {
 }
 
 impl ControllerEncoding for GrownGenes {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "grown",
-            title: "Grown",
-            words: "A network for the whole snake, to which evolution adds nodes and links.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.angle_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[FREQUENCY_SETTINGS, SERVO_SETTINGS]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -91,34 +77,25 @@ impl ControllerEncoding for GrownGenes {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes_without_twist(space, visit);
-        space.wave.frequency_gene(&mut self.frequency_hz, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes_without_twist(space, genes);
+        space.wave.frequency_gene(&mut self.frequency_hz, genes);
     }
 
     fn joints(&self) -> usize {
         self.joints as usize
     }
 
-    fn frequency_hz(&self) -> f32 {
-        self.frequency_hz
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("grown");
-        self.servo.check().map_err(inside)?;
-        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
-        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ).map_err(inside)?;
+    fn check_rest(&self) -> Result<(), Invalid> {
         let [inputs, outputs] = Self::ends(self.joints as usize);
-        within("network.inputs", self.network.inputs, inputs..=inputs).map_err(inside)?;
-        within("network.outputs", self.network.outputs, outputs..=outputs).map_err(inside)?;
-        within("network.parameters", self.network.parameters.len(), 0..=0).map_err(inside)?;
-        self.network.check(&NeatRules::default()).map_err(|error| inside(error.inside("network")))
+        within("network.inputs", self.network.inputs, inputs..=inputs)?;
+        within("network.outputs", self.network.outputs, outputs..=outputs)?;
+        within("network.parameters", self.network.parameters.len(), 0..=0)?;
+        self.network.check(&NeatRules::default()).map_err(|error| error.inside("network"))
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen_without_twist(space);
-        space.wave.widen_frequency(self.frequency_hz);
     }
 
     fn hash_learned(&self, hash: &mut Xxh3Default) {

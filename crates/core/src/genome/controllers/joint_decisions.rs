@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::decisions::{DECISIONS_PER_S, Explorer, hash_xcs, shared};
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{ControllerEncoding, SERVO_SETTINGS, SettingNames};
 use super::servo::ServoGenes;
 use crate::check::{Invalid, within};
-use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::classifiers::{Xcs, XcsSettings};
 
@@ -79,19 +79,8 @@ impl JointDecisionGenes {
 }
 
 impl ControllerEncoding for JointDecisionGenes {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "joint_decisions",
-            title: "Joint decisions",
-            words: "Each joint chooses its bend four times a second, by rules of its own.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.angle_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[SERVO_SETTINGS]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -104,8 +93,8 @@ impl ControllerEncoding for JointDecisionGenes {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes_without_twist(space, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes_without_twist(space, genes);
     }
 
     fn joints(&self) -> usize {
@@ -113,20 +102,17 @@ impl ControllerEncoding for JointDecisionGenes {
     }
 
     /// Half the rate of decisions: that of a bend that changes with each.
-    fn frequency_hz(&self) -> f32 {
-        DECISIONS_PER_S as f32 / 2.0
+    fn estimated_frequency_hz(&self) -> Option<f32> {
+        Some(DECISIONS_PER_S as f32 / 2.0)
     }
 
     fn compact(&mut self) {
         self.systems = Arc::new(self.systems.iter().map(Xcs::compacted).collect());
     }
 
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("joint_decisions");
-        self.servo.check().map_err(inside)?;
-        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
-        Self::check_systems(&self.systems, self.systems.len()).map_err(inside)?;
-        self.explorer.as_ref().map_or(Ok(()), Explorer::check).map_err(inside)
+    fn check_rest(&self) -> Result<(), Invalid> {
+        Self::check_systems(&self.systems, self.systems.len())?;
+        self.explorer.as_ref().map_or(Ok(()), Explorer::check)
     }
 
     fn widen(&self, space: &mut GenomeSpace) {

@@ -1,11 +1,13 @@
 //! A layer of neurons: weights of its inputs, and a bias.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
+use super::encoding::LengthVisitor;
 use super::tanh::tanh_each;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
-use crate::genome::network_space::WEIGHT_RANGE;
+use crate::genome::gene::{GeneRange, Genes};
+use crate::genome::network_space::WEIGHT;
 
 /// The weights of a layer of neurons: one row for each neuron, with a weight for each input and its bias at the end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,40 +56,32 @@ impl Layer {
         [field, neuron]: [&'static str; 2],
         range: f32,
         input: impl Fn(usize) -> String,
-        visit: GeneVisitor<'_>,
+        genes: &mut Genes<'_>,
     ) {
-        let inputs = self.inputs();
-        let names: Vec<String> = (0..inputs).map(input).chain(["bias".to_owned()]).collect();
+        let range = GeneRange::around_zero(range);
+        let names: Vec<String> = (0..self.inputs()).map(input).chain(["bias".to_owned()]).collect();
         for (index, row) in self.rows.iter_mut().enumerate() {
             for (input, (weight, name)) in row.iter_mut().zip(&names).enumerate() {
                 let field = format_args!("{field}[{index}][{input}]");
                 let name = format_args!("{neuron} {} from {name}", index + 1);
-                let range = GeneRange::Between(-range, range);
-                visit(Gene { field, name, unit: "", range }, weight);
+                genes.gene(field, name, WEIGHT, range, weight);
             }
         }
     }
 
-    /// Checks the shape and every weight; `field` names the layer.
-    ///
-    /// # Errors
-    /// The first that is not allowed.
-    pub fn check(&self, field: &str, neurons: usize, inputs: usize) -> Result<(), Invalid> {
-        let neurons_allowed = neurons..=neurons;
-        within(&format!("{field}.neurons"), self.neurons(), neurons_allowed)?;
+    /// Visits the number of neurons, of which this many are allowed, and the number of weights of each; `field` names the
+    /// layer.
+    pub fn lengths(
+        &self,
+        field: &str,
+        neurons: RangeInclusive<usize>,
+        inputs: usize,
+        visit: LengthVisitor<'_>,
+    ) {
+        visit(format_args!("{field}.neurons"), self.neurons(), neurons);
         for (index, row) in self.rows.iter().enumerate() {
-            let place = format!("{field}[{index}]");
-            within(&format!("{place}.weights"), row.len(), inputs + 1..=inputs + 1)?;
-            for (input, weight) in row.iter().enumerate() {
-                within(&format!("{place}[{input}]"), *weight, WEIGHT_RANGE)?;
-            }
+            visit(format_args!("{field}[{index}].weights"), row.len(), inputs + 1..=inputs + 1);
         }
-        Ok(())
-    }
-
-    /// The greatest size of its weights, at least `range`.
-    pub fn needed_range(&self, range: f32) -> f32 {
-        self.rows.iter().flatten().map(|weight| weight.abs()).fold(range, f32::max)
     }
 }
 
@@ -101,18 +95,5 @@ mod tests {
         let mut outputs = [0.0; 2];
         layer.respond(&[0.5, 0.25], &mut outputs);
         assert_eq!(outputs, [libm::tanhf(0.5), libm::tanhf(-1.0)]);
-    }
-
-    #[test]
-    fn a_hostile_layer_is_refused_with_its_place() {
-        let refusal = |layer: &Layer| layer.check("hidden", 2, 3).expect_err("refused").to_string();
-        let mut layer = Layer::zeroed(2, 3);
-        layer.check("hidden", 2, 3).expect("allowed");
-        layer.rows[1][2] = f32::NAN;
-        assert_eq!(refusal(&layer), "hidden[1][2] is NaN; allowed: -100 to 100");
-        layer.rows[1].push(0.0);
-        assert_eq!(refusal(&layer), "hidden[1].weights is 5; allowed: 4 to 4");
-        layer.rows.pop();
-        assert_eq!(refusal(&layer), "hidden.neurons is 1; allowed: 2 to 2");
     }
 }

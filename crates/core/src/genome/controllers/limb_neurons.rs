@@ -12,13 +12,16 @@
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SERVO_SETTINGS, SettingNames,
+    TWIST_SETTINGS, widen_weights,
+};
 use super::neuron::LimbNeuron;
 use super::servo::ServoGenes;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::check::Invalid;
+use crate::genome::gene::{Gene, GeneRange, Genes, GenomeShape};
+use crate::genome::limits::PHASE;
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
 
 /// Neurons of each limb. The first drives the bend target of the joint behind the limb, the second the twist target.
 pub const LIMB_NEURONS: usize = 4;
@@ -60,24 +63,13 @@ impl LimbNeurons {
 }
 
 impl ControllerEncoding for LimbNeurons {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "limb_neurons",
-            title: "Limb neurons",
-            words: "Four neurons in each limb, wired to one another, to the neighbouring limbs and to senses.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-                "network.weight_range",
-                "network.limb_neurons_shared",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            SERVO_SETTINGS,
+            TWIST_SETTINGS,
+            &["network.weight_range", "network.limb_neurons_shared"],
+        ]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -91,64 +83,50 @@ impl ControllerEncoding for LimbNeurons {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes(space, visit);
-        space.wave.frequency_gene(&mut self.frequency_hz, visit);
-        let (field, name) = (format_args!("lag_rad"), format_args!("lag per limb"));
-        visit(Gene { field, name, unit: "rad", range: GeneRange::Turn }, &mut self.lag_rad);
-        let most = space.network.weight_range;
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes(space, genes);
+        space.wave.frequency_gene(&mut self.frequency_hz, genes);
+        genes.gene("lag_rad", "lag per limb", PHASE, GeneRange::Turn, &mut self.lag_rad);
+        let weights = space.network.weights();
         let is_shared = self.limbs.len() == 1;
         for (limb, neurons) in self.limbs.iter_mut().enumerate() {
             let part = if is_shared { String::new() } else { format!("limb {} ", limb + 1) };
             for (index, neuron) in neurons.iter_mut().enumerate() {
-                let field = format_args!("limbs[{limb}][{index}]");
-                neuron.genes(field, format_args!("{part}neuron {}", index + 1), most, visit);
+                let field = format_args!("limbs[{limb}][{index}].");
+                let name = format_args!("{part}neuron {}, ", index + 1);
+                genes.inside(field, name, |genes| neuron.genes(weights, genes));
             }
         }
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        visit("limbs with neurons of their own", self.limbs.len());
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        let limbs = self.limb_count();
+        visit(format_args!("limbs"), self.limbs.len(), 1..=limbs);
     }
 
     fn joints(&self) -> usize {
         self.joints as usize
     }
 
-    fn frequency_hz(&self) -> f32 {
-        self.frequency_hz
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("limb_neurons");
-        self.servo.check().map_err(inside)?;
-        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ).map_err(inside)?;
-        within("lag_rad", self.lag_rad, -10.0..=10.0).map_err(inside)?;
-        let (sets, limbs) = (self.limbs.len(), self.limb_count());
-        if sets != 1 && sets != limbs {
-            return Err(inside(Invalid::new("limbs", sets, format!("1 or {limbs}"))));
+    fn check_rest(&self) -> Result<(), Invalid> {
+        match (self.limbs.len(), self.limb_count()) {
+            (sets, limbs) if sets == 1 || sets == limbs => Ok(()),
+            (sets, limbs) => Err(Invalid::new("limbs", sets, format!("1 or {limbs}"))),
         }
-        for (limb, neurons) in self.limbs.iter().enumerate() {
-            for (index, neuron) in neurons.iter().enumerate() {
-                neuron.check(&format!("limbs[{limb}][{index}]")).map_err(inside)?;
-            }
-        }
-        Ok(())
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        space.wave.widen_frequency(self.frequency_hz);
-        let network = &mut space.network;
-        network.limb_neurons_shared = self.limbs.len() == 1;
-        let weights = self.neurons().flat_map(LimbNeuron::weights);
-        network.weight_range = weights.map(f32::abs).fold(network.weight_range, f32::max);
+        space.network.limb_neurons_shared = self.limbs.len() == 1;
+        widen_weights(&mut space.network.weight_range, self);
     }
 
     /// A neuron's genes mutate by chance, independently of its neighbours' genes.
     fn after_mutation(&mut self, before: &[f32], space: &GenomeSpace, rng: &mut ChaCha8Rng) {
         let (mut parent, mut values) = (self.clone(), before.iter());
-        parent.genes(space, &mut |_, value| *value = values.next().copied().unwrap_or(*value));
+        let mut take =
+            |_: Gene<'_>, value: &mut f32| *value = values.next().copied().unwrap_or(*value);
+        parent.genes(space, &mut Genes::to(&mut take));
         let most = space.network.weight_range;
         for (neuron, before) in self.limbs.iter_mut().flatten().zip(parent.neurons()) {
             neuron.mutate(before, most, rng);
@@ -190,7 +168,7 @@ mod tests {
             genome.controller.check().expect("its own");
             let other = self::space(!is_shared);
             let error = other.check_genome(&genome, SHAPE).expect_err("refused");
-            assert_eq!(error.field, "limbs with neurons of their own");
+            assert_eq!(error.field, "limbs");
             other.widened_for(&genome).check_genome(&genome, SHAPE).expect("widened");
         }
     }
@@ -210,35 +188,6 @@ mod tests {
         for (good, bad) in [("kind:tanh", "kind:cosine"), ("beat_cosine", "own9")] {
             let refused = ron::from_str::<ControllerGenes>(&text.replace(good, bad));
             assert!(refused.is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn hostile_genes_are_refused_with_their_place() {
-        let refusal = |change: fn(&mut LimbNeurons)| {
-            let mut rng = stream(1, 1, 0, Purpose::Birth);
-            let mut genome = space(false).random_genome(SHAPE, &mut rng);
-            change(genes(&mut genome));
-            genome.controller.check().expect_err("refused").to_string()
-        };
-        for (change, message) in [
-            (
-                (|genes| genes.limbs[4][1].bias = f32::NAN) as fn(&mut LimbNeurons),
-                "limb_neurons.limbs[4][1].bias is NaN; allowed: -100 to 100",
-            ),
-            (
-                |genes| genes.limbs[0][3].inputs[2].weight = f32::INFINITY,
-                "limb_neurons.limbs[0][3].inputs[2].weight is inf; allowed: -100 to 100",
-            ),
-            (|genes| genes.limbs.truncate(3), "limb_neurons.limbs is 3; allowed: 1 or 5"),
-            (|genes| genes.limbs.clear(), "limb_neurons.limbs is 0; allowed: 1 or 5"),
-            (
-                |genes| genes.frequency_hz = -1.0,
-                "limb_neurons.frequency_hz is -1; allowed: 0.01 to 20",
-            ),
-            (|genes| genes.lag_rad = 99.0, "limb_neurons.lag_rad is 99; allowed: -10 to 10"),
-        ] {
-            assert_eq!(refusal(change), message);
         }
     }
 }

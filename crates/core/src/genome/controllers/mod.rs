@@ -32,7 +32,7 @@ pub use decisions::{
     DECISION_DISCOUNT, DECISIONS_PER_S, DecisionGenes, Explorer, POSTURES, Policy, SITUATION_BITS,
     TABLE_QUESTIONS, TABLE_STATES,
 };
-pub use encoding::{ControllerInfo, JointCommands};
+pub use encoding::JointCommands;
 pub use gait::Gait;
 pub use grown::{GROWN_INPUTS, GrownGenes};
 pub use joint_decisions::{JOINT_BENDS, JOINT_BITS, JointDecisionGenes};
@@ -56,12 +56,12 @@ pub use wave_rule::{JointGroup, RULE_SENSES, RuleCondition, WaveRule};
 
 use serde::{Deserialize, Serialize};
 
-use super::gene::GenomeShape;
+use super::gene::{Gene, Genes, GenomeShape, Quantity, check_limits};
 use super::kind::ControllerKind;
 use super::space::GenomeSpace;
-use crate::check::Invalid;
-use crate::schema::named_by_info;
-use encoding::ControllerEncoding;
+use super::wave_space::{FREQUENCY, SERVO_DAMPING, STIFFNESS};
+use crate::check::{Invalid, within};
+use encoding::{ControllerEncoding, SettingNames};
 
 /// Makes the enum of all kinds of genes from one line for each kind.
 macro_rules! registry {
@@ -71,8 +71,8 @@ macro_rules! registry {
         pub enum ControllerGenes { $($(#[$doc])* $kind($genes),)* }
 
         impl ControllerKind {
-            fn info(self) -> &'static ControllerInfo {
-                match self { $(Self::$kind => <$genes>::info(),)* }
+            fn settings(self) -> SettingNames {
+                match self { $(Self::$kind => <$genes>::settings(),)* }
             }
 
             /// Genes of zeros, in the layout that a space prescribes for a shape.
@@ -107,7 +107,7 @@ registry! {
     Gait(Gait),
     /// A gait with reflexes.
     Reflex(ReflexGait),
-    /// The same small network at each joint.
+    /// One small network, which acts at each joint.
     Modular(ModularNetwork),
     /// One network for the whole snake.
     Central(CentralNetwork),
@@ -127,25 +127,18 @@ registry! {
     PartNeurons(PartNeurons),
 }
 
-named_by_info!(ControllerKind);
-
 impl ControllerKind {
     /// Whether a setting below `genome`, by its path there, matters to this kind. Settings that no kind names
     /// matter to all.
     pub fn uses(self, setting: &str) -> bool {
-        let names = |kind: Self| kind.info().settings.contains(&setting);
-        names(self) || !Self::ALL.into_iter().any(names)
+        let names = |kind: &Self| kind.settings().iter().any(|group| group.contains(&setting));
+        names(&self) || !Self::ALL.iter().any(names)
     }
 
     /// The settings below `genome` that matter to other kinds alone, by their paths there.
     pub fn unused_settings(self) -> Vec<&'static str> {
-        let all = Self::ALL.into_iter().flat_map(|kind| kind.info().settings);
-        all.copied().filter(|setting| !self.uses(setting)).collect()
-    }
-
-    /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.
-    pub fn senses_surroundings(self) -> bool {
-        self.info().senses_surroundings
+        let all = Self::ALL.iter().flat_map(|kind| kind.settings());
+        all.copied().flatten().copied().filter(|setting| !self.uses(setting)).collect()
     }
 }
 
@@ -158,7 +151,9 @@ impl ControllerGenes {
     /// Frequency of the motion, in Hz. A signal has no period: half the number of sign changes of its torques
     /// per second, which is the same for a sine.
     pub fn frequency_hz(&self) -> f32 {
-        self.encoding().frequency_hz()
+        let of_gene = || self.values().into_iter().find(|(quantity, _)| *quantity == FREQUENCY);
+        let estimated_hz = self.encoding().estimated_frequency_hz();
+        estimated_hz.or_else(|| of_gene().map(|(_, value)| value)).unwrap_or(0.0)
     }
 
     /// Drops what was learned but changes nothing that the snake does: rules that no decision needs.
@@ -171,7 +166,45 @@ impl ControllerGenes {
     /// # Errors
     /// The first value that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
-        self.encoding().check()
+        // Values of genes come first: a servo's decide how many outputs a network has.
+        let check = || {
+            check_limits(|genes| self.clone().genes(&GenomeSpace::default(), genes))?;
+            let mut lengths = Ok(());
+            self.encoding().lengths(&mut |name, length, allowed| {
+                if lengths.is_ok() {
+                    lengths = within(&name.to_string(), length, allowed);
+                }
+            });
+            lengths.and_then(|()| self.encoding().check_rest())
+        };
+        check().map_err(|error| error.inside(self.kind().name()))
+    }
+
+    /// Widens a space so that it contains these genes, where ranges are settings.
+    pub(super) fn widen(&self, space: &mut GenomeSpace) {
+        let wave = &mut space.wave;
+        for (quantity, value) in self.values() {
+            match quantity {
+                FREQUENCY => wave.widen_frequency(value),
+                STIFFNESS => wave.widen_stiffness(value),
+                SERVO_DAMPING => wave.servo_damping_nms_per_rad = value,
+                _ => {}
+            }
+        }
+        self.encoding().widen(space);
+    }
+
+    /// The values of all genes, with their quantities.
+    fn values(&self) -> Vec<(Quantity, f32)> {
+        let mut values = Vec::new();
+        let mut add = |gene: Gene<'_>, value: &mut f32| values.push((gene.quantity, *value));
+        self.clone().genes(&GenomeSpace::default(), &mut Genes::to(&mut add));
+        values
+    }
+
+    /// Visits every gene in a fixed order, with its range in `space`.
+    pub(super) fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.encoding_mut().genes(space, genes);
     }
 
     /// The commands that the genes alone determine for a trial; none where they depend on senses.
@@ -186,10 +219,49 @@ mod tests {
 
     #[test]
     fn names_in_files_are_those_of_the_registry() {
-        for kind in ControllerKind::ALL {
+        for &kind in ControllerKind::ALL {
             assert_eq!(ron::to_string(&kind).expect("written"), kind.name());
             assert_eq!(kind.title().to_lowercase().replace(' ', "_"), kind.name());
         }
+    }
+
+    #[test]
+    fn lists_of_the_wrong_length_are_refused_with_their_place() {
+        let (space, shape) = (GenomeSpace::default(), GenomeShape { joints: 4, duration_s: 2.0 });
+        let refusal = |genes: ControllerGenes| genes.check().expect_err("refused").to_string();
+        let modular = |change: fn(&mut Layer)| {
+            let mut genes = ModularNetwork::zeroed(&space, shape);
+            change(&mut genes.hidden);
+            refusal(ControllerGenes::Modular(genes))
+        };
+        let message = modular(|hidden| hidden.rows[1].push(0.0));
+        assert_eq!(message, "modular.hidden[1].weights is 20; allowed: 19 to 19");
+        let message = modular(|hidden| hidden.rows.clear());
+        assert_eq!(message, "modular.hidden.neurons is 0; allowed: 1 to 32");
+        let message = modular(|hidden| drop(hidden.rows.pop()));
+        assert_eq!(message, "modular.outputs[0].weights is 5; allowed: 4 to 4");
+        let limbs = |count| {
+            let mut genes = LimbNeurons::zeroed(&space, shape);
+            genes.limbs = vec![genes.limbs[0]; count];
+            refusal(ControllerGenes::LimbNeurons(genes))
+        };
+        assert_eq!(limbs(0), "limb_neurons.limbs is 0; allowed: 1 to 5");
+        assert_eq!(limbs(3), "limb_neurons.limbs is 3; allowed: 1 or 5");
+        let rules = |change: fn(&mut RuleGenes)| {
+            let mut genes = RuleGenes::zeroed(&space, shape);
+            change(&mut genes);
+            refusal(ControllerGenes::Rules(genes))
+        };
+        let message = rules(|genes| genes.rules.clear());
+        assert_eq!(message, "rules.number of rules is 0; allowed: 1 to 64");
+        let message = rules(|genes| genes.library.clear());
+        assert_eq!(message, "rules.library waves is 0; allowed: 1 to 8");
+        let message = rules(|genes| drop(genes.library[2].joints.pop()));
+        assert_eq!(message, "rules.library[2].joints is 3; allowed: 4 to 4");
+        let message = rules(|genes| genes.library[1].joints[0].bend.harmonics.clear());
+        assert_eq!(message, "rules.library[1].joints[0].bend.harmonics is 0; allowed: 1 to 5");
+        let message = rules(|genes| genes.rules[3].wave = 5);
+        assert_eq!(message, "rules.rules[3].wave is 5; allowed: 1 to 4");
     }
 
     #[test]

@@ -2,14 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SERVO_SETTINGS, SettingNames,
+    TWIST_SETTINGS, widen_weights,
+};
 use super::layer::Layer;
 use super::servo::ServoGenes;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::gene::{GeneRange, Genes, GenomeShape};
+use crate::genome::limits::PHASE;
 use crate::genome::network_space::MOST_HIDDEN;
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
 
 /// The inputs of a joint's module.
 pub const MODULE_INPUTS: [&str; 18] = [
@@ -54,25 +56,20 @@ pub struct ModularNetwork {
     pub outputs: Layer,
 }
 
+impl ModularNetwork {
+    fn outputs_of(servo: &ServoGenes) -> usize {
+        if servo.twists() { 3 } else { 2 }
+    }
+}
+
 impl ControllerEncoding for ModularNetwork {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "modular",
-            title: "Modular",
-            words: "The same small network at each joint; neighbours exchange messages.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-                "network.weight_range",
-                "network.hidden",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            SERVO_SETTINGS,
+            TWIST_SETTINGS,
+            &["network.weight_range", "network.hidden"],
+        ]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -82,54 +79,35 @@ impl ControllerEncoding for ModularNetwork {
             frequency_hz: 1.0,
             lag_rad: 0.0,
             hidden: Layer::zeroed(hidden, MODULE_INPUTS.len()),
-            outputs: Layer::zeroed(if servo.twists() { 3 } else { 2 }, hidden),
+            outputs: Layer::zeroed(Self::outputs_of(&servo), hidden),
             servo,
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes(space, visit);
-        space.wave.frequency_gene(&mut self.frequency_hz, visit);
-        let (field, name) = (format_args!("lag_rad"), format_args!("lag per joint"));
-        visit(Gene { field, name, unit: "rad", range: GeneRange::Turn }, &mut self.lag_rad);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes(space, genes);
+        space.wave.frequency_gene(&mut self.frequency_hz, genes);
+        genes.gene("lag_rad", "lag per joint", PHASE, GeneRange::Turn, &mut self.lag_rad);
         let most = space.network.weight_range;
         let input = |index: usize| MODULE_INPUTS.get(index).copied().unwrap_or("").to_owned();
-        self.hidden.genes(["hidden", "hidden"], most, input, visit);
+        self.hidden.genes(["hidden", "hidden"], most, input, genes);
         let hidden = |index: usize| format!("hidden {}", index + 1);
-        self.outputs.genes(["outputs", "output"], most, hidden, visit);
+        self.outputs.genes(["outputs", "output"], most, hidden, genes);
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        visit("hidden neurons", self.hidden.neurons());
-        visit("outputs", self.outputs.neurons());
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        self.hidden.lengths("hidden", 1..=MOST_HIDDEN as usize, MODULE_INPUTS.len(), visit);
+        let outputs = Self::outputs_of(&self.servo);
+        self.outputs.lengths("outputs", outputs..=outputs, self.hidden.neurons(), visit);
     }
 
     fn joints(&self) -> usize {
         self.joints as usize
     }
 
-    fn frequency_hz(&self) -> f32 {
-        self.frequency_hz
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("modular");
-        self.servo.check().map_err(inside)?;
-        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ).map_err(inside)?;
-        within("lag_rad", self.lag_rad, -10.0..=10.0).map_err(inside)?;
-        let hidden = self.hidden.neurons();
-        within("hidden.neurons", hidden, 1..=MOST_HIDDEN as usize).map_err(inside)?;
-        self.hidden.check("hidden", hidden, MODULE_INPUTS.len()).map_err(inside)?;
-        let outputs = if self.servo.twists() { 3 } else { 2 };
-        self.outputs.check("outputs", outputs, hidden).map_err(inside)
-    }
-
     fn widen(&self, space: &mut GenomeSpace) {
         self.servo.widen(space);
-        space.wave.widen_frequency(self.frequency_hz);
-        let network = &mut space.network;
-        network.hidden = self.hidden.neurons() as u32;
-        network.weight_range =
-            self.outputs.needed_range(self.hidden.needed_range(network.weight_range));
+        space.network.hidden = self.hidden.neurons() as u32;
+        widen_weights(&mut space.network.weight_range, self);
     }
 }

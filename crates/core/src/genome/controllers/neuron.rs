@@ -3,14 +3,12 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use std::fmt::Arguments;
 
 use super::neuron_choices::{
-    KIND_CODES, NEURON_SOURCES, NeuronKind, NeuronSource, SOURCE_CODES, visit_choice,
+    KIND_CODES, NEURON_SOURCES, NeuronKind, NeuronSource, SOURCE_CODES, choice_gene,
 };
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
-use crate::genome::network_space::WEIGHT_RANGE;
+use crate::genome::gene::{GeneRange, Genes};
+use crate::genome::network_space::WEIGHT;
 use crate::rng::drawn;
 
 /// Inputs of a neuron.
@@ -24,11 +22,11 @@ const MUTATION_CHANCE: f64 = 0.1;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimbNeuron {
-    /// What it makes of its sum.
+    /// The function of its sum.
     pub kind: NeuronKind,
     /// Added to its sum.
     pub bias: f32,
-    /// What it reads.
+    /// Its inputs.
     pub inputs: [NeuronInput; NEURON_INPUTS],
 }
 
@@ -69,45 +67,19 @@ impl LimbNeuron {
         self.kind.response(sum + self.bias)
     }
 
-    /// Visits its genes; `field` and `name` are its own, weights and bias are in ±`most`.
-    pub(super) fn genes(
-        &mut self,
-        field: Arguments<'_>,
-        name: Arguments<'_>,
-        most: f32,
-        visit: GeneVisitor<'_>,
-    ) {
-        let gene = Gene {
-            field: format_args!("{field}.kind"),
-            name: format_args!("{name}, kind"),
-            unit: "",
-            range: GeneRange::OneOf(&KIND_CODES),
-        };
-        visit_choice(gene, &NeuronKind::ALL, &mut self.kind, visit);
-        let weights = GeneRange::Between(-most, most);
-        let gene = Gene {
-            field: format_args!("{field}.bias"),
-            name: format_args!("{name}, bias"),
-            unit: "",
-            range: weights,
-        };
-        visit(gene, &mut self.bias);
+    /// Visits its genes, of which weights and bias have this range.
+    pub(super) fn genes(&mut self, weights: GeneRange<'_>, genes: &mut Genes<'_>) {
+        choice_gene("kind", "kind", &NeuronKind::ALL, &KIND_CODES, &mut self.kind, genes);
+        genes.gene("bias", "bias", WEIGHT, weights, &mut self.bias);
         for (index, input) in self.inputs.iter_mut().enumerate() {
             let number = index + 1;
-            let gene = Gene {
-                field: format_args!("{field}.inputs[{index}].source"),
-                name: format_args!("{name}, source {number}"),
-                unit: "",
-                range: GeneRange::OneOf(&SOURCE_CODES),
-            };
-            visit_choice(gene, &NeuronSource::ALL, &mut input.source, visit);
-            let gene = Gene {
-                field: format_args!("{field}.inputs[{index}].weight"),
-                name: format_args!("{name}, weight {number}"),
-                unit: "",
-                range: weights,
-            };
-            visit(gene, &mut input.weight);
+            let field = format_args!("inputs[{index}].source");
+            let name = format_args!("source {number}");
+            let source = &mut input.source;
+            choice_gene(field, name, &NeuronSource::ALL, &SOURCE_CODES, source, genes);
+            let field = format_args!("inputs[{index}].weight");
+            let name = format_args!("weight {number}");
+            genes.gene(field, name, WEIGHT, weights, &mut input.weight);
         }
     }
 
@@ -132,23 +104,6 @@ impl LimbNeuron {
                 input.weight = before.weight;
             }
         }
-    }
-
-    /// Checks every value; `field` names the neuron. What a neuron is and reads is one of a list in any file.
-    ///
-    /// # Errors
-    /// The first that is not allowed.
-    pub(super) fn check(&self, field: &str) -> Result<(), Invalid> {
-        within(&format!("{field}.bias"), self.bias, WEIGHT_RANGE)?;
-        for (index, input) in self.inputs.iter().enumerate() {
-            within(&format!("{field}.inputs[{index}].weight"), input.weight, WEIGHT_RANGE)?;
-        }
-        Ok(())
-    }
-
-    /// Its weights and its bias.
-    pub(super) fn weights(&self) -> impl Iterator<Item = f32> + '_ {
-        self.inputs.iter().map(|input| input.weight).chain([self.bias])
     }
 }
 

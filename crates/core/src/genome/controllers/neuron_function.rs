@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::schema::listed_values;
+
 /// Time constant of a neuron that smooths, in s.
 const SMOOTH_S: f64 = 0.25;
 /// Largest output of a neuron, and largest state.
@@ -9,56 +11,58 @@ const LARGEST_OUTPUT: f64 = 10.0;
 /// Largest exponent, so that no output overflows.
 const LARGEST_EXPONENT: f64 = 5.0;
 
-/// The function of a neuron. Its inputs are a, b and c, of which it has as many as it needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum NeuronFunction {
-    /// a + b + c.
-    Sum,
-    /// a b.
-    Product,
-    /// a / b; 0 for b = 0.
-    Divide,
-    /// 1 if a + b + c > 0, otherwise 0.
-    SumThreshold,
-    /// 1 if a > b, otherwise -1.
-    GreaterThan,
-    /// -1, 0 or 1.
-    SignOf,
-    /// The least of a, b and c.
-    Min,
-    /// The greatest of them.
-    Max,
-    /// |a|.
-    Abs,
-    /// b if a > 0, otherwise c.
-    If,
-    /// From b at a = 0 to c at a = 1.
-    Interpolate,
-    /// sin a.
-    Sin,
-    /// cos a.
-    Cos,
-    /// The arc tangent of a.
-    Atan,
-    /// ln(|a| + 10⁻⁶).
-    Log,
-    /// exp a, with an exponent of at most 5 to either side.
-    Expt,
-    /// tanh(a + b + c): the neuron of McCulloch and Pitts with a smooth step.
-    Sigmoid,
-    /// The integral of a over time.
-    Integrate,
-    /// The rate of a.
-    Differentiate,
-    /// a, smoothed.
-    Smooth,
-    /// Keeps a as long as b > 0, and its last value afterwards.
-    Memory,
-    /// A sine wave; a shifts its phase.
-    OscillateWave,
-    /// A saw tooth from -1 to 1; a shifts its phase.
-    OscillateSaw,
+listed_values! {
+    /// The function of a neuron. Its inputs are a, b and c, of which it has as many as it needs.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum NeuronFunction {
+        /// a + b + c.
+        Sum;
+        /// a b.
+        Product;
+        /// a / b; 0 for b = 0.
+        Divide;
+        /// 1 if a + b + c > 0, otherwise 0.
+        SumThreshold;
+        /// 1 if a > b, otherwise -1.
+        GreaterThan;
+        /// -1, 0 or 1.
+        SignOf;
+        /// The least of a, b and c.
+        Min;
+        /// The greatest of them.
+        Max;
+        /// |a|.
+        Abs;
+        /// b if a > 0, otherwise c.
+        If;
+        /// From b at a = 0 to c at a = 1.
+        Interpolate;
+        /// sin a.
+        Sin;
+        /// cos a.
+        Cos;
+        /// The arc tangent of a.
+        Atan;
+        /// ln(|a| + 10⁻⁶).
+        Log;
+        /// exp a, with an exponent of at most 5 to either side.
+        Expt;
+        /// tanh(a + b + c): the neuron of McCulloch and Pitts with a smooth step.
+        Sigmoid;
+        /// The integral of a over time.
+        Integrate;
+        /// The rate of a.
+        Differentiate;
+        /// a, smoothed.
+        Smooth;
+        /// Keeps a as long as b > 0, and its last value afterwards.
+        Memory;
+        /// A sine wave; a shifts its phase.
+        OscillateWave;
+        /// A saw tooth from -1 to 1; a shifts its phase.
+        OscillateSaw;
+    }
 }
 
 /// The memory of a neuron between two updates.
@@ -75,32 +79,6 @@ pub struct NeuronMoment {
 }
 
 impl NeuronFunction {
-    /// All functions.
-    pub const ALL: [Self; 23] = [
-        Self::Sum,
-        Self::Product,
-        Self::Divide,
-        Self::SumThreshold,
-        Self::GreaterThan,
-        Self::SignOf,
-        Self::Min,
-        Self::Max,
-        Self::Abs,
-        Self::If,
-        Self::Interpolate,
-        Self::Sin,
-        Self::Cos,
-        Self::Atan,
-        Self::Log,
-        Self::Expt,
-        Self::Sigmoid,
-        Self::Integrate,
-        Self::Differentiate,
-        Self::Smooth,
-        Self::Memory,
-        Self::OscillateWave,
-        Self::OscillateSaw,
-    ];
     /// The functions of Miconi and Channon (2005), a smooth step, and an oscillator.
     pub const STANDARD: [Self; 2] = [Self::Sigmoid, Self::OscillateWave];
 

@@ -3,14 +3,17 @@
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SettingNames, widen_weights,
+};
 use super::neuron_function::NeuronFunction;
 use crate::check::{Invalid, within};
 use crate::genome::creature::MOST_NODES;
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
-use crate::genome::network_space::WEIGHT_RANGE;
+use crate::genome::gene::{GeneRange, Genes, GenomeShape};
+use crate::genome::network_space::WEIGHT;
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::FREQUENCY_RANGE_HZ;
+use crate::genome::wave_space::FREQUENCY;
+use crate::schema::listed_values;
 
 /// Largest number of neurons of a part.
 pub const MOST_PART_NEURONS: usize = 12;
@@ -83,42 +86,26 @@ pub enum PartSource {
     Shared(u8),
 }
 
-/// A sense of a part: see the catalogue of senses in `control`. Those of a joint are of the joint that holds the part; the
-/// first part has none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "the catalogue of senses describes them")]
-pub enum PartSense {
-    Bend,
-    Twist,
-    BendRate,
-    TwistRate,
-    Touch,
-    Load,
-    Blocked,
-    Pitch,
-    Roll,
-    Gap,
-    StepUp,
-    Yaw,
-}
-
-impl PartSense {
-    /// All of them.
-    pub const ALL: [Self; 12] = [
-        Self::Bend,
-        Self::Twist,
-        Self::BendRate,
-        Self::TwistRate,
-        Self::Touch,
-        Self::Load,
-        Self::Blocked,
-        Self::Pitch,
-        Self::Roll,
-        Self::Gap,
-        Self::StepUp,
-        Self::Yaw,
-    ];
+listed_values! {
+    /// A sense of a part: see the catalogue of senses in `control`. Those of a joint are of the joint that holds the part; the
+    /// first part has none.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    #[expect(missing_docs, reason = "the catalogue of senses describes them")]
+    pub enum PartSense {
+        Bend;
+        Twist;
+        BendRate;
+        TwistRate;
+        Touch;
+        Load;
+        Blocked;
+        Pitch;
+        Roll;
+        Gap;
+        StepUp;
+        Yaw;
+    }
 }
 
 impl PartSource {
@@ -147,74 +134,40 @@ impl PartSource {
 
 impl PartInput {
     fn check(&self) -> Result<(), Invalid> {
-        within("weight", self.weight, WEIGHT_RANGE)?;
         let most = MOST_PART_NEURONS as u8 - 1;
         self.source.neuron().map_or(Ok(()), |index| within("source", index, 0..=most))
-    }
-
-    fn gene(
-        &mut self,
-        field: std::fmt::Arguments<'_>,
-        name: std::fmt::Arguments<'_>,
-        space: &GenomeSpace,
-        visit: GeneVisitor<'_>,
-    ) {
-        let field = format_args!("{field}.weight");
-        let range = space.network.weights();
-        visit(Gene { field, name, unit: "", range }, &mut self.weight);
     }
 }
 
 impl PartNeuron {
     fn check(&self) -> Result<(), Invalid> {
-        within("bias", self.bias, WEIGHT_RANGE)?;
-        let inputs = self.function.inputs();
-        within("inputs", self.inputs.len(), inputs..=inputs)?;
         for (index, input) in self.inputs.iter().enumerate() {
             input.check().map_err(|error| error.inside(&format!("inputs[{index}]")))?;
         }
         match self.frequency_hz {
-            Some(frequency_hz) if self.function.oscillates() => {
-                within("frequency_hz", frequency_hz, FREQUENCY_RANGE_HZ)
-            }
-            None if !self.function.oscillates() => Ok(()),
-            Some(frequency_hz) => Err(Invalid::new(
+            Some(frequency_hz) if !self.function.oscillates() => Err(Invalid::new(
                 "frequency_hz",
                 frequency_hz,
                 "none: this neuron does not oscillate",
             )),
-            None => {
+            None if self.function.oscillates() => {
                 Err(Invalid::new("frequency_hz", "not given", "the frequency of an oscillator"))
             }
+            _ => Ok(()),
         }
     }
 
-    fn genes(
-        &mut self,
-        field: std::fmt::Arguments<'_>,
-        name: std::fmt::Arguments<'_>,
-        space: &GenomeSpace,
-        visit: GeneVisitor<'_>,
-    ) {
-        let gene = Gene {
-            field: format_args!("{field}.bias"),
-            name: format_args!("{name}, bias"),
-            unit: "",
-            range: space.network.weights(),
-        };
-        visit(gene, &mut self.bias);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        let weights = space.network.weights();
+        genes.gene("bias", "bias", WEIGHT, weights, &mut self.bias);
         if let Some(frequency_hz) = &mut self.frequency_hz {
-            let gene = Gene {
-                field: format_args!("{field}.frequency_hz"),
-                name: format_args!("{name}, frequency"),
-                unit: "Hz",
-                range: GeneRange::Ratio(space.wave.frequency_min_hz, space.wave.frequency_max_hz),
-            };
-            visit(gene, frequency_hz);
+            let range = GeneRange::Ratio(space.wave.frequency_min_hz, space.wave.frequency_max_hz);
+            genes.gene("frequency_hz", "frequency", FREQUENCY, range, frequency_hz);
         }
         for (index, input) in self.inputs.iter_mut().enumerate() {
-            let field = format_args!("{field}.inputs[{index}]");
-            input.gene(field, format_args!("{name}, weight {}", index + 1), space, visit);
+            let field = format_args!("inputs[{index}].weight");
+            let name = format_args!("weight {}", index + 1);
+            genes.gene(field, name, WEIGHT, weights, &mut input.weight);
         }
     }
 
@@ -224,75 +177,70 @@ impl PartNeuron {
     }
 }
 
-/// Checks a list of neurons, which a message calls by this name.
-fn check_neurons(name: &str, neurons: &[PartNeuron]) -> Result<(), Invalid> {
-    within(name, neurons.len(), 0..=MOST_PART_NEURONS)?;
-    neurons.iter().enumerate().try_for_each(|(index, neuron)| {
-        neuron.check().map_err(|error| error.inside(&format!("{name}[{index}]")))
-    })
-}
-
-impl NodeNeurons {
-    fn check(&self) -> Result<(), Invalid> {
-        check_neurons("neurons", &self.neurons)?;
-        self.bend.check().map_err(|error| error.inside("bend"))?;
-        self.twist.check().map_err(|error| error.inside("twist"))
-    }
-}
-
 impl PartNeurons {
+    /// The lists of neurons with their paths, those of the nodes first.
+    fn lists(&self) -> impl Iterator<Item = (String, &[PartNeuron])> {
+        let of_nodes = self.nodes.iter().enumerate();
+        let of_nodes =
+            of_nodes.map(|(index, node)| (format!("nodes[{index}].neurons"), &node.neurons[..]));
+        of_nodes.chain([("shared".to_owned(), &self.shared[..])])
+    }
+
     /// All neurons, those of the nodes first.
     fn all(&self) -> impl Iterator<Item = &PartNeuron> {
         self.nodes.iter().flat_map(|node| &node.neurons).chain(&self.shared)
     }
-
-    fn weights(&self) -> impl Iterator<Item = f32> {
-        let of_neurons = self
-            .all()
-            .flat_map(|neuron| neuron.inputs.iter().map(|input| input.weight).chain([neuron.bias]));
-        of_neurons.chain(self.nodes.iter().flat_map(|node| [node.bend.weight, node.twist.weight]))
-    }
 }
 
 impl ControllerEncoding for PartNeurons {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "part_neurons",
-            title: "Part neurons",
-            words: "Neurons in each part of a branching body, which grow with the part.",
-            senses_surroundings: true,
-            settings: &[
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            &[
                 "creatures.parts_min",
                 "creatures.parts_max",
                 "creatures.neurons",
                 "network.weight_range",
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
             ],
-        }
+        ]
     }
 
     fn zeroed(_: &GenomeSpace, shape: GenomeShape) -> Self {
         Self { joints: shape.joints as u32, nodes: Vec::new(), shared: Vec::new() }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        let weights = space.network.weights();
         for (node, of_node) in self.nodes.iter_mut().enumerate() {
-            for (index, neuron) in of_node.neurons.iter_mut().enumerate() {
-                let field = format_args!("nodes[{node}].neurons[{index}]");
-                let name = format_args!("node {}, neuron {}", node + 1, index + 1);
-                neuron.genes(field, name, space, visit);
-            }
-            let field = format_args!("nodes[{node}].bend");
-            let name = format_args!("node {}, bend weight", node + 1);
-            of_node.bend.gene(field, name, space, visit);
-            let field = format_args!("nodes[{node}].twist");
-            let name = format_args!("node {}, twist weight", node + 1);
-            of_node.twist.gene(field, name, space, visit);
+            let (field, name) =
+                (format_args!("nodes[{node}]."), format_args!("node {}, ", node + 1));
+            genes.inside(field, name, |genes| {
+                for (index, neuron) in of_node.neurons.iter_mut().enumerate() {
+                    let field = format_args!("neurons[{index}].");
+                    let name = format_args!("neuron {}, ", index + 1);
+                    genes.inside(field, name, |genes| neuron.genes(space, genes));
+                }
+                let NodeNeurons { bend, twist, .. } = of_node;
+                genes.gene("bend.weight", "bend weight", WEIGHT, weights, &mut bend.weight);
+                genes.gene("twist.weight", "twist weight", WEIGHT, weights, &mut twist.weight);
+            });
         }
         for (index, neuron) in self.shared.iter_mut().enumerate() {
-            let field = format_args!("shared[{index}]");
-            neuron.genes(field, format_args!("shared neuron {}", index + 1), space, visit);
+            let field = format_args!("shared[{index}].");
+            let name = format_args!("shared neuron {}, ", index + 1);
+            genes.inside(field, name, |genes| neuron.genes(space, genes));
+        }
+    }
+
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        visit(format_args!("nodes"), self.nodes.len(), 0..=MOST_NODES);
+        for (list, neurons) in self.lists() {
+            visit(format_args!("{list}"), neurons.len(), 0..=MOST_PART_NEURONS);
+            for (index, neuron) in neurons.iter().enumerate() {
+                let inputs = neuron.function.inputs();
+                let name = format_args!("{list}[{index}].inputs");
+                visit(name, neuron.inputs.len(), inputs..=inputs);
+            }
         }
     }
 
@@ -301,30 +249,27 @@ impl ControllerEncoding for PartNeurons {
     }
 
     /// The mean of its oscillators; 0 without one.
-    fn frequency_hz(&self) -> f32 {
+    fn estimated_frequency_hz(&self) -> Option<f32> {
         let frequencies: Vec<f32> = self.all().filter_map(|neuron| neuron.frequency_hz).collect();
-        frequencies.iter().sum::<f32>() / frequencies.len().max(1) as f32
+        Some(frequencies.iter().sum::<f32>() / frequencies.len().max(1) as f32)
     }
 
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("part_neurons");
-        within("nodes", self.nodes.len(), 0..=MOST_NODES).map_err(inside)?;
-        check_neurons("shared", &self.shared).map_err(inside)?;
-        self.nodes.iter().enumerate().try_for_each(|(index, node)| {
-            node.check().map_err(|error| inside(error.inside(&format!("nodes[{index}]"))))
-        })
-    }
-
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        visit("nodes with neurons", self.nodes.len());
+    fn check_rest(&self) -> Result<(), Invalid> {
+        for (list, neurons) in self.lists() {
+            for (index, neuron) in neurons.iter().enumerate() {
+                neuron.check().map_err(|error| error.inside(&format!("{list}[{index}]")))?;
+            }
+        }
+        for (index, node) in self.nodes.iter().enumerate() {
+            for (axis, input) in [("bend", &node.bend), ("twist", &node.twist)] {
+                input.check().map_err(|error| error.inside(&format!("nodes[{index}].{axis}")))?;
+            }
+        }
+        Ok(())
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
-        let network = &mut space.network;
-        network.weight_range = self.weights().map(f32::abs).fold(network.weight_range, f32::max);
-        for frequency_hz in self.all().filter_map(|neuron| neuron.frequency_hz) {
-            space.wave.widen_frequency(frequency_hz);
-        }
+        widen_weights(&mut space.network.weight_range, self);
     }
 
     fn hash_learned(&self, hash: &mut Xxh3Default) {

@@ -2,13 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SERVO_SETTINGS, SettingNames,
+    TWIST_SETTINGS, widen_weights,
+};
 use super::gait::Gait;
 use super::servo::twists;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
-use crate::genome::limits::LARGEST_LIMIT_RAD;
-use crate::genome::network_space::WEIGHT_RANGE;
+use crate::genome::gene::{GeneRange, Genes, GenomeShape, Quantity};
+use crate::genome::limits::LIMIT;
+use crate::genome::network_space::WEIGHT;
 use crate::genome::space::GenomeSpace;
 
 /// The inputs of a joint's reflex, about its bend or its twist axis; the last is the bias.
@@ -44,30 +46,22 @@ pub struct ReflexGait {
     pub blocked_phase_rad_per_s: f32,
 }
 
-/// The range of rates of phase in a file, in rad/s.
-const PHASE_RATES: std::ops::RangeInclusive<f32> = -60.0..=60.0;
+/// A rate of phase.
+const PHASE_RATE: Quantity = Quantity::new("rad/s", -60.0..=60.0);
 
 impl ControllerEncoding for ReflexGait {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "reflex",
-            title: "Reflex",
-            words: "A gait whose target angles and phases yield to what the snake senses.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            SERVO_SETTINGS,
+            TWIST_SETTINGS,
+            &[
                 "wave.harmonics",
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
                 "network.reflex_weight_range",
                 "network.reflex_reach_rad",
                 "network.reflex_phase_rad_per_s",
             ],
-        }
+        ]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -81,34 +75,36 @@ impl ControllerEncoding for ReflexGait {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.gait.genes(space, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.gait.genes(space, genes);
         let network = &space.network;
         let range = GeneRange::Between(0.0, network.reflex_reach_rad);
-        let (field, name) = (format_args!("reach_rad"), format_args!("reflex reach"));
-        visit(Gene { field, name, unit: "rad", range }, &mut self.reach_rad);
+        genes.gene("reach_rad", "reflex reach", LIMIT, range, &mut self.reach_rad);
         let most = network.reflex_weight_range;
         let twist = if twists(space) { most } else { 0.0 };
         for (axis, weights, most) in
             [("bend", &mut self.bend_weights, most), ("twist", &mut self.twist_weights, twist)]
         {
+            let range = GeneRange::around_zero(most);
             for (index, (weight, input)) in weights.iter_mut().zip(REFLEX_INPUTS).enumerate() {
-                let range = GeneRange::Between(-most, most);
                 let field = format_args!("{axis}_weights[{index}]");
-                let name = format_args!("{axis} reflex from {input}");
-                visit(Gene { field, name, unit: "", range }, weight);
+                genes.gene(
+                    field,
+                    format_args!("{axis} reflex from {input}"),
+                    WEIGHT,
+                    range,
+                    weight,
+                );
             }
         }
-        let most = network.reflex_phase_rad_per_s;
-        let range = GeneRange::Between(-most, most);
-        let (field, name) = (format_args!("load_phase_rad_per_s"), format_args!("phase from load"));
-        visit(Gene { field, name, unit: "rad/s", range }, &mut self.load_phase_rad_per_s);
-        let field = format_args!("blocked_phase_rad_per_s");
-        let name = format_args!("phase from resistance");
-        visit(Gene { field, name, unit: "rad/s", range }, &mut self.blocked_phase_rad_per_s);
+        let range = GeneRange::around_zero(network.reflex_phase_rad_per_s);
+        let load = &mut self.load_phase_rad_per_s;
+        genes.gene("load_phase_rad_per_s", "phase from load", PHASE_RATE, range, load);
+        let (name, blocked) = ("phase from resistance", &mut self.blocked_phase_rad_per_s);
+        genes.gene("blocked_phase_rad_per_s", name, PHASE_RATE, range, blocked);
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
+    fn lengths(&self, visit: LengthVisitor<'_>) {
         self.gait.lengths(visit);
     }
 
@@ -116,32 +112,11 @@ impl ControllerEncoding for ReflexGait {
         self.gait.joints()
     }
 
-    fn frequency_hz(&self) -> f32 {
-        self.gait.frequency_hz()
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("reflex");
-        self.gait.check().map_err(inside)?;
-        within("reach_rad", self.reach_rad, 0.0..=LARGEST_LIMIT_RAD).map_err(inside)?;
-        for (field, weights) in
-            [("bend_weights", &self.bend_weights), ("twist_weights", &self.twist_weights)]
-        {
-            for (index, weight) in weights.iter().enumerate() {
-                within(&format!("{field}[{index}]"), *weight, WEIGHT_RANGE).map_err(inside)?;
-            }
-        }
-        within("load_phase_rad_per_s", self.load_phase_rad_per_s, PHASE_RATES).map_err(inside)?;
-        within("blocked_phase_rad_per_s", self.blocked_phase_rad_per_s, PHASE_RATES).map_err(inside)
-    }
-
     fn widen(&self, space: &mut GenomeSpace) {
         self.gait.widen(space);
+        widen_weights(&mut space.network.reflex_weight_range, self);
         let network = &mut space.network;
         network.reflex_reach_rad = network.reflex_reach_rad.max(self.reach_rad);
-        let weights = self.bend_weights.iter().chain(&self.twist_weights);
-        network.reflex_weight_range =
-            weights.map(|weight| weight.abs()).fold(network.reflex_weight_range, f32::max);
         let rates = [self.load_phase_rad_per_s, self.blocked_phase_rad_per_s];
         network.reflex_phase_rad_per_s =
             rates.iter().map(|rate| rate.abs()).fold(network.reflex_phase_rad_per_s, f32::max);

@@ -8,16 +8,16 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, LengthVisitor, SERVO_SETTINGS, SettingNames,
+    TWIST_SETTINGS,
+};
 use super::wave::Waves;
 use super::wave_rule::WaveRule;
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::kind::ControllerKind;
-use crate::genome::limits::LARGEST_LIMIT_RAD;
 use crate::genome::network_space::{MOST_LIBRARY_WAVES, MOST_WAVE_RULES};
 use crate::genome::space::GenomeSpace;
-use crate::genome::wave_space::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
 
 /// Waves of target angles, the rules that choose among them, and the servo that pulls towards the targets: see
 /// [`Gait`](super::Gait).
@@ -35,54 +35,28 @@ pub struct RuleGenes {
 }
 
 impl RuleGenes {
-    fn servo_genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        let wave = &space.wave;
-        let range =
-            GeneRange::Between(wave.stiffness_min_nm_per_rad, wave.stiffness_max_nm_per_rad);
-        let (field, name) = (format_args!("stiffness_nm_per_rad"), format_args!("stiffness"));
-        visit(Gene { field, name, unit: "N·m/rad", range }, &mut self.stiffness_nm_per_rad);
-        let range = GeneRange::Fixed(wave.servo_damping_nms_per_rad);
-        let field = format_args!("servo_damping_nms_per_rad");
-        let name = format_args!("servo damping");
-        visit(Gene { field, name, unit: "N·m·s/rad", range }, &mut self.servo_damping_nms_per_rad);
-    }
-
-    fn library_genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        let ranges = [space.wave.angle_range_rad, space.wave.twist_range_rad];
+    fn library_genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
         for (index, waves) in self.library.iter_mut().enumerate() {
-            let number = index + 1;
-            waves.genes_up_to(ranges, "rad", space, &mut |gene, value| {
-                let Gene { field, name, unit, range } = gene;
-                let field = format_args!("library[{index}].{field}");
-                let name = format_args!("wave {number}, {name}");
-                visit(Gene { field, name, unit, range }, value);
-            });
+            let field = format_args!("library[{index}].");
+            let name = format_args!("wave {}, ", index + 1);
+            genes.inside(field, name, |genes| waves.angle_genes(space, genes));
         }
     }
 
-    fn rule_genes(&mut self, visit: GeneVisitor<'_>) {
+    fn rule_genes(&mut self, genes: &mut Genes<'_>) {
         let waves = self.library.len();
         for (index, rule) in self.rules.iter_mut().enumerate() {
-            rule.genes(index, waves, visit);
+            let (field, name) =
+                (format_args!("rules[{index}]."), format_args!("rule {}", index + 1));
+            genes.inside(field, name, |genes| rule.genes(waves, genes));
         }
-    }
-
-    fn check_library(&self) -> Result<(), Invalid> {
-        within("library waves", self.library.len(), 1..=MOST_LIBRARY_WAVES)?;
-        let joints = self.joints();
-        for (index, waves) in self.library.iter().enumerate() {
-            let inside = |error: Invalid| error.inside(&format!("library[{index}]"));
-            within("number of joints", waves.joints.len(), joints..=joints).map_err(inside)?;
-            waves.check_up_to(LARGEST_LIMIT_RAD).map_err(inside)?;
-        }
-        Ok(())
     }
 }
 
 /// Number of coordinates of the genes that are visited.
-fn coordinates(genes: impl FnOnce(GeneVisitor<'_>)) -> usize {
+fn coordinates(genes: impl FnOnce(&mut Genes<'_>)) -> usize {
     let mut count = 0;
-    genes(&mut |gene, _| count += usize::from(!gene.range.is_point()));
+    genes(&mut Genes::to(&mut |gene, _| count += usize::from(!gene.range.is_point())));
     count
 }
 
@@ -102,25 +76,13 @@ impl GenomeSpace {
 }
 
 impl ControllerEncoding for RuleGenes {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "rules",
-            title: "Rules",
-            words: "Rules choose among a few waves by what the snake senses.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.harmonics",
-                "wave.angle_range_rad",
-                "wave.twist_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-                "network.library_waves",
-                "network.wave_rules",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[
+            FREQUENCY_SETTINGS,
+            SERVO_SETTINGS,
+            TWIST_SETTINGS,
+            &["wave.harmonics", "network.library_waves", "network.wave_rules"],
+        ]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -133,39 +95,28 @@ impl ControllerEncoding for RuleGenes {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo_genes(space, visit);
-        self.library_genes(space, visit);
-        self.rule_genes(visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        let servo = [&mut self.stiffness_nm_per_rad, &mut self.servo_damping_nms_per_rad];
+        space.wave.servo_genes(servo, genes);
+        self.library_genes(space, genes);
+        self.rule_genes(genes);
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        visit("library waves", self.library.len());
-        visit("rules", self.rules.len());
-        self.library.iter().for_each(|waves| waves.lengths(visit));
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        visit(format_args!("library waves"), self.library.len(), 1..=MOST_LIBRARY_WAVES);
+        visit(format_args!("number of rules"), self.rules.len(), 1..=MOST_WAVE_RULES);
+        let joints = self.joints();
+        for (index, waves) in self.library.iter().enumerate() {
+            let place = format!("library[{index}]");
+            visit(format_args!("{place}.joints"), waves.joints.len(), joints..=joints);
+            waves.lengths(&mut |name, length, allowed| {
+                visit(format_args!("{place}.{name}"), length, allowed);
+            });
+        }
     }
 
     fn joints(&self) -> usize {
         self.library.first().map_or(0, |waves| waves.joints.len())
-    }
-
-    /// That of the first wave.
-    fn frequency_hz(&self) -> f32 {
-        self.library.first().map_or(0.0, |waves| waves.frequency_hz)
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("rules");
-        let (stiffness, damping) = (self.stiffness_nm_per_rad, self.servo_damping_nms_per_rad);
-        within("stiffness_nm_per_rad", stiffness, STIFFNESS_RANGE_NM_PER_RAD).map_err(inside)?;
-        within("servo_damping_nms_per_rad", damping, SERVO_DAMPING_RANGE).map_err(inside)?;
-        self.check_library().map_err(inside)?;
-        within("number of rules", self.rules.len(), 1..=MOST_WAVE_RULES).map_err(inside)?;
-        for (index, rule) in self.rules.iter().enumerate() {
-            let place = format!("rules[{index}]");
-            rule.check(self.library.len()).map_err(|error| inside(error.inside(&place)))?;
-        }
-        Ok(())
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
@@ -174,9 +125,6 @@ impl ControllerEncoding for RuleGenes {
             ranges = waves.widen_from(ranges, space);
         }
         [space.wave.angle_range_rad, space.wave.twist_range_rad] = ranges;
-        let wave = &mut space.wave;
-        wave.widen_stiffness(self.stiffness_nm_per_rad);
-        wave.servo_damping_nms_per_rad = self.servo_damping_nms_per_rad;
         space.network.library_waves = self.library.len() as u32;
         space.network.wave_rules = self.rules.len() as u32;
     }
@@ -186,7 +134,6 @@ impl ControllerEncoding for RuleGenes {
 mod tests {
     use super::*;
     use crate::genome::{ControllerGenes, Genome};
-    use crate::rng::{Purpose, stream};
 
     const SHAPE: GenomeShape = GenomeShape { joints: 4, duration_s: 2.0 };
 
@@ -224,58 +171,5 @@ mod tests {
         }
         let gaits = GenomeSpace { controller: ControllerKind::Gait, ..space };
         assert!(gaits.library_coordinates(SHAPE).is_empty());
-    }
-
-    #[test]
-    fn hostile_genes_are_refused_with_their_place_and_what_is_allowed() {
-        let random = rules(space().random_genome(SHAPE, &mut stream(1, 1, 0, Purpose::Birth)));
-        random.check().expect("allowed");
-        let refusal = |change: fn(&mut RuleGenes)| {
-            let mut genes = random.clone();
-            change(&mut genes);
-            genes.check().expect_err("refused").to_string()
-        };
-        for (change, message) in [
-            (
-                (|genes| genes.rules[3].wave = 5) as fn(&mut RuleGenes),
-                "rules.rules[3].wave is 5; allowed: 1 to 4",
-            ),
-            (|genes| genes.rules[3].wave = 0, "rules.rules[3].wave is 0; allowed: 1 to 4"),
-            (
-                |genes| genes.rules[0].strength = f32::NAN,
-                "rules.rules[0].strength is NaN; allowed: 0 to 1",
-            ),
-            (|genes| genes.rules.clear(), "rules.number of rules is 0; allowed: 1 to 64"),
-            (
-                |genes| genes.rules = vec![WaveRule::ZEROED; 65],
-                "rules.number of rules is 65; allowed: 1 to 64",
-            ),
-            (|genes| genes.library.clear(), "rules.library waves is 0; allowed: 1 to 8"),
-            (
-                |genes| drop(genes.library[2].joints.pop()),
-                "rules.library[2].number of joints is 3; allowed: 4 to 4",
-            ),
-            (
-                |genes| genes.library[1].joints[0].bend.offset = f32::INFINITY,
-                "rules.library[1].joints[0].bend.offset is inf; allowed: -3 to 3",
-            ),
-        ] {
-            assert_eq!(refusal(change), message);
-        }
-    }
-
-    #[test]
-    fn a_space_widened_for_rules_contains_them() {
-        let mut wide = space();
-        (wide.network.library_waves, wide.network.wave_rules) = (6, 3);
-        wide.wave.harmonics = 2;
-        wide.wave.angle_range_rad = 2.5;
-        let genome = wide.random_genome(SHAPE, &mut stream(1, 1, 0, Purpose::Birth));
-        let narrow = GenomeSpace::default();
-        assert!(narrow.check_genome(&genome, SHAPE).is_err());
-        let widened = narrow.widened_for(&genome);
-        widened.check_genome(&genome, SHAPE).expect("widened");
-        let message = space().check_genome(&genome, SHAPE).expect_err("more waves").to_string();
-        assert_eq!(message, "library waves is 6; allowed: 4");
     }
 }

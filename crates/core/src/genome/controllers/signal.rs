@@ -5,13 +5,10 @@ use rand::seq::IndexedRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo, JointCommands};
-use crate::check::{Invalid, within};
+use super::encoding::{ControllerEncoding, JointCommands, LengthVisitor, SettingNames};
 use crate::genome::body::BodyGenes;
-use crate::genome::gene::{Feature, Gene, GeneRange, GeneVisitor, GenomeShape, shifted};
-use crate::genome::space::{
-    GenomeSpace, LARGEST_GENOME_TORQUES, LARGEST_TORQUE_NM, POINTS_PER_S_RANGE,
-};
+use crate::genome::gene::{Feature, GeneRange, Genes, GenomeShape, shifted};
+use crate::genome::space::{GenomeSpace, LARGEST_GENOME_TORQUES, POINTS_PER_S, TORQUE};
 
 /// One torque signal per joint axis. Each holds its value until the next point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,14 +50,8 @@ impl TorqueSignals {
 }
 
 impl ControllerEncoding for TorqueSignals {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "signal",
-            title: "Signal",
-            words: "Free torque signals, point by point, as in the report.",
-            senses_surroundings: false,
-            settings: &["torque_range_nm", "torque_step_nm", "points_per_s"],
-        }
+    fn settings() -> SettingNames {
+        &[&["torque_range_nm", "torque_step_nm", "points_per_s"]]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -69,55 +60,45 @@ impl ControllerEncoding for TorqueSignals {
         Self { points_per_s: space.points_per_s, joints: vec![joint; shape.joints] }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
         let range = GeneRange::Fixed(space.points_per_s);
-        let (field, name) = (format_args!("points_per_s"), format_args!("points per second"));
-        visit(Gene { field, name, unit: "Hz", range }, &mut self.points_per_s);
-        let range = GeneRange::Between(-space.torque_range_nm, space.torque_range_nm);
+        let name = "points per second";
+        genes.gene("points_per_s", name, POINTS_PER_S, range, &mut self.points_per_s);
+        let range = GeneRange::around_zero(space.torque_range_nm);
         for (joint, signals) in self.joints.iter_mut().enumerate() {
             for (axis, signal) in [("bend", &mut signals.bend_nm), ("twist", &mut signals.twist_nm)]
             {
                 for (point, torque_nm) in signal.iter_mut().enumerate() {
                     let field = format_args!("joints[{joint}].{axis}_nm[{point}]");
                     let name = format_args!("joint {} {axis}, point {}", joint + 1, point + 1);
-                    visit(Gene { field, name, unit: "N·m", range }, torque_nm);
+                    genes.gene(field, name, TORQUE, range, torque_nm);
                 }
             }
         }
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        self.all().for_each(|signal| visit("points of a signal", signal.len()));
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        for (index, joint) in self.joints.iter().enumerate() {
+            for (field, _, signal) in joint.axes() {
+                let name = format_args!("points of joints[{index}].{field}");
+                visit(name, signal.len(), 1..=LARGEST_GENOME_TORQUES);
+            }
+        }
+        let all = self.all().map(Vec::len).sum();
+        visit(format_args!("torque points"), all, 1..=LARGEST_GENOME_TORQUES);
     }
 
     fn joints(&self) -> usize {
         self.joints.len()
     }
 
-    fn frequency_hz(&self) -> f32 {
+    fn estimated_frequency_hz(&self) -> Option<f32> {
         let changes = |signal: &Vec<f32>| {
             signal.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count()
         };
         let points: usize = self.all().map(Vec::len).sum();
         let changes: usize = self.all().map(changes).sum();
-        self.points_per_s * changes as f32 / points.max(1) as f32 / 2.0
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        within("signals.points_per_s", self.points_per_s, POINTS_PER_S_RANGE)?;
-        let torques: usize = self.all().map(Vec::len).sum();
-        within("signals.torque points", torques, 1..=LARGEST_GENOME_TORQUES)?;
-        for (index, joint) in self.joints.iter().enumerate() {
-            for (field, _, signal) in joint.axes() {
-                let field = format!("signals.joints[{index}].{field}");
-                if signal.is_empty() {
-                    return Err(Invalid::new(field, "empty", "at least one point"));
-                }
-                let range = -LARGEST_TORQUE_NM..=LARGEST_TORQUE_NM;
-                signal.iter().try_for_each(|&torque| within(&field, torque, range.clone()))?;
-            }
-        }
-        Ok(())
+        Some(self.points_per_s * changes as f32 / points.max(1) as f32 / 2.0)
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
@@ -163,7 +144,8 @@ impl ControllerEncoding for TorqueSignals {
         };
         // Torques that change their sign with every point have the highest frequency.
         let most_hz = self.points_per_s / 2.0;
-        let mut features = vec![feature("rhythm".to_owned(), "Hz", self.frequency_hz(), most_hz)];
+        let rhythm_hz = self.estimated_frequency_hz().unwrap_or(0.0);
+        let mut features = vec![feature("rhythm".to_owned(), "Hz", rhythm_hz, most_hz)];
         for (joint, signals) in (1..).zip(&self.joints) {
             for (_, axis, torques) in signals.axes() {
                 let sum: f32 = torques.iter().map(|torque| torque.abs()).sum();

@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::encoding::{ControllerEncoding, ControllerInfo, JointCommands};
-use crate::check::{Invalid, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor, GenomeShape};
-use crate::genome::space::{GenomeSpace, LARGEST_TORQUE_NM};
-use crate::genome::wave_space::{FREQUENCY_RANGE_HZ, MOST_HARMONICS};
+use super::encoding::{
+    ControllerEncoding, FREQUENCY_SETTINGS, JointCommands, LengthVisitor, SettingNames,
+};
+use crate::genome::gene::{GeneRange, Genes, GenomeShape, Quantity};
+use crate::genome::limits::{LARGEST_LIMIT_RAD, PHASE};
+use crate::genome::space::{GenomeSpace, TORQUE};
+use crate::genome::wave_space::MOST_HARMONICS;
 
 /// One wave per joint axis, at one shared frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,15 +63,22 @@ impl Wave {
         (f64::from(self.offset) + terms.sum::<f64>()) as f32
     }
 
-    fn check(&self, most: f32) -> Result<(), Invalid> {
-        within("offset", self.offset, -most..=most)?;
-        within("harmonics", self.harmonics.len(), 1..=MOST_HARMONICS as usize)?;
-        for harmonic in &self.harmonics {
-            within("amplitude", harmonic.amplitude, -most..=most)?;
-            // One turn is enough; a little more is no harm.
-            within("phase_rad", harmonic.phase_rad, -10.0..=10.0)?;
+    /// Visits the genes, with offset and amplitudes up to `most` of this quantity.
+    fn genes(&mut self, quantity: Quantity, most: f32, genes: &mut Genes<'_>) {
+        genes.gene("offset", "offset", quantity, GeneRange::around_zero(most), &mut self.offset);
+        for (index, harmonic) in self.harmonics.iter_mut().enumerate() {
+            // A term of k times the frequency has k times the rates.
+            let most = most / (index + 1) as f32;
+            let moves = most > 0.0;
+            let term = TERMS.get(index).copied().unwrap_or_default();
+            let Harmonic { amplitude, phase_rad } = harmonic;
+            let (field, name) =
+                (format_args!("harmonics[{index}].amplitude"), format_args!("amplitude{term}"));
+            genes.gene(field, name, quantity, GeneRange::Between(0.0, most), amplitude);
+            let range = if moves { GeneRange::Turn } else { GeneRange::Between(0.0, 0.0) };
+            let field = format_args!("harmonics[{index}].phase_rad");
+            genes.gene(field, format_args!("phase{term}"), PHASE, range, phase_rad);
         }
-        Ok(())
     }
 
     /// The range of offsets and fundamental amplitudes that it needs: the k-th term has a k-th of the range.
@@ -85,6 +94,8 @@ impl Wave {
     }
 }
 
+/// An offset or an amplitude of a target angle, to either side.
+const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
 /// How the names of charts count the terms of a wave.
 const TERMS: [&str; MOST_HARMONICS as usize] = ["", " 2", " 3", " 4", " 5"];
 
@@ -99,69 +110,42 @@ impl Waves {
         self.joints.iter().flat_map(|joint| [&joint.bend, &joint.twist])
     }
 
-    /// Checks every value; `most` is the greatest offset and amplitude.
-    ///
-    /// # Errors
-    /// The first value that is not allowed.
-    pub(super) fn check_up_to(&self, most: f32) -> Result<(), Invalid> {
-        within("frequency_hz", self.frequency_hz, FREQUENCY_RANGE_HZ)?;
-        for (index, joint) in self.joints.iter().enumerate() {
-            for (axis, wave) in [("bend", &joint.bend), ("twist", &joint.twist)] {
-                let place = format!("joints[{index}].{axis}");
-                wave.check(most).map_err(|error| error.inside(&place))?;
-            }
-        }
-        Ok(())
+    /// Visits the genes of waves of target angles.
+    pub(super) fn angle_genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        let ranges_rad = [space.wave.angle_range_rad, space.wave.twist_range_rad];
+        self.genes_up_to(ranges_rad, ANGLE, space, genes);
     }
 
-    /// Visits the genes of waves whose offsets and amplitudes have the unit `unit` and at most these sizes, about the
-    /// bend and the twist axes.
-    pub(super) fn genes_up_to(
+    /// Visits the genes of waves with offsets and amplitudes of a quantity, and at most of these sizes, about the bend and
+    /// the twist axes.
+    fn genes_up_to(
         &mut self,
         [bend, twist]: [f32; 2],
-        unit: &'static str,
+        quantity: Quantity,
         space: &GenomeSpace,
-        visit: GeneVisitor<'_>,
+        genes: &mut Genes<'_>,
     ) {
-        space.wave.frequency_gene(&mut self.frequency_hz, visit);
+        space.wave.frequency_gene(&mut self.frequency_hz, genes);
         // A joint that cannot turn needs no search.
         let [bend_turns, twist_turns] = space.turning_axes();
         let bend = if bend_turns { bend } else { 0.0 };
         let twist = if twist_turns { twist } else { 0.0 };
         for (joint, waves) in self.joints.iter_mut().enumerate() {
-            for (axis, wave, amplitude) in
+            for (axis, wave, most) in
                 [("bend", &mut waves.bend, bend), ("twist", &mut waves.twist, twist)]
             {
-                let number = joint + 1;
-                let range = GeneRange::Between(-amplitude, amplitude);
-                let field = format_args!("joints[{joint}].{axis}.offset");
-                let name = format_args!("joint {number} {axis}, offset");
-                visit(Gene { field, name, unit, range }, &mut wave.offset);
-                for (index, harmonic) in wave.harmonics.iter_mut().enumerate() {
-                    let term = TERMS.get(index).copied().unwrap_or_default();
-                    // A term of k times the frequency has k times the rates.
-                    let most = amplitude / (index + 1) as f32;
-                    let range = GeneRange::Between(0.0, most);
-                    let field = format_args!("joints[{joint}].{axis}.harmonics[{index}].amplitude");
-                    let name = format_args!("joint {number} {axis}, amplitude{term}");
-                    visit(Gene { field, name, unit, range }, &mut harmonic.amplitude);
-                    let moves = most > 0.0;
-                    let range = if moves { GeneRange::Turn } else { GeneRange::Between(0.0, 0.0) };
-                    let field = format_args!("joints[{joint}].{axis}.harmonics[{index}].phase_rad");
-                    let name = format_args!("joint {number} {axis}, phase{term}");
-                    visit(Gene { field, name, unit: "rad", range }, &mut harmonic.phase_rad);
-                }
+                let field = format_args!("joints[{joint}].{axis}.");
+                let name = format_args!("joint {} {axis}, ", joint + 1);
+                genes.inside(field, name, |genes| wave.genes(quantity, most, genes));
             }
         }
     }
 
-    /// Widens a space so that it contains the frequency and the number of terms. Returns the ranges of offsets
+    /// Widens a space so that it contains the number of terms. Returns the ranges of offsets
     /// and amplitudes that these waves need about the bend and the twist axes, at least `bend` and `twist`.
     pub(super) fn widen_from(&self, [bend, twist]: [f32; 2], space: &mut GenomeSpace) -> [f32; 2] {
-        let wave = &mut space.wave;
-        wave.widen_frequency(self.frequency_hz);
-        let harmonics = self.all().map(|wave| wave.harmonics.len() as u32).max();
-        wave.harmonics = harmonics.unwrap_or(wave.harmonics);
+        let terms = self.all().map(|wave| wave.harmonics.len() as u32).max();
+        space.wave.harmonics = terms.unwrap_or(space.wave.harmonics);
         let needed = |range: f32, axis: fn(&JointWaves) -> &Wave| {
             self.joints.iter().map(axis).map(Wave::needed_range).fold(range, f32::max)
         };
@@ -184,19 +168,8 @@ impl Waves {
 }
 
 impl ControllerEncoding for Waves {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "wave",
-            title: "Wave",
-            words: "Periodic torques: a wave per joint axis, one frequency.",
-            senses_surroundings: false,
-            settings: &[
-                "torque_range_nm",
-                "wave.frequency_min_hz",
-                "wave.frequency_max_hz",
-                "wave.harmonics",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[FREQUENCY_SETTINGS, &["torque_range_nm", "wave.harmonics"]]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -206,24 +179,22 @@ impl ControllerEncoding for Waves {
         Self { frequency_hz: 1.0, joints: vec![joint; shape.joints] }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.genes_up_to([space.torque_range_nm; 2], "N·m", space, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.genes_up_to([space.torque_range_nm; 2], TORQUE, space, genes);
     }
 
-    fn lengths(&self, visit: &mut dyn FnMut(&'static str, usize)) {
-        self.all().for_each(|wave| visit("harmonics", wave.harmonics.len()));
+    fn lengths(&self, visit: LengthVisitor<'_>) {
+        for (joint, waves) in self.joints.iter().enumerate() {
+            for (axis, wave) in [("bend", &waves.bend), ("twist", &waves.twist)] {
+                let terms = wave.harmonics.len();
+                let name = format_args!("joints[{joint}].{axis}.harmonics");
+                visit(name, terms, 1..=MOST_HARMONICS as usize);
+            }
+        }
     }
 
     fn joints(&self) -> usize {
         self.joints.len()
-    }
-
-    fn frequency_hz(&self) -> f32 {
-        self.frequency_hz
-    }
-
-    fn check(&self) -> Result<(), Invalid> {
-        self.check_up_to(LARGEST_TORQUE_NM).map_err(|error| error.inside("waves"))
     }
 
     fn widen(&self, space: &mut GenomeSpace) {

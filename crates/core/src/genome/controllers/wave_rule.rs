@@ -2,10 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, quoted, within};
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
+use crate::check::{Invalid, quoted};
+use crate::genome::gene::{GeneRange, Genes, Quantity};
+use crate::genome::limits::SHARE;
 
-/// What the bits say that conditions look at, in the order of the symbols. Bit number i has the value 2^i.
+/// The statements of the bits that conditions look at, in the order of the symbols. Bit number i has the value 2^i.
 pub const RULE_SENSES: [&str; 10] = [
     "head gap under 1 m",
     "head gap under 0.25 m",
@@ -19,7 +20,7 @@ pub const RULE_SENSES: [&str; 10] = [
     "moved ahead",
 ];
 
-/// What a condition says that a bit must be 0, in the same order.
+/// The opposite of each statement, for a bit that must be 0.
 const OPPOSITES: [&str; RULE_SENSES.len()] = [
     "head gap 1 m or more",
     "head gap 0.25 m or more",
@@ -51,11 +52,11 @@ pub struct WaveRule {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointGroup {
-    /// Those nearer to the head.
+    /// The joints nearer to the head.
     Front,
-    /// All of them.
+    /// All joints.
     All,
-    /// Those nearer to the tail.
+    /// The joints nearer to the tail.
     Rear,
 }
 
@@ -66,7 +67,7 @@ pub enum JointGroup {
 pub struct RuleCondition {
     /// The bits that matter.
     mask: u16,
-    /// What these must be; 0 elsewhere.
+    /// The values that these bits must have; 0 elsewhere.
     bits: u16,
 }
 
@@ -78,6 +79,8 @@ const SYMBOLS: GeneRange<'_> = GeneRange::Between(-1.25, 1.25);
 const LEAST_CERTAIN: f32 = 0.75;
 /// The range of a gene for a group: -1 for the front, 0 for all and 1 for the rear.
 const GROUPS: GeneRange<'_> = GeneRange::Between(-1.5, 1.5);
+/// A symbol or a group, as a number.
+const SIGN: Quantity = Quantity::pure(-1.5..=1.5);
 
 impl WaveRule {
     /// A rule whose genes are in the middle of their ranges.
@@ -94,40 +97,26 @@ impl WaveRule {
     }
 
     /// Visits the genes. Symbols, groups and waves are numbers that are rounded, so that a small step of a search leaves
-    /// most of them as they are.
-    pub(super) fn genes(&mut self, index: usize, waves: usize, visit: GeneVisitor<'_>) {
-        let number = index + 1;
+    /// most of them as they are; `waves` is the size of the library.
+    pub(super) fn genes(&mut self, waves: usize, genes: &mut Genes<'_>) {
         for (sense, name) in RULE_SENSES.iter().enumerate() {
             let mut symbol = self.condition.number(sense);
-            let field = format_args!("rules[{index}].condition[{sense}]");
-            let name = format_args!("rule {number} if {name}");
-            visit(Gene { field, name, unit: "", range: SYMBOLS }, &mut symbol);
+            let field = format_args!("condition[{sense}]");
+            genes.gene(field, format_args!(" if {name}"), SIGN, SYMBOLS, &mut symbol);
             self.condition.set_number(sense, symbol);
         }
         let mut group = self.group.number();
-        let field = format_args!("rules[{index}].group");
-        let name = format_args!("rule {number}, joints");
-        visit(Gene { field, name, unit: "", range: GROUPS }, &mut group);
+        genes.gene("group", ", joints", SIGN, GROUPS, &mut group);
         self.group = JointGroup::nearest(group);
         let (mut wave, most) = (self.wave as f32, waves as f32);
-        let (field, name) =
-            (format_args!("rules[{index}].wave"), format_args!("rule {number}, wave"));
         let range = match waves {
             ..=1 => GeneRange::Fixed(1.0),
             _ => GeneRange::Between(0.5, most + 0.5),
         };
-        visit(Gene { field, name, unit: "", range }, &mut wave);
+        genes.gene("wave", ", wave", Quantity::pure(1.0..=most.max(1.0)), range, &mut wave);
         self.wave = libm::roundf(wave).clamp(1.0, most.max(1.0)) as u32;
-        let field = format_args!("rules[{index}].strength");
-        let name = format_args!("rule {number}, strength");
         let range = GeneRange::Between(0.0, 1.0);
-        visit(Gene { field, name, unit: "", range }, &mut self.strength);
-    }
-
-    /// Checks every value; `waves` is the size of the library.
-    pub(super) fn check(&self, waves: usize) -> Result<(), Invalid> {
-        within("wave", self.wave as usize, 1..=waves)?;
-        within("strength", self.strength, 0.0..=1.0)
+        genes.gene("strength", ", strength", SHARE, range, &mut self.strength);
     }
 }
 

@@ -3,97 +3,70 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::growth::{bare_plan, grow};
-use super::node::{BodyNode, LARGEST_TILT_RAD, SCALE_RANGE};
+use super::node::{BodyNode, Connection};
 use crate::genome::chain::BodySpace;
-use crate::genome::gene::{Gene, GeneRange, GeneVisitor};
-use crate::genome::limits::SIZE_RANGE_M;
+use crate::genome::gene::{GeneRange, Genes, Quantity};
+use crate::genome::limits::{DENSITY, LIMIT, SHARE, SIDED_SHARE, SIZE, SIZE_RANGE_M};
 use crate::genome::space::GenomeSpace;
 
+/// Largest angle between a part and the side that it grows from, beside a right angle, in radians.
+const LARGEST_TILT_RAD: f32 = 1.2;
+/// An angle between a part and the side that it grows from, beside a right angle.
+const TILT: Quantity = Quantity::new("rad", -LARGEST_TILT_RAD..=LARGEST_TILT_RAD);
+/// A factor of size from a part to one that grows from it.
+const SCALE: Quantity = Quantity::pure(0.5..=1.5);
+
 /// Visits the genes of all nodes.
-pub fn node_genes(nodes: &mut [BodyNode], space: &GenomeSpace, visit: GeneVisitor<'_>) {
+pub fn node_genes(nodes: &mut [BodyNode], space: &GenomeSpace, genes: &mut Genes<'_>) {
     for (index, node) in nodes.iter_mut().enumerate() {
-        genes_of(node, index, space, visit);
+        let (field, name) = (format_args!("nodes[{index}]."), format_args!("node {}, ", index + 1));
+        genes.inside(field, name, |genes| genes_of(node, space, genes));
     }
 }
 
-fn genes_of(node: &mut BodyNode, index: usize, space: &GenomeSpace, visit: GeneVisitor<'_>) {
+fn genes_of(node: &mut BodyNode, space: &GenomeSpace, genes: &mut Genes<'_>) {
     let bodies = &space.bodies;
-    let number = index + 1;
     // The space limits the sizes of parts, which the factors of size change.
-    let range = GeneRange::Ratio(*SIZE_RANGE_M.start(), *SIZE_RANGE_M.end());
-    let sizes = [
-        ("length", &mut node.length_m),
-        ("width", &mut node.width_m),
-        ("height", &mut node.height_m),
-    ];
-    for (size, value) in sizes {
-        let field = format_args!("nodes[{index}].{size}_m");
-        visit(Gene { field, name: format_args!("node {number}, {size}"), unit: "m", range }, value);
+    let sizes = GeneRange::Ratio(*SIZE_RANGE_M.start(), *SIZE_RANGE_M.end());
+    genes.gene("length_m", "length", SIZE, sizes, &mut node.length_m);
+    genes.gene("width_m", "width", SIZE, sizes, &mut node.width_m);
+    genes.gene("height_m", "height", SIZE, sizes, &mut node.height_m);
+    genes.gene("density_kg_m3", "density", DENSITY, space.densities(), &mut node.density_kg_m3);
+    let (bend, twist) = (&mut node.bend_limit_rad, &mut node.twist_limit_rad);
+    genes.gene("bend_limit_rad", "bend limit", LIMIT, bodies.bend_limits(), bend);
+    genes.gene("twist_limit_rad", "twist limit", LIMIT, bodies.twist_limits(), twist);
+    let sided = GeneRange::around_zero(1.0);
+    let (bend, twist) = (&mut node.bend_start, &mut node.twist_start);
+    genes.gene("bend_start", "bend at the start", SIDED_SHARE, sided, bend);
+    genes.gene("twist_start", "twist at the start", SIDED_SHARE, sided, twist);
+    genes.gene("strength", "strength", SHARE, bodies.strengths(), &mut node.strength);
+    for (index, connection) in node.connections.iter_mut().enumerate() {
+        let field = format_args!("connections[{index}].");
+        let name = format_args!("connection {}, ", index + 1);
+        genes.inside(field, name, |genes| connection_genes(connection, genes));
     }
-    let range = GeneRange::Ratio(space.density_min_kg_m3, space.density_max_kg_m3);
-    let field = format_args!("nodes[{index}].density_kg_m3");
-    let name = format_args!("node {number}, density");
-    visit(Gene { field, name, unit: "kg/m³", range }, &mut node.density_kg_m3);
-    let bend = GeneRange::Between(bodies.bend_limit_min_rad, bodies.bend_limit_max_rad);
-    let twist = GeneRange::Between(bodies.twist_limit_min_rad, bodies.twist_limit_max_rad);
-    for (axis, value, range) in
-        [("bend", &mut node.bend_limit_rad, bend), ("twist", &mut node.twist_limit_rad, twist)]
-    {
-        let field = format_args!("nodes[{index}].{axis}_limit_rad");
-        let name = format_args!("node {number}, {axis} limit");
-        visit(Gene { field, name, unit: "rad", range }, value);
+}
+
+fn connection_genes(connection: &mut Connection, genes: &mut Genes<'_>) {
+    for (axis, value) in connection.place.iter_mut().enumerate() {
+        let (field, name) = (format_args!("place[{axis}]"), format_args!("place {}", axis + 1));
+        genes.gene(field, name, SIDED_SHARE, GeneRange::around_zero(1.0), value);
     }
-    for (axis, value) in [("bend", &mut node.bend_start), ("twist", &mut node.twist_start)] {
-        let range = GeneRange::Between(-1.0, 1.0);
-        let field = format_args!("nodes[{index}].{axis}_start");
-        let name = format_args!("node {number}, {axis} at the start");
-        visit(Gene { field, name, unit: "", range }, value);
+    for (axis, value) in connection.turn_rad.iter_mut().enumerate() {
+        let (field, name) = (format_args!("turn_rad[{axis}]"), format_args!("turn {}", axis + 1));
+        genes.gene(field, name, TILT, GeneRange::around_zero(LARGEST_TILT_RAD), value);
     }
-    let range = GeneRange::Between(bodies.strength_min, 1.0);
-    let field = format_args!("nodes[{index}].strength");
-    let name = format_args!("node {number}, strength");
-    visit(Gene { field, name, unit: "", range }, &mut node.strength);
-    for (at, connection) in node.connections.iter_mut().enumerate() {
-        let of = at + 1;
-        for (axis, value) in connection.place.iter_mut().enumerate() {
-            let range = GeneRange::Between(-1.0, 1.0);
-            let field = format_args!("nodes[{index}].connections[{at}].place[{axis}]");
-            let name = format_args!("node {number}, connection {of}, place {}", axis + 1);
-            visit(Gene { field, name, unit: "", range }, value);
-        }
-        for (axis, value) in connection.turn_rad.iter_mut().enumerate() {
-            let range = GeneRange::Between(-LARGEST_TILT_RAD, LARGEST_TILT_RAD);
-            let field = format_args!("nodes[{index}].connections[{at}].turn_rad[{axis}]");
-            let name = format_args!("node {number}, connection {of}, turn {}", axis + 1);
-            visit(Gene { field, name, unit: "rad", range }, value);
-        }
-        let [least, most] = SCALE_RANGE;
-        let field = format_args!("nodes[{index}].connections[{at}].scale");
-        let name = format_args!("node {number}, connection {of}, scale");
-        let range = GeneRange::Ratio(least, most);
-        visit(Gene { field, name, unit: "", range }, &mut connection.scale);
-    }
+    let [least, most] = SCALE.limits;
+    genes.gene("scale", "scale", SCALE, GeneRange::Ratio(least, most), &mut connection.scale);
 }
 
 impl BodySpace {
     /// Widens the space so that it contains a creature.
     pub(in crate::genome) fn widen_for_creature(&mut self, nodes: &[BodyNode]) {
-        let widen = |[least, most]: [&mut f32; 2], value: f32| {
-            (*least, *most) = (least.min(value), most.max(value));
-        };
         let grown = grow(nodes);
-        for part in &grown {
-            let [width_m, length_m, height_m] = part.size_m;
-            widen([&mut self.length_min_m, &mut self.length_max_m], length_m);
-            for side_m in [width_m, height_m] {
-                widen([&mut self.thickness_min_m, &mut self.thickness_max_m], side_m);
-            }
-        }
+        grown.iter().for_each(|part| self.widen_sizes(part.size_m));
         for node in nodes {
-            let [bend, twist] = [node.bend_limit_rad, node.twist_limit_rad];
-            widen([&mut self.bend_limit_min_rad, &mut self.bend_limit_max_rad], bend);
-            widen([&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad], twist);
-            self.strength_min = self.strength_min.min(node.strength);
+            self.widen_joints([node.bend_limit_rad, node.twist_limit_rad], node.strength);
         }
         let body = bare_plan(nodes, &grown);
         self.volume_m3 = body.volume_m3();

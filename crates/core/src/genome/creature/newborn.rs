@@ -100,29 +100,18 @@ impl GenomeSpace {
     /// A new node without connections. Its neurons are wired at random, with a path to the joint (Miconi and Channon 2005).
     pub(super) fn new_node(&self, rng: &mut ChaCha8Rng) -> WholeNode {
         let bodies = &self.bodies;
-        let size = |[least, most]: [f32; 2], rng: &mut ChaCha8Rng| {
-            GeneRange::Ratio(least, most).random(rng)
-        };
-        let thickness = [bodies.thickness_min_m, bodies.thickness_max_m];
+        let sided = GeneRange::around_zero(1.0);
         let body = BodyNode {
-            length_m: size([bodies.length_min_m, bodies.length_max_m], rng),
-            width_m: size(thickness, rng),
-            height_m: size(thickness, rng),
-            density_kg_m3: size([self.density_min_kg_m3, self.density_max_kg_m3], rng),
+            length_m: bodies.lengths().random(rng),
+            width_m: bodies.thicknesses().random(rng),
+            height_m: bodies.thicknesses().random(rng),
+            density_kg_m3: self.densities().random(rng),
             joint: drawn(&NodeJoint::ALL[1..], rng),
-            bend_limit_rad: GeneRange::Between(
-                bodies.bend_limit_min_rad,
-                bodies.bend_limit_max_rad,
-            )
-            .random(rng),
-            twist_limit_rad: GeneRange::Between(
-                bodies.twist_limit_min_rad,
-                bodies.twist_limit_max_rad,
-            )
-            .random(rng),
-            bend_start: GeneRange::Between(-1.0, 1.0).random(rng),
-            twist_start: GeneRange::Between(-1.0, 1.0).random(rng),
-            strength: GeneRange::Between(bodies.strength_min, 1.0).random(rng),
+            bend_limit_rad: bodies.bend_limits().random(rng),
+            twist_limit_rad: bodies.twist_limits().random(rng),
+            bend_start: sided.random(rng),
+            twist_start: sided.random(rng),
+            strength: bodies.strengths().random(rng),
             copies: if uniform(rng) < 0.5 { 1 } else { rng.random_range(2..=MOST_COPIES) },
             connections: Vec::new(),
         };
@@ -157,7 +146,7 @@ impl GenomeSpace {
         let oscillators: Vec<_> = all.filter(|function| function.oscillates()).collect();
         let mut neuron = self.new_neuron(rng);
         neuron.function = drawn(&oscillators, rng);
-        neuron.bias = GeneRange::Between(-3.0, 3.0).random(rng);
+        neuron.bias = GeneRange::around_zero(3.0).random(rng);
         self.suit_inputs(&mut neuron, rng);
         // A steady beat to begin with.
         neuron.inputs.iter_mut().for_each(|input| input.weight = 0.0);
@@ -179,7 +168,7 @@ impl GenomeSpace {
 
 /// A connection to any of this many nodes.
 pub fn new_connection(nodes: usize, rng: &mut ChaCha8Rng) -> Connection {
-    let mut within = |most: f32| GeneRange::Between(-most, most).random(rng);
+    let mut within = |most: f32| GeneRange::around_zero(most).random(rng);
     let (place, turn_rad) = ([within(1.0), within(1.0)], [within(0.6), within(0.6), within(0.6)]);
     Connection {
         to: rng.random_range(0..nodes) as u32,

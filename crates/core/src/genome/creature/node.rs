@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
-use crate::genome::limits::{DENSITY_RANGE_KG_M3, LARGEST_LIMIT_RAD, SIZE_RANGE_M};
+use crate::schema::{listed_values, named_values};
 
 /// Largest number of nodes of a graph: a part of its own for each.
 pub const MOST_NODES: usize = 16;
@@ -11,11 +11,6 @@ pub const MOST_NODES: usize = 16;
 pub const MOST_CONNECTIONS: usize = 3;
 /// Largest number of parts of one node along a path from the first part.
 pub const MOST_COPIES: u32 = 5;
-
-/// Largest angle between a part and the side that it grows from, beside a right angle, in radians.
-pub(super) const LARGEST_TILT_RAD: f32 = 1.2;
-/// Range of the factor of size from a part to one that grows from it.
-pub(super) const SCALE_RANGE: [f32; 2] = [0.5, 1.5];
 
 /// The plan of a part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,38 +42,42 @@ pub struct BodyNode {
     pub connections: Vec<Connection>,
 }
 
-/// The axes about which a joint turns. Universal, bend-twist and twist-bend joints of Sims are one here: the engine's joint
-/// locks the third axis and knows no order of the other two. His spherical joint is left out, because every joint of this
-/// program has two driven axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum NodeJoint {
-    /// None: it holds the part in its place.
-    Rigid,
-    /// It bends.
-    Revolute,
-    /// It twists.
-    Twist,
-    /// It bends and twists.
-    Universal,
+named_values! {
+    /// The axes about which a joint turns. Universal, bend-twist and twist-bend joints of Sims are one here: the engine's joint
+    /// locks the third axis and knows no order of the other two. His spherical joint is left out, because every joint of this
+    /// program has two driven axes.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum NodeJoint {
+        /// None: it holds the part in its place.
+        Rigid = "rigid";
+        /// It bends.
+        Revolute = "revolute";
+        /// It twists.
+        Twist = "twist";
+        /// It bends and twists.
+        Universal = "universal";
+    }
 }
 
-/// A side of a part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BodySide {
-    /// Opposite its joint.
-    Rear,
-    /// At smaller x.
-    Left,
-    /// At larger x.
-    Right,
-    /// Above.
-    Top,
-    /// Below.
-    Bottom,
-    /// Where its joint is. Only the first part has room there; for others it counts as the rear.
-    Front,
+listed_values! {
+    /// A side of a part.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum BodySide {
+        /// Opposite its joint.
+        Rear;
+        /// At smaller x.
+        Left;
+        /// At larger x.
+        Right;
+        /// Above.
+        Top;
+        /// Below.
+        Bottom;
+        /// Where its joint is. Only the first part has room there; for others it counts as the rear.
+        Front;
+    }
 }
 
 /// A connection: where a part grows from another.
@@ -105,9 +104,6 @@ pub struct Connection {
 }
 
 impl NodeJoint {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Rigid, Self::Revolute, Self::Twist, Self::Universal];
-
     /// Whether it bends, and whether it twists.
     pub fn turns(self) -> [bool; 2] {
         match self {
@@ -117,22 +113,6 @@ impl NodeJoint {
             Self::Universal => [true, true],
         }
     }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rigid => "rigid",
-            Self::Revolute => "revolute",
-            Self::Twist => "twist",
-            Self::Universal => "universal",
-        }
-    }
-}
-
-impl BodySide {
-    /// All sides.
-    pub const ALL: [Self; 6] =
-        [Self::Rear, Self::Left, Self::Right, Self::Top, Self::Bottom, Self::Front];
 }
 
 impl BodyNode {
@@ -141,45 +121,22 @@ impl BodyNode {
         [self.width_m, self.length_m, self.height_m]
     }
 
-    /// The same, to be changed.
+    /// Its sizes across x, along y and along z, in metres, to be changed.
     pub(super) fn sizes_mut(&mut self) -> [&mut f32; 3] {
         [&mut self.width_m, &mut self.length_m, &mut self.height_m]
     }
 
-    /// Checks every value; the graph has this many nodes.
+    /// Checks all that is not a gene; the graph has this many nodes.
     ///
     /// # Errors
     /// The first value that is not allowed.
     pub(super) fn check(&self, nodes: usize) -> Result<(), Invalid> {
-        within("length_m", self.length_m, SIZE_RANGE_M)?;
-        within("width_m", self.width_m, SIZE_RANGE_M)?;
-        within("height_m", self.height_m, SIZE_RANGE_M)?;
-        within("density_kg_m3", self.density_kg_m3, DENSITY_RANGE_KG_M3)?;
-        within("bend_limit_rad", self.bend_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("twist_limit_rad", self.twist_limit_rad, 0.0..=LARGEST_LIMIT_RAD)?;
-        within("bend_start", self.bend_start, -1.0..=1.0)?;
-        within("twist_start", self.twist_start, -1.0..=1.0)?;
-        within("strength", self.strength, 0.0..=1.0)?;
         within("copies", self.copies, 1..=MOST_COPIES)?;
         within("connections", self.connections.len(), 0..=MOST_CONNECTIONS)?;
         for (index, connection) in self.connections.iter().enumerate() {
-            let place = format!("connections[{index}]");
-            connection.check(nodes).map_err(|error| error.inside(&place))?;
+            let most = nodes.saturating_sub(1);
+            within(&format!("connections[{index}].to"), connection.to as usize, 0..=most)?;
         }
         Ok(())
-    }
-}
-
-impl Connection {
-    fn check(&self, nodes: usize) -> Result<(), Invalid> {
-        within("to", self.to as usize, 0..=nodes.saturating_sub(1))?;
-        for (index, place) in self.place.into_iter().enumerate() {
-            within(&format!("place[{index}]"), place, -1.0..=1.0)?;
-        }
-        for (index, turn_rad) in self.turn_rad.into_iter().enumerate() {
-            let most = LARGEST_TILT_RAD;
-            within(&format!("turn_rad[{index}]"), turn_rad, -most..=most)?;
-        }
-        within("scale", self.scale, SCALE_RANGE[0]..=SCALE_RANGE[1])
     }
 }

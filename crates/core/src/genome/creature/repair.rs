@@ -1,7 +1,7 @@
 //! Brings the sizes of a varied creature back to its budget: the exact volume, parts that are neither too thin nor too large,
 //! and neighbours that the engine can hold together.
 
-use super::check::check_built;
+use super::check::{check_built, check_nodes};
 use super::growth::{GrownPart, bare_plan, grow};
 use super::node::BodyNode;
 use crate::genome::chain::{BodySpace, EVOLVED_INERTIA_RATIO, MASS_RATIO, inertia_kg_m2, ratio};
@@ -116,7 +116,7 @@ impl GenomeSpace {
             return false;
         }
         let ranges_m = self.bodies.part_sizes_m();
-        if nodes.iter().any(|node| node.check(nodes.len()).is_err()) {
+        if check_nodes(nodes).is_err() {
             return false;
         }
         let fits = |part: &GrownPart| {

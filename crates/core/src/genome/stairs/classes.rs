@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::StairsGenome;
+use super::genes::{NOISE_SEEDS, StairsGenome};
 use crate::rng::{Purpose, drawn, stream};
 use crate::schema::{Choices, choices};
 
@@ -47,7 +47,7 @@ impl StairsClass {
             steps: rng.random_range(6..=12),
             rise_m: rng.random_range(0.2..=0.8),
             tread_m: rng.random_range(1.0..=3.0),
-            noise_seed: rng.random_range(0..=0xff_ffff),
+            noise_seed: rng.random_range(NOISE_SEEDS),
             ..StairsGenome::default()
         };
         let mut between = |from: f32, to: f32| rng.random_range(from..=to);

@@ -1,9 +1,13 @@
 //! Random changes of a staircase, for stairs that evolve.
 
+use std::ops::RangeInclusive;
+
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::StairsGenome;
+use super::genes::{
+    NOISE_SEEDS, NOISES, NOSINGS_M, RISES_M, STEPS, StairsGenome, TREADS_M, WIDTHS_M,
+};
 use crate::rng::drawn;
 use crate::schema::check;
 use crate::world::Stairs;
@@ -46,10 +50,10 @@ impl StairsGenome {
     /// are allowed.
     pub fn like(stairs: &Stairs, rise_m: f32) -> Self {
         Self {
-            steps: stairs.steps.clamp(3, 20),
+            steps: stairs.steps.clamp(*STEPS.start(), *STEPS.end()),
             rise_m,
-            tread_m: stairs.mean_tread_m().clamp(0.6, 3.0),
-            width_m: stairs.width_m.clamp(2.5, 6.0),
+            tread_m: stairs.mean_tread_m().clamp(*TREADS_M.start(), *TREADS_M.end()),
+            width_m: stairs.width_m.clamp(*WIDTHS_M.start(), *WIDTHS_M.end()),
             ..Self::default()
         }
     }
@@ -81,20 +85,20 @@ impl StairsGenome {
                 if rng.random_bool(0.5) { self.steps + by } else { self.steps.saturating_sub(by) };
         }
         let strength = change.strength as f32;
-        let mut vary = |value: &mut f32, step: f32, [least, most]: [f32; 2]| {
+        let mut vary = |value: &mut f32, step: f32, range: RangeInclusive<f32>| {
             if rng.random_bool(NUMBER_CHANGE) {
                 let by = rng.random_range(-1.0_f32..=1.0) * step * strength;
-                *value = (*value + by).clamp(least, most);
+                *value = (*value + by).clamp(*range.start(), *range.end());
             }
         };
-        vary(&mut child.rise_m, 0.1, [0.1, 1.2]);
-        vary(&mut child.tread_m, 0.2, [0.6, 3.0]);
-        vary(&mut child.rise_noise, 0.05, [0.0, 0.4]);
-        vary(&mut child.tread_noise, 0.05, [0.0, 0.4]);
-        vary(&mut child.nosing_m, 0.05, [0.0, 0.3]);
-        vary(&mut child.width_m, 0.25, [2.5, 6.0]);
+        vary(&mut child.rise_m, 0.1, RISES_M);
+        vary(&mut child.tread_m, 0.2, TREADS_M);
+        vary(&mut child.rise_noise, 0.05, NOISES);
+        vary(&mut child.tread_noise, 0.05, NOISES);
+        vary(&mut child.nosing_m, 0.05, NOSINGS_M);
+        vary(&mut child.width_m, 0.25, WIDTHS_M);
         if rng.random_bool(SEED_CHANGE) {
-            child.noise_seed = rng.random_range(0..=0xff_ffff);
+            child.noise_seed = rng.random_range(NOISE_SEEDS);
         }
         if change.features && rng.random_bool(FEATURE_CHANGE) {
             let step = rng.random_range(1..=child.steps.max(1));

@@ -13,10 +13,10 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::encoding::{ControllerEncoding, ControllerInfo};
+use super::encoding::{ControllerEncoding, SERVO_SETTINGS, SettingNames};
 use super::servo::ServoGenes;
 use crate::check::{Invalid, within};
-use crate::genome::gene::{GeneVisitor, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::q_table::QRule;
 use crate::rng::{Purpose, stream};
@@ -24,7 +24,7 @@ use crate::rng::{Purpose, stream};
 /// Decisions per second.
 pub const DECISIONS_PER_S: u32 = 4;
 
-/// What a reward counts one decision later, relative to one now, to a table: a horizon of five seconds.
+/// Weight of a reward one decision later, relative to one now, for a table: a horizon of five seconds.
 pub const DECISION_DISCOUNT: f32 = 0.95;
 
 /// The postures among which a decision chooses: always another than the one before.
@@ -46,7 +46,7 @@ pub const POSTURES: [&str; 11] = [
 /// four questions: see [`TABLE_QUESTIONS`].
 pub const TABLE_STATES: usize = POSTURES.len() * 3 * 3 * 3 * (1 << TABLE_QUESTIONS.len());
 
-/// What a table asks of a situation beside its bins.
+/// The questions by which a table distinguishes situations, beside its bins.
 pub const TABLE_QUESTIONS: [&str; 4] =
     ["moving", "middle at a riser", "folded in front", "folded behind"];
 
@@ -75,7 +75,7 @@ pub struct DecisionGenes {
     pub joints: u32,
     /// The servos; the bend range is the angle of a full bend.
     pub servo: ServoGenes,
-    /// What was learned.
+    /// The learned values or rules.
     pub policy: Policy,
     /// How it explores; none for play without chance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -120,19 +120,8 @@ impl Explorer {
 }
 
 impl ControllerEncoding for DecisionGenes {
-    fn info() -> &'static ControllerInfo {
-        &ControllerInfo {
-            name: "decisions",
-            title: "Decisions",
-            words: "Takes one of eleven postures four times a second, as it has learned to.",
-            senses_surroundings: true,
-            settings: &[
-                "wave.angle_range_rad",
-                "wave.stiffness_min_nm_per_rad",
-                "wave.stiffness_max_nm_per_rad",
-                "wave.servo_damping_nms_per_rad",
-            ],
-        }
+    fn settings() -> SettingNames {
+        &[SERVO_SETTINGS]
     }
 
     fn zeroed(space: &GenomeSpace, shape: GenomeShape) -> Self {
@@ -144,8 +133,8 @@ impl ControllerEncoding for DecisionGenes {
         }
     }
 
-    fn genes(&mut self, space: &GenomeSpace, visit: GeneVisitor<'_>) {
-        self.servo.genes_without_twist(space, visit);
+    fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
+        self.servo.genes_without_twist(space, genes);
     }
 
     fn joints(&self) -> usize {
@@ -153,8 +142,8 @@ impl ControllerEncoding for DecisionGenes {
     }
 
     /// Half the rate of decisions: that of a posture that changes with each.
-    fn frequency_hz(&self) -> f32 {
-        DECISIONS_PER_S as f32 / 2.0
+    fn estimated_frequency_hz(&self) -> Option<f32> {
+        Some(DECISIONS_PER_S as f32 / 2.0)
     }
 
     fn compact(&mut self) {
@@ -163,12 +152,9 @@ impl ControllerEncoding for DecisionGenes {
         }
     }
 
-    fn check(&self) -> Result<(), Invalid> {
-        let inside = |error: Invalid| error.inside("decisions");
-        self.servo.check().map_err(inside)?;
-        within("servo.twist_range_rad", self.servo.twist_range_rad, 0.0..=0.0).map_err(inside)?;
-        self.policy.check().map_err(inside)?;
-        self.explorer.as_ref().map_or(Ok(()), Explorer::check).map_err(inside)
+    fn check_rest(&self) -> Result<(), Invalid> {
+        self.policy.check()?;
+        self.explorer.as_ref().map_or(Ok(()), Explorer::check)
     }
 
     fn widen(&self, space: &mut GenomeSpace) {

@@ -1,4 +1,4 @@
-//! What was learned about decisions: a table of values, or a population of rules.
+//! A learned policy of decisions: a table of values, or a population of rules.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::check::{Invalid, within};
 use crate::learn::classifiers::{Condition, Xcs, Zcs};
 use crate::learn::q_table::ActionValues;
 
-/// What was learned about decisions. Clones share it.
+/// A learned policy of decisions. Clones share it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Policy {
     /// The value of each posture in each situation.

@@ -1,12 +1,7 @@
-//! Stairs as a genome: a few numbers from which a staircase is built.
-
-mod classes;
-mod mutation;
-
-pub use classes::{HELD_OUT_PER_CLASS, StairsClass, held_out};
-pub use mutation::StairsChange;
+//! The numbers from which a staircase is built.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use rand::RngExt;
 
@@ -22,28 +17,28 @@ setting_group! {
     pub struct StairsGenome {
         /// Number of steps.
         steps: u32 = 10,
-            whole("Steps", 3..=20).hint("Number of steps");
+            whole("Steps", STEPS).hint("Number of steps");
         /// Mean height of a step over the one below it, in metres.
         rise_m: f32 = 0.5,
-            number("Rise", 0.1..=1.2).unit("m").hint("Mean height of a step over the one below it");
+            number("Rise", RISES_M).unit("m").hint("Mean height of a step over the one below it");
         /// Mean depth of a step, in metres.
         tread_m: f32 = 2.0,
-            number("Tread", 0.6..=3.0).unit("m").hint("Mean depth of a step");
+            number("Tread", TREADS_M).unit("m").hint("Mean depth of a step");
         /// Greatest relative deviation of a rise from the mean.
         rise_noise: f32 = 0.0,
-            number("Irregular rises", 0.0..=0.4).hint("Greatest relative deviation of a rise from the mean");
+            number("Irregular rises", NOISES).hint("Greatest relative deviation of a rise from the mean");
         /// Greatest relative deviation of a tread from the mean.
         tread_noise: f32 = 0.0,
-            number("Irregular treads", 0.0..=0.4).hint("Greatest relative deviation of a tread from the mean");
+            number("Irregular treads", NOISES).hint("Greatest relative deviation of a tread from the mean");
         /// Seed of the deviations.
         noise_seed: u32 = 0,
-            whole("Seed of the irregularities", 0..=0xff_ffff).hint("Another seed gives other deviations");
+            whole("Seed of the irregularities", NOISE_SEEDS).hint("Another seed gives other deviations");
         /// How far each tread overhangs its riser, in metres; at most half of the shallowest flat tread.
         nosing_m: f32 = 0.0,
-            number("Nosing", 0.0..=0.3).unit("m").hint("How far each tread overhangs its riser");
+            number("Nosing", NOSINGS_M).unit("m").hint("How far each tread overhangs its riser");
         /// Width across, in metres.
         width_m: f32 = 5.0,
-            number("Width", 2.5..=6.0).unit("m").hint("Width of the stairs");
+            number("Width", WIDTHS_M).unit("m").hint("Width of the stairs");
         /// How much of each tread is a ramp that leads up to it: 0 for vertical risers.
         ramp: f32 = 0.0,
             number("Ramp", 0.0..=1.0).hint("How much of each tread is a ramp that leads up to it");
@@ -73,6 +68,21 @@ setting_group! {
         }
     }
 }
+
+/// Numbers of steps.
+pub(super) const STEPS: RangeInclusive<u32> = 3..=20;
+/// Mean heights of steps, in metres.
+pub(super) const RISES_M: RangeInclusive<f32> = 0.1..=1.2;
+/// Mean depths of steps, in metres.
+pub(super) const TREADS_M: RangeInclusive<f32> = 0.6..=3.0;
+/// Relative deviations from the mean.
+pub(super) const NOISES: RangeInclusive<f32> = 0.0..=0.4;
+/// Seeds of the deviations.
+pub(super) const NOISE_SEEDS: RangeInclusive<u32> = 0..=0xff_ffff;
+/// Depths by which treads overhang their risers, in metres.
+pub(super) const NOSINGS_M: RangeInclusive<f32> = 0.0..=0.3;
+/// Widths of the stairs, in metres.
+pub(super) const WIDTHS_M: RangeInclusive<f32> = 2.5..=6.0;
 
 /// Least depth of a landing on the way, in metres: a snake of five blocks has room on two of them.
 pub const LANDING_M: f32 = 5.0;
