@@ -103,5 +103,5 @@ def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path):
 
 def test_a_champion_of_another_space_is_refused_with_the_gene():
     problem = sns.Problem("climb", settings={"genome.wave.harmonics": 3})
-    with pytest.raises(ValueError, match="champion.harmonics is 2; allowed: 3"):
+    with pytest.raises(ValueError, match=r"champion.joints\[0\].bend.harmonics is 2; allowed: 3"):
         problem.genome_of(str(SAVES / "climber.ron"))

@@ -1,5 +1,6 @@
 //! The state of decisions at a moment, for display: the worth of each choice, and the rules that say so.
 
+use crate::genome::controllers::{BitNames, bits_in_words};
 use crate::learn::classifiers::{Condition, Xcs, Zcs};
 
 /// A decision, and what it was taken by.
@@ -36,7 +37,7 @@ pub struct ActiveRule {
     /// The situations that it is about.
     pub condition: Condition,
     /// The names of the bits of situations.
-    pub names: &'static [[&'static str; 2]],
+    pub names: &'static BitNames,
     /// The posture that it is about, by its number.
     pub posture: usize,
     /// The payoff that it predicts, or its strength.
@@ -57,7 +58,7 @@ pub(super) struct RulePlace {
     /// The bits of the situation.
     pub bits: u32,
     /// Their names.
-    pub names: &'static [[&'static str; 2]],
+    pub names: &'static BitNames,
     /// The action that was taken, if one was.
     pub chosen: Option<usize>,
 }
@@ -111,14 +112,7 @@ impl ActiveRule {
 
     /// Its condition in words: "riser at the middle, not moving".
     pub fn words(&self) -> String {
-        let (care, value) = (self.condition.care(), self.condition.value());
-        let parts = self.names.iter().enumerate().filter(|(bit, _)| care >> bit & 1 == 1);
-        let word = |(bit, [set, clear]): (usize, &[&'static str; 2])| match value >> bit & 1 {
-            1 => *set,
-            _ => *clear,
-        };
-        let words: Vec<&str> = parts.map(word).collect();
-        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
+        bits_in_words(self.names, self.condition.care(), self.condition.value(), "always")
     }
 }
 
@@ -189,23 +183,5 @@ mod tests {
         assert_eq!((last.rules.len(), JOINT_BENDS[last.chosen]), (3, "sag"));
         assert!(last.rules.iter().all(|rule| rule.matches && rule.names == JOINT_BITS));
         assert_eq!(last.rules.iter().filter(|rule| rule.decides).count(), 1);
-    }
-
-    #[test]
-    fn a_condition_is_spelled_in_words() {
-        let rule = |care: u32, value: u32| ActiveRule {
-            condition: Condition::new(care, value, SITUATION_BITS.len()).expect("allowed"),
-            names: &SITUATION_BITS,
-            posture: 1,
-            worth: 0.0,
-            fitness: None,
-            experience: None,
-            matches: false,
-            decides: false,
-        };
-        assert_eq!(rule(0b1, 0b1).words(), "riser within half a metre");
-        assert_eq!(rule(1 | 1 << 4, 0).words(), "no riser within half a metre, not moving");
-        assert_eq!(rule(0b100, 0).words(), "head not up");
-        assert_eq!(rule(0, 0).words(), "always");
     }
 }

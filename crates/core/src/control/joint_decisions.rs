@@ -12,7 +12,9 @@ use super::situation::{MOVED_M, way_m};
 use super::{
     ActiveRule, Activity, Controller, DecisionActivity, Observation, Perception, RulePlace, Senses,
 };
-use crate::genome::controllers::{Explorer, JOINT_BENDS, JOINT_BITS, JointDecisionGenes};
+use crate::genome::controllers::{
+    Explorer, JOINT_BENDS, JOINT_BITS, JointDecisionGenes, bits_in_words, bits_of,
+};
 use crate::learn::Episode;
 use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
 use crate::world::JointTorque;
@@ -141,14 +143,12 @@ fn situation(senses: &Perception, joint: usize, moved: bool) -> u32 {
         front.pitch >= RAISED,
         moved,
     ];
-    bits.iter().enumerate().map(|(index, bit)| u32::from(*bit) << index).sum()
+    bits_of(&bits)
 }
 
 /// The situation of a joint in words: all that is so.
 fn in_words(bits: u32) -> String {
-    let is_so = JOINT_BITS.iter().enumerate().filter(|(bit, _)| bits >> bit & 1 == 1);
-    let words: Vec<&str> = is_so.map(|(_, [set, _])| *set).collect();
-    if words.is_empty() { "nothing near".to_owned() } else { words.join(", ") }
+    bits_in_words(&JOINT_BITS, bits, bits, "nothing near")
 }
 
 impl Controller for JointDecisionController {

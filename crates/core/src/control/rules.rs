@@ -6,7 +6,7 @@ use super::perception::Perception;
 use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
 use super::servo::JointServos;
 use super::{Activity, Controller, Observation, Senses, WaveUses};
-use crate::genome::controllers::{JointGroup, RuleGenes, WaveRule};
+use crate::genome::controllers::{JointGroup, RULE_SENSES, RuleGenes, WaveRule, bits_of};
 use crate::world::JointTorque;
 
 /// Decisions per second.
@@ -30,7 +30,7 @@ pub struct RuleFollower {
     /// Wave of the front and of the rear half before the last decision.
     before: [usize; 2],
     /// The bits that the conditions looked at when it decided last; none before the first decision.
-    bits: Option<u16>,
+    bits: Option<u32>,
     /// Way of the middle limb since the last decision, by its speed as it is sensed, in m.
     way_m: f32,
     uses: WaveUses,
@@ -97,7 +97,7 @@ impl RuleFollower {
 }
 
 /// Index of the rule that decides for a half of the joints: the strongest that holds, the lowest of equals.
-fn deciding_rule(rules: &[WaveRule], bits: u16, half: JointGroup) -> Option<usize> {
+fn deciding_rule(rules: &[WaveRule], bits: u32, half: JointGroup) -> Option<usize> {
     let mut strongest: Option<(usize, &WaveRule)> = None;
     for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| rule.holds(bits, half)) {
         if strongest.is_none_or(|(_, other)| rule.strength > other.strength) {
@@ -108,17 +108,17 @@ fn deciding_rule(rules: &[WaveRule], bits: u16, half: JointGroup) -> Option<usiz
 }
 
 /// Index of the wave for a half of the joints: that of the rule that decides, and the first wave if none does.
-fn chosen_wave(rules: &[WaveRule], bits: u16, half: JointGroup) -> usize {
+fn chosen_wave(rules: &[WaveRule], bits: u32, half: JointGroup) -> usize {
     let rule = deciding_rule(rules, bits, half).and_then(|index| rules.get(index));
     rule.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
 }
 
-/// The bits that the conditions of rules look at, in the order of [`crate::genome::controllers::RULE_SENSES`].
-fn bits(senses: &Perception, way_m: f32) -> u16 {
+/// The bits that the conditions of rules look at, in the order of [`RULE_SENSES`].
+fn bits(senses: &Perception, way_m: f32) -> u32 {
     let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
     let (head, middle) = (limb(0), limb(senses.limbs.len() / 2));
     let tail = limb(senses.limbs.len().saturating_sub(1));
-    let bits = [
+    let bits: [bool; RULE_SENSES.len()] = [
         head.gap < 1.0 / GAP_SCALE_M,
         head.gap < 0.25 / GAP_SCALE_M,
         head.step_up > 0.05,
@@ -130,7 +130,7 @@ fn bits(senses: &Perception, way_m: f32) -> u16 {
         middle.gap < 1.0 / GAP_SCALE_M,
         way_m > MOVED_M,
     ];
-    bits.into_iter().rev().fold(0, |all, bit| all << 1 | u16::from(bit))
+    bits_of(&bits)
 }
 
 impl Controller for RuleFollower {

@@ -3,7 +3,7 @@
 use super::Perception;
 use super::postures::bend;
 use super::sense::{ANGLE_SCALE_RAD, GAP_SCALE_M, SPEED_SCALE_M_S};
-use crate::genome::controllers::SITUATION_BITS;
+use crate::genome::controllers::{SITUATION_BITS, bits_of};
 
 /// The edges between near and far gaps of the head, in metres.
 const GAP_EDGES_M: [f32; 2] = [0.25, 1.0];
@@ -99,7 +99,7 @@ impl SensedSituation {
             bent(1).abs() >= 1.0,
             bent(third).abs() >= 1.0,
         ];
-        bits.iter().enumerate().map(|(index, bit)| u32::from(*bit) << index).sum()
+        bits_of(&bits)
     }
 
     /// The situation in words.

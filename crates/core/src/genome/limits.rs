@@ -99,7 +99,8 @@ mod tests {
                 for value in [least, most] {
                     let Some(changed) = with_value(&genome, index, value) else { continue };
                     let message = check(&changed).err().map_or(String::new(), |e| e.to_string());
-                    assert!(!message.ends_with(&format!("allowed: {allowed}")), "{message}");
+                    let refused = format!("{field} is {value}; allowed: {allowed}");
+                    assert!(!message.ends_with(&refused), "{message}");
                 }
             }
         }

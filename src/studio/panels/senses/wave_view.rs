@@ -174,7 +174,7 @@ fn joints_of(group: JointGroup) -> &'static str {
 /// A rule: its condition above, its joints and wave below.
 fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
     let (joints, strength) = (joints_of(rule.group), decimals(rule.strength, 2));
-    let condition = match rule.condition.words() {
+    let condition = match rule.words() {
         always if always == "always" => "Always".to_owned(),
         words => format!("If {words}"),
     };

@@ -37,7 +37,7 @@ impl RuleFollower {
         };
         let rule = |(index, rule): (usize, &WaveRule)| ActiveWaveRule {
             rule: *rule,
-            holds: rule.condition.holds(bits),
+            holds: rule.condition.matches(bits),
             decides: decides(index),
         };
         Some(WaveChoiceActivity {

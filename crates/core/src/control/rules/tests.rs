@@ -4,7 +4,7 @@ use super::*;
 use crate::control::perception::{JointSenses, LimbSenses};
 use crate::control::{ActiveSenses, ControlLoop};
 use crate::evolve::Champion;
-use crate::genome::controllers::{RULE_SENSES, RuleCondition};
+use crate::genome::controllers::RULE_SENSES;
 use crate::genome::{ControllerGenes, ControllerKind, Genome, GenomeSpace};
 use crate::rng::{Purpose, stream};
 use crate::save::shipped_champion;
@@ -22,7 +22,7 @@ fn genes(genome: &Genome) -> RuleGenes {
 }
 
 fn rule(condition: &str, group: JointGroup, wave: u32, strength: f32) -> WaveRule {
-    let condition = RuleCondition::try_from(condition.to_owned()).expect("a condition");
+    let condition = condition.parse().expect("a condition");
     WaveRule { condition, group, wave, strength }
 }
 
@@ -41,9 +41,9 @@ fn moment(steps_per_s: u32, change: impl FnOnce(&mut Perception)) -> Observation
 #[test]
 fn each_bit_says_what_its_name_says() {
     let of = |change: fn(&mut Perception)| bits(&moment(60, change).perception, 0.0);
-    let set = |bits: u16| -> Vec<&str> {
+    let set = |bits: u32| -> Vec<&str> {
         let is_set = |index: &usize| bits >> index & 1 == 1;
-        (0..RULE_SENSES.len()).filter(is_set).map(|index| RULE_SENSES[index]).collect()
+        (0..RULE_SENSES.len()).filter(is_set).map(|index| RULE_SENSES[index][0]).collect()
     };
     assert_eq!(of(|_| ()), 0);
     for (change, expected) in [

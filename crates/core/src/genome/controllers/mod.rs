@@ -3,6 +3,7 @@
 //! A new kind is a variant of [`ControllerKind`], a line in `registry!` below, and the file that it names; what
 //! moves the joints by these genes is registered in [`crate::control`].
 
+mod bit_names;
 mod central;
 mod ctrnn;
 mod decisions;
@@ -25,6 +26,7 @@ mod tanh;
 mod wave;
 mod wave_rule;
 
+pub use bit_names::{BitNames, bits_in_words, bits_of};
 pub use central::{CentralNetwork, sense_count};
 pub use ctrnn::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, CtrnnNeuron};
 pub(crate) use decisions::shared;
@@ -52,7 +54,7 @@ pub use servo::ServoGenes;
 pub use signal::{JointSignals, TorqueSignals};
 pub use tanh::tanh_each;
 pub use wave::{Harmonic, JointWaves, Wave, Waves};
-pub use wave_rule::{JointGroup, RULE_SENSES, RuleCondition, WaveRule};
+pub use wave_rule::{JointGroup, RULE_SENSES, WaveRule};
 
 use serde::{Deserialize, Serialize};
 
@@ -216,6 +218,7 @@ impl ControllerGenes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learn::classifiers::Condition;
 
     #[test]
     fn names_in_files_are_those_of_the_registry() {
@@ -260,6 +263,8 @@ mod tests {
         assert_eq!(message, "rules.library[2].joints is 3; allowed: 4 to 4");
         let message = rules(|genes| genes.library[1].joints[0].bend.harmonics.clear());
         assert_eq!(message, "rules.library[1].joints[0].bend.harmonics is 0; allowed: 1 to 5");
+        let message = rules(|genes| genes.rules[2].condition = Condition::any(9));
+        assert_eq!(message, "rules.rules[2].condition is 9; allowed: 10 to 10");
         let message = rules(|genes| genes.rules[3].wave = 5);
         assert_eq!(message, "rules.rules[3].wave is 5; allowed: 1 to 4");
     }

@@ -13,7 +13,7 @@ use super::encoding::{
     TWIST_SETTINGS,
 };
 use super::wave::Waves;
-use super::wave_rule::WaveRule;
+use super::wave_rule::{RULE_SENSES, WaveRule};
 use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::kind::ControllerKind;
 use crate::genome::network_space::{MOST_LIBRARY_WAVES, MOST_WAVE_RULES};
@@ -105,6 +105,10 @@ impl ControllerEncoding for RuleGenes {
     fn lengths(&self, visit: LengthVisitor<'_>) {
         visit(format_args!("library waves"), self.library.len(), 1..=MOST_LIBRARY_WAVES);
         visit(format_args!("number of rules"), self.rules.len(), 1..=MOST_WAVE_RULES);
+        for (index, rule) in self.rules.iter().enumerate() {
+            let (name, senses) = (format_args!("rules[{index}].condition"), RULE_SENSES.len());
+            visit(name, rule.condition.length(), senses..=senses);
+        }
         let joints = self.joints();
         for (index, waves) in self.library.iter().enumerate() {
             let place = format!("library[{index}]");

@@ -2,44 +2,33 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::check::{Invalid, quoted};
+use super::bit_names::bits_in_words;
 use crate::genome::gene::{GeneRange, Genes, Quantity};
 use crate::genome::limits::SHARE;
+use crate::learn::classifiers::Condition;
 
-/// The statements of the bits that conditions look at, in the order of the symbols. Bit number i has the value 2^i.
-pub const RULE_SENSES: [&str; 10] = [
-    "head gap under 1 m",
-    "head gap under 0.25 m",
-    "step up over 0.05 m",
-    "step up over 0.6 m",
-    "head pitched up",
-    "head blocked",
-    "middle touches",
-    "tail touches",
-    "middle gap under 1 m",
-    "moved ahead",
-];
-
-/// The opposite of each statement, for a bit that must be 0.
-const OPPOSITES: [&str; RULE_SENSES.len()] = [
-    "head gap 1 m or more",
-    "head gap 0.25 m or more",
-    "no step up over 0.05 m",
-    "no step up over 0.6 m",
-    "head not pitched up",
-    "head not blocked",
-    "middle does not touch",
-    "tail does not touch",
-    "middle gap 1 m or more",
-    "not moved ahead",
+/// The statements of the bits that conditions look at, in the order of the symbols: for a bit that is set, and for one that
+/// is not. Bit number i has the value 2^i.
+pub const RULE_SENSES: [[&str; 2]; 10] = [
+    ["head gap under 1 m", "head gap 1 m or more"],
+    ["head gap under 0.25 m", "head gap 0.25 m or more"],
+    ["step up over 0.05 m", "no step up over 0.05 m"],
+    ["step up over 0.6 m", "no step up over 0.6 m"],
+    ["head pitched up", "head not pitched up"],
+    ["head blocked", "head not blocked"],
+    ["middle touches", "middle does not touch"],
+    ["tail touches", "tail does not touch"],
+    ["middle gap under 1 m", "middle gap 1 m or more"],
+    ["moved ahead", "not moved ahead"],
 ];
 
 /// A rule of a controller that chooses waves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WaveRule {
-    /// When it may decide.
-    pub condition: RuleCondition,
+    /// When it may decide: for each of [`RULE_SENSES`] a symbol, 1 if it must hold, 0 if it must not, and # if it does not
+    /// matter.
+    pub condition: Condition,
     /// The joints for which it decides.
     pub group: JointGroup,
     /// The wave that it chooses; the first of the library is 1.
@@ -60,17 +49,6 @@ pub enum JointGroup {
     Rear,
 }
 
-/// A condition: for each of [`RULE_SENSES`] a symbol, 1 if it must hold, 0 if it must not, and # if it does not matter.
-/// Files have it as a text such as `1#0#######`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(into = "String", try_from = "String")]
-pub struct RuleCondition {
-    /// The bits that matter.
-    mask: u16,
-    /// The values that these bits must have; 0 elsewhere.
-    bits: u16,
-}
-
 /// The range of a gene for a symbol, whose values are -1 for 0, 0 for # and 1 for 1. A random one is # with a probability
 /// of 0.6, so that one in ten random rules holds at a moment, and one of a dozen most of the time. With three symbols
 /// equally likely it would be one in sixty.
@@ -85,25 +63,30 @@ const SIGN: Quantity = Quantity::pure(-1.5..=1.5);
 impl WaveRule {
     /// A rule whose genes are in the middle of their ranges.
     pub(super) const ZEROED: Self = Self {
-        condition: RuleCondition { mask: 0, bits: 0 },
+        condition: Condition::any(RULE_SENSES.len() as u8),
         group: JointGroup::All,
         wave: 1,
         strength: 0.0,
     };
 
     /// Whether it may decide for the front or the rear half of the joints while the snake senses these bits.
-    pub fn holds(&self, bits: u16, half: JointGroup) -> bool {
-        (self.group == JointGroup::All || self.group == half) && self.condition.holds(bits)
+    pub fn holds(&self, bits: u32, half: JointGroup) -> bool {
+        (self.group == JointGroup::All || self.group == half) && self.condition.matches(bits)
+    }
+
+    /// Its condition in words: "head blocked, tail does not touch".
+    pub fn words(&self) -> String {
+        bits_in_words(&RULE_SENSES, self.condition.care(), self.condition.value(), "always")
     }
 
     /// Visits the genes. Symbols, groups and waves are numbers that are rounded, so that a small step of a search leaves
     /// most of them as they are; `waves` is the size of the library.
     pub(super) fn genes(&mut self, waves: usize, genes: &mut Genes<'_>) {
-        for (sense, name) in RULE_SENSES.iter().enumerate() {
-            let mut symbol = self.condition.number(sense);
+        for (sense, [name, _]) in RULE_SENSES.iter().enumerate() {
+            let mut symbol = number_of(self.condition.symbol(sense));
             let field = format_args!("condition[{sense}]");
             genes.gene(field, format_args!(" if {name}"), SIGN, SYMBOLS, &mut symbol);
-            self.condition.set_number(sense, symbol);
+            self.condition.set_symbol(sense, symbol_of(symbol));
         }
         let mut group = self.group.number();
         genes.gene("group", ", joints", SIGN, GROUPS, &mut group);
@@ -120,77 +103,18 @@ impl WaveRule {
     }
 }
 
-impl RuleCondition {
-    /// Whether it holds where the snake senses these bits.
-    pub fn holds(self, bits: u16) -> bool {
-        (bits ^ self.bits) & self.mask == 0
-    }
-
-    /// The condition in words: "head blocked, tail does not touch".
-    pub fn words(self) -> String {
-        let senses = RULE_SENSES.iter().zip(OPPOSITES).enumerate();
-        let words = senses.filter_map(|(sense, (holds, opposite))| match self.number(sense) {
-            0.0 => None,
-            number if number > 0.0 => Some(*holds),
-            _ => Some(opposite),
-        });
-        let words: Vec<&str> = words.collect();
-        if words.is_empty() { "always".to_owned() } else { words.join(", ") }
-    }
-
-    /// The value of the gene of a symbol.
-    fn number(self, sense: usize) -> f32 {
-        match (self.mask >> sense & 1, self.bits >> sense & 1) {
-            (0, _) => 0.0,
-            (_, 0) => -1.0,
-            _ => 1.0,
-        }
-    }
-
-    fn set_number(&mut self, sense: usize, number: f32) {
-        let bit = 1 << sense;
-        (self.mask, self.bits) = (self.mask & !bit, self.bits & !bit);
-        if number.abs() >= LEAST_CERTAIN {
-            self.mask |= bit;
-            self.bits |= if number > 0.0 { bit } else { 0 };
-        }
+/// The value of the gene of a symbol.
+fn number_of(symbol: Option<bool>) -> f32 {
+    match symbol {
+        None => 0.0,
+        Some(false) => -1.0,
+        Some(true) => 1.0,
     }
 }
 
-impl From<RuleCondition> for String {
-    fn from(condition: RuleCondition) -> Self {
-        let symbol = |sense| match condition.number(sense) {
-            0.0 => '#',
-            number if number > 0.0 => '1',
-            _ => '0',
-        };
-        (0..RULE_SENSES.len()).map(symbol).collect()
-    }
-}
-
-impl TryFrom<String> for RuleCondition {
-    type Error = Invalid;
-
-    fn try_from(text: String) -> Result<Self, Invalid> {
-        let refused = || {
-            let allowed = format!("{} symbols, each 0, 1 or #", RULE_SENSES.len());
-            Invalid::new("condition", quoted(&text), allowed)
-        };
-        if text.len() != RULE_SENSES.len() {
-            return Err(refused());
-        }
-        let mut condition = Self::default();
-        for (sense, symbol) in text.chars().enumerate() {
-            let number = match symbol {
-                '0' => -1.0,
-                '#' => 0.0,
-                '1' => 1.0,
-                _ => return Err(refused()),
-            };
-            condition.set_number(sense, number);
-        }
-        Ok(condition)
-    }
+/// The symbol of a value of its gene.
+fn symbol_of(number: f32) -> Option<bool> {
+    (number.abs() >= LEAST_CERTAIN).then_some(number > 0.0)
 }
 
 impl JointGroup {
@@ -215,46 +139,28 @@ impl JointGroup {
 mod tests {
     use super::*;
 
-    fn condition(text: &str) -> RuleCondition {
-        text.to_owned().try_into().expect("a condition")
+    fn rule(condition: &str) -> WaveRule {
+        WaveRule { condition: condition.parse().expect("a condition"), ..WaveRule::ZEROED }
     }
 
     #[test]
-    fn a_condition_holds_exactly_where_its_symbols_agree_with_the_bits() {
-        let of = condition("1#0#######");
+    fn a_rule_decides_for_its_joints_where_its_condition_holds() {
+        let of_rear = WaveRule { group: JointGroup::Rear, ..rule("1#0#######") };
         for bits in 0..1 << RULE_SENSES.len() {
-            assert_eq!(of.holds(bits), bits & 0b101 == 0b001, "{bits:010b}");
+            let expected = bits & 0b101 == 0b001;
+            assert_eq!(of_rear.holds(bits, JointGroup::Rear), expected, "{bits:010b}");
+            assert!(!of_rear.holds(bits, JointGroup::Front));
         }
-        assert!(condition("##########").holds(0) && condition("#########1").holds(0x200));
-        let rule = WaveRule { condition: of, group: JointGroup::Rear, ..WaveRule::ZEROED };
-        assert!(rule.holds(1, JointGroup::Rear) && !rule.holds(1, JointGroup::Front));
-        let of_all = WaveRule { group: JointGroup::All, ..rule };
-        assert!(of_all.holds(1, JointGroup::Front) && !of_all.holds(0, JointGroup::Front));
-    }
-
-    #[test]
-    fn a_condition_is_a_readable_text_in_files_and_a_hostile_one_is_refused() {
-        for text in ["1#0#######", "##########", "0101010101"] {
-            let written = ron::to_string(&condition(text)).expect("written");
-            assert_eq!(written, format!("{text:?}"));
-            assert_eq!(ron::from_str::<RuleCondition>(&written).expect("read"), condition(text));
-        }
-        for text in ["", "1#0######", "1#0########", "1#0######2", "1#0######é", "1#0#####é"] {
-            let error = RuleCondition::try_from(text.to_owned()).expect_err(text).to_string();
-            let allowed = "allowed: 10 symbols, each 0, 1 or #";
-            assert_eq!(error, format!("condition is {text:?}; {allowed}"));
-            let error = ron::from_str::<RuleCondition>(&format!("{text:?}")).expect_err(text);
-            assert!(error.to_string().contains(allowed), "{error}");
-        }
+        assert!(rule("##########").holds(0, JointGroup::Front));
+        assert!(rule("#########1").holds(0x200, JointGroup::Rear));
     }
 
     #[test]
     fn three_in_five_random_symbols_do_not_matter() {
         let mut counts = [0; 3];
         for share in 0..1000 {
-            let mut condition = RuleCondition::default();
-            condition.set_number(4, SYMBOLS.at((f64::from(share) + 0.5) / 1000.0));
-            counts[(condition.number(4) + 1.0) as usize] += 1;
+            let symbol = symbol_of(SYMBOLS.at((f64::from(share) + 0.5) / 1000.0));
+            counts[(number_of(symbol) + 1.0) as usize] += 1;
         }
         assert_eq!(counts, [200, 600, 200]);
     }
@@ -266,8 +172,7 @@ mod tests {
             ("1####1####", "head gap under 1 m, head blocked"),
             ("#######0#0", "tail does not touch, not moved ahead"),
         ] {
-            let condition = RuleCondition::try_from(text.to_owned()).expect("a condition");
-            assert_eq!(condition.words(), words);
+            assert_eq!(rule(text).words(), words);
         }
     }
 }

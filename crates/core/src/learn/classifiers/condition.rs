@@ -40,6 +40,24 @@ impl Condition {
         Ok(Self { care, value: value & care, length: length as u8 })
     }
 
+    /// The condition that every situation of `length` bits meets.
+    pub const fn any(length: u8) -> Self {
+        Self { care: 0, value: 0, length }
+    }
+
+    /// The symbol at a position: the value that the bit must have, or none for `#`.
+    pub fn symbol(&self, position: usize) -> Option<bool> {
+        let is_set = |bits: u32| bits >> position & 1 == 1;
+        is_set(self.care).then_some(is_set(self.value))
+    }
+
+    /// Replaces the symbol at a position.
+    pub fn set_symbol(&mut self, position: usize, symbol: Option<bool>) {
+        let others = !(1 << position);
+        self.care = self.care & others | u32::from(symbol.is_some()) << position;
+        self.value = self.value & others | u32::from(symbol == Some(true)) << position;
+    }
+
     /// A condition that `bits` meets, in which each bit is `#` with probability `wildcard_share`.
     pub(super) fn covering(
         bits: u32,
@@ -146,11 +164,10 @@ fn below(position: usize) -> u32 {
 
 impl Display for Condition {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        let symbol = |position: usize| match (self.care >> position & 1, self.value >> position & 1)
-        {
-            (0, _) => '#',
-            (_, 0) => '0',
-            _ => '1',
+        let symbol = |position: usize| match self.symbol(position) {
+            None => '#',
+            Some(false) => '0',
+            Some(true) => '1',
         };
         f.pad(&(0..self.length()).map(symbol).collect::<String>())
     }
