@@ -34,7 +34,7 @@ pub use setting::{
 };
 pub use table::markdown;
 pub use value::{SettingField, SettingValue};
-pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
+pub use walk::{ListedSetting, Need, Section, SettingGroup, SettingVisitor, Walk, walk};
 
 /// Whether a value is the default of its type.
 ///

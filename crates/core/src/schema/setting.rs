@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use super::display::DisplayUnit;
 use super::parts::Parts;
 use super::value::SettingValue;
+use super::walk::Need;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
 
@@ -69,6 +70,7 @@ pub struct NumberRange {
 pub struct SettingRow<T> {
     pub(super) setting: Setting,
     pub(super) is_used: bool,
+    pub(super) need: Option<Need>,
     field: PhantomData<fn(&mut T)>,
 }
 
@@ -83,7 +85,7 @@ fn row<T>(label: &'static str, kind: SettingKind) -> SettingRow<T> {
         kind,
         fixed: None,
     };
-    SettingRow { setting, is_used: true, field: PhantomData }
+    SettingRow { setting, is_used: true, need: None, field: PhantomData }
 }
 
 fn numbers(least: f32, most: f32) -> NumberRange {
@@ -122,7 +124,7 @@ pub fn per_part(
     row(label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
 }
 
-/// The same, or no value: then each genome has its own. A panel begins with the value `begins_with`.
+/// A number for all parts, one for each, or no value: then each genome has its own. A panel begins with `begins_with`.
 pub fn optional_per_part(
     label: &'static str,
     range: RangeInclusive<f32>,
@@ -193,7 +195,13 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// Sets whether it has an effect, given the choices made elsewhere.
+    /// That has an effect only in runs that meet a need.
+    pub fn needs(mut self, need: Need) -> Self {
+        self.need = Some(need);
+        self
+    }
+
+    /// Sets whether it has an effect, given the other settings of its group.
     pub fn used_if(mut self, is_used: bool) -> Self {
         self.is_used = is_used;
         self

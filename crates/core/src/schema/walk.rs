@@ -13,6 +13,11 @@ pub struct Section {
     pub about: &'static str,
 }
 
+/// Something of a run without which some settings have no effect, such as soft limbs; the text says what. A row names what
+/// its setting needs, and a group that knows the run says whether it has that ([`Walk::meet`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Need(pub &'static str);
+
 /// A struct of settings.
 pub trait SettingGroup {
     /// Takes the walk to every field. Destructure `self` without `..`: a field without a row then does not compile.
@@ -69,6 +74,8 @@ struct State {
     is_used: bool,
     /// Names of settings without effect, below the path with this length.
     without_effect: (usize, Vec<&'static str>),
+    /// The needs that the run does not meet.
+    unmet: Vec<Need>,
     fixed: Option<&'static str>,
 }
 
@@ -78,7 +85,8 @@ const UNUSED: &str = "Takes effect with the next run, because the current run do
 /// Takes a visitor to every setting of a group.
 pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
     let section = Section { title: "Settings", about: "All settings." };
-    let state = State { section, is_used: true, without_effect: (0, Vec::new()), fixed: None };
+    let without_effect = (0, Vec::new());
+    let state = State { section, is_used: true, without_effect, unmet: Vec::new(), fixed: None };
     let mut walk = Walk { visitor, path: String::new(), state };
     group.walk(&mut walk);
     walk.visitor.leave("", group);
@@ -100,6 +108,18 @@ impl Walk<'_> {
         self.state.without_effect = (self.path.len(), names);
     }
 
+    /// Sets whether the run meets a need of the next settings of this group. It meets all others.
+    pub fn meet(&mut self, need: Need, is_met: bool) {
+        if !is_met {
+            self.state.unmet.push(need);
+        }
+    }
+
+    /// Whether the run meets a need.
+    pub fn meets(&self, need: Need) -> bool {
+        !self.state.unmet.contains(&need)
+    }
+
     /// Sets the reason, as a sentence, why the next settings of this group may not change during a run.
     pub fn fixed(&mut self, reason: &'static str) {
         self.state.fixed = Some(reason);
@@ -115,7 +135,10 @@ impl Walk<'_> {
         let setting = Setting { name, ..row.setting };
         let length = self.enter(setting.name);
         let State { section, fixed, .. } = self.state;
-        let is_used = self.state.is_used && row.is_used && self.has_effect();
+        let is_used = self.state.is_used
+            && row.is_used
+            && row.need.is_none_or(|need| self.meets(need))
+            && self.has_effect();
         let live = match fixed {
             Some(reason) => Err(reason),
             None if !is_used => Err(UNUSED),

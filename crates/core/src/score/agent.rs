@@ -5,8 +5,8 @@ use crate::check::Invalid;
 use crate::control::ActiveSenses;
 use crate::genome::{DENSITY_RANGE_KG_M3, Genome, LARGEST_LIMIT_RAD, MODULUS_RANGE_PA};
 use crate::schema::{
-    Parts, PerPart, Section, SettingGroup, Walk, is_default, number, optional_per_part, per_part,
-    setting_group, settings, whole,
+    Need, Parts, PerPart, Section, SettingGroup, Walk, is_default, number, optional_per_part,
+    per_part, setting_group, settings, whole,
 };
 use crate::world::{BodyPlan, Elasticity, JointPlan, PartPlan, Skin, check_softness};
 
@@ -129,22 +129,27 @@ impl SettingGroup for AgentSettings {
         settings! { walk,
             // Two limbs make a joint; with more than twelve the snake is longer than the arena.
             limbs: whole("Limbs", 2..=12)
+                .needs(Self::GIVEN_BODY)
                 .hint("Number of limbs (blocks) of the snake. Genomes for a different number do not fit")
                 .slider(2.0, 12.0);
             // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
             limb_width_m: per_part("Limb width", 0.1..=10.0, each_limb)
+                .needs(Self::GIVEN_BODY)
                 .unit("m")
                 .hint("Size of a block across the stairs. Wide blocks do not roll over")
                 .slider(0.2, 3.0);
             limb_length_m: per_part("Limb length", 0.1..=10.0, each_limb)
+                .needs(Self::GIVEN_BODY)
                 .unit("m")
                 .hint("Size of a block along the snake. Long blocks reach further and bend less")
                 .slider(0.2, 5.0);
             limb_height_m: per_part("Limb height", 0.1..=10.0, each_limb)
+                .needs(Self::GIVEN_BODY)
                 .unit("m")
                 .hint("Size of a block upwards. Tall blocks reach the next step more easily")
                 .slider(0.2, 3.0);
             density_kg_m3: optional_per_part("Density", DENSITY_RANGE_KG_M3, each_limb, 2.2)
+                .needs(Self::GIVEN_BODY)
                 .unit("kg/m³")
                 .hint(
                     "Mass per volume of the blocks. Heavy snakes press harder and need more torque. \
@@ -165,6 +170,7 @@ impl SettingGroup for AgentSettings {
         });
         settings! { walk,
             youngs_modulus_pa: optional_per_part("Young's modulus", MODULUS_RANGE_PA, each_limb, 40_000.0)
+                .needs(Self::GIVEN_BODY)
                 .unit("Pa")
                 .hint(
                     "Stiffness of the blocks' material: soft foam has some 10,000 Pa. Blocks of 1 m and 9 kg/m³ fold up under \
@@ -172,10 +178,10 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(1000.0, 100_000.0)
                 .logarithmic_from(1000.0);
-            soft_parts: whole("Parts per soft block", 2..=4).advanced()
+            soft_parts: whole("Parts per soft block", 2..=4).advanced().needs(Self::SOFT_LIMBS)
                 .hint("Number of rigid parts of which a soft block consists. More parts bend more smoothly but take longer")
                 .slider(2.0, 4.0);
-            soft_damping_ratio: number("Damping of soft blocks", 0.0..=1.0).advanced()
+            soft_damping_ratio: number("Damping of soft blocks", 0.0..=1.0).advanced().needs(Self::SOFT_LIMBS)
                 .hint("Damping of a soft block's slowest vibration: at 0 it vibrates for long, at 1 it creeps back without a vibration")
                 .slider(0.0, 1.0);
         }
@@ -186,6 +192,7 @@ impl SettingGroup for AgentSettings {
         let limits = 0.0..=LARGEST_LIMIT_RAD;
         settings! { walk,
             bend_limit_rad: optional_per_part("Bend limit", limits.clone(), each_joint, 1.0)
+                .needs(Self::GIVEN_BODY)
                 .unit("rad")
                 .hint(
                     "Maximum angle by which a joint bends up or down. Without a value, each snake has its own, \
@@ -193,6 +200,7 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(0.0, 3.0);
             twist_limit_rad: optional_per_part("Twist limit", limits, each_joint, 1.0)
+                .needs(Self::GIVEN_BODY)
                 .unit("rad")
                 .hint(
                     "Maximum angle by which a joint twists about the snake's long axis, in either direction. Without a value, each snake has its own, \
@@ -208,7 +216,7 @@ impl SettingGroup for AgentSettings {
                 .unit("N·m")
                 .hint("How strongly a joint can twist. Larger torques from the controller are cut off")
                 .slider(0.0, 2000.0);
-            torque_budget_nm: number("Torque budget", 1.0..=1.0e7).advanced()
+            torque_budget_nm: number("Torque budget", 1.0..=1.0e7).advanced().needs(Self::OWN_BODIES)
                 .unit("N·m")
                 .hint("Greatest sum of the torques of all joints of an evolving body. A stronger body has all of them reduced")
                 .slider(100.0, 20_000.0)
@@ -238,6 +246,7 @@ impl SettingGroup for AgentSettings {
                 .slider(0.0, 0.1)
                 .logarithmic_from(1.0e-6);
         }
+        walk.used_if(walk.meets(Self::SENSING));
         walk.group("senses", senses);
     }
 }
@@ -246,20 +255,14 @@ impl AgentSettings {
     /// The section of the material of the limbs.
     pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
-    /// The settings that have no effect on a body of a genome's own, by their paths in the settings of a run.
-    pub const REPLACED_BY_OWN_BODIES: [&str; 8] = [
-        "trial.agent.limbs",
-        "trial.agent.limb_width_m",
-        "trial.agent.limb_length_m",
-        "trial.agent.limb_height_m",
-        "trial.agent.density_kg_m3",
-        "trial.agent.bend_limit_rad",
-        "trial.agent.twist_limit_rad",
-        "trial.agent.youngs_modulus_pa",
-    ];
-    /// The settings that only have an effect on soft limbs.
-    pub const OF_SOFT_LIMBS: [&str; 2] =
-        ["trial.agent.soft_parts", "trial.agent.soft_damping_ratio"];
+    /// A body of the trial, which genomes with a body of their own replace.
+    pub const GIVEN_BODY: Need = Need("a body of the trial");
+    /// Bodies that evolve.
+    pub const OWN_BODIES: Need = Need("bodies that evolve");
+    /// Soft limbs.
+    pub const SOFT_LIMBS: Need = Need("soft limbs");
+    /// A controller that senses its surroundings.
+    pub const SENSING: Need = Need("a controller that senses its surroundings");
 
     /// Number of joints between the limbs.
     pub fn joints(&self) -> usize {

@@ -326,11 +326,4 @@ mod tests {
         // A step of 2 m/s, of which the joints take a part.
         assert!(up_m > 0.005, "{up_m} m higher");
     }
-
-    #[test]
-    fn a_range_that_allows_a_negative_factor_is_refused() {
-        let range = PerturbationRange { friction: 1.5, ..PerturbationRange::default() };
-        let error = crate::schema::check(&range).expect_err("refused").to_string();
-        assert_eq!(error, "friction is 1.5; allowed: 0 to 0.9");
-    }
 }

@@ -183,7 +183,7 @@ impl Trial {
     /// The path of the physics engine in settings.
     pub const ENGINE_FIELD: &str = "trial.physics.engine";
 
-    /// The same trial, with the engine rapier if its own cannot simulate the body of a genome.
+    /// This trial, with the engine rapier if its own cannot simulate the body of a genome.
     #[must_use]
     pub fn suited_to(mut self, genome: &Genome) -> Self {
         if self.agent.body_plan(genome).obstacle_in_lanes().is_some() {
@@ -236,7 +236,7 @@ impl Trial {
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
     }
 
-    /// The same for a snake of a genome, whose body may be of its own.
+    /// Describes the centre position `y_m` of the snake of a genome, whose body may be of its own.
     fn meaning_of(&self, genome: &Genome, y_m: f64) -> String {
         if !genome.body.has_own_blocks() {
             return self.meaning(y_m);

@@ -12,7 +12,7 @@ use limits::GROUND_M;
 
 use crate::check::Invalid;
 use crate::schema::{
-    Parts, PerPart, Section, SettingGroup, Walk, is_default, number, per_part, setting_group,
+    Need, Parts, PerPart, Section, SettingGroup, Walk, is_default, number, per_part, setting_group,
     settings, whole,
 };
 
@@ -57,6 +57,9 @@ impl Stairs {
     /// The section of these settings.
     pub const SECTION: Section =
         Section { title: "Stairs", about: "Shape and position of the staircase." };
+    /// Stairs that do not evolve. Those that do begin low and without nosing or slopes; their number of steps and their treads
+    /// are those of the trial.
+    pub const GIVEN: Need = Need("stairs that do not evolve");
 }
 
 impl SettingGroup for Stairs {
@@ -71,7 +74,7 @@ impl SettingGroup for Stairs {
                 .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0);
             // From a doorsill to a wall.
-            rise_m: per_part("Rise", -5.0..=5.0, each_step)
+            rise_m: per_part("Rise", -5.0..=5.0, each_step).needs(Self::GIVEN)
                 .unit("m")
                 .hint("Height of a step over the one below it; a negative rise leads down")
                 .slider(0.05, 2.0);
@@ -93,11 +96,11 @@ impl SettingGroup for Stairs {
                 .unit("m")
                 .hint("Depth of the landing beyond the last step")
                 .slider(0.0, 60.0);
-            nosing_m: number("Nosing", 0.0..=0.3).advanced()
+            nosing_m: number("Nosing", 0.0..=0.3).advanced().needs(Self::GIVEN)
                 .unit("m")
                 .hint("How far each tread overhangs its riser. Sloping rises have no nosing")
                 .slider(0.0, 0.3);
-            slope_m: per_part("Slope", 0.0..=19.9, each_step).advanced()
+            slope_m: per_part("Slope", 0.0..=19.9, each_step).advanced().needs(Self::GIVEN)
                 .unit("m")
                 .hint("Depth over which a rise slopes like a ramp; 0 is a vertical riser")
                 .slider(0.0, 2.0);
@@ -272,7 +275,7 @@ impl Stairs {
         self.surface_after_m(self.steps_climbed(f64::from(y_m)), y_m)
     }
 
-    /// The same within the width, for a point with this number of steps behind it.
+    /// Height of the surface within the width at `y_m`, in metres, for a point with this number of steps behind it.
     fn surface_after_m(&self, climbed: u32, y_m: f32) -> f32 {
         let below_m = self.height_m(climbed);
         if climbed == self.steps {

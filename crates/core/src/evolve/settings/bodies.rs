@@ -10,20 +10,9 @@ use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
 /// Room on the landing beside the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
 
-/// The settings of the body that have no effect, by their paths in the settings of a run.
-pub(super) fn unused_of_body(bodies: &BodySpace, agent: &AgentSettings) -> Vec<&'static str> {
-    let mut unused = Vec::new();
-    let are_soft = if bodies.vary {
-        unused.extend(AgentSettings::REPLACED_BY_OWN_BODIES);
-        bodies.soft
-    } else {
-        unused.push("trial.agent.torque_budget_nm");
-        agent.youngs_modulus_pa.is_some()
-    };
-    if !are_soft {
-        unused.extend(AgentSettings::OF_SOFT_LIMBS);
-    }
-    unused
+/// Whether the limbs of the snakes are soft.
+pub(super) fn are_limbs_soft(bodies: &BodySpace, agent: &AgentSettings) -> bool {
+    if bodies.vary { bodies.soft } else { agent.youngs_modulus_pa.is_some() }
 }
 
 impl Settings {
@@ -80,9 +69,7 @@ impl Settings {
     /// Checks that the physics engine can simulate the snakes of a run.
     pub(super) fn check_engine(&self) -> Result<(), Invalid> {
         let engine = self.trial.physics.engine;
-        let bodies = &self.genome.bodies;
-        let are_soft =
-            if bodies.vary { bodies.soft } else { self.trial.agent.youngs_modulus_pa.is_some() };
+        let are_soft = are_limbs_soft(&self.genome.bodies, &self.trial.agent);
         let kind = match engine {
             PhysicsEngine::Lanes if self.genome.has_creatures() => "branching bodies",
             PhysicsEngine::Lanes if are_soft => "soft limbs",

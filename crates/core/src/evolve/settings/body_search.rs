@@ -23,9 +23,7 @@ setting_group! {
 
         /// Share of the children that have two parents.
         two_parents: f32 = 0.3,
-            number("Share with two parents", 0.0..=1.0).advanced()
-                .hint("Share of children whose blocks come from two parents, aligned by descent")
-                .slider(0.0, 1.0);
+            share_with_two_parents();
 
         /// Standard deviation of a gene's mutation, as a share of its range.
         mutation_step: f32 = 0.08,
@@ -53,9 +51,7 @@ setting_group! {
 
         /// Share of the children that have two parents.
         two_parents: f32 = 0.3,
-            number("Share with two parents", 0.0..=1.0).advanced()
-                .hint("Share of children whose blocks come from two parents, aligned by descent")
-                .slider(0.0, 1.0);
+            share_with_two_parents();
 
         /// Standard deviation of a gene's mutation, as a share of its range.
         mutation_step: f32 = 0.08,
@@ -75,6 +71,14 @@ impl BodyMapElitesSettings {
         let allowed = format!("2 to {most} with the genes of the largest body in each cell");
         Err(Invalid::new("evolution.body_map_elites.length_cells", self.length_cells, allowed))
     }
+}
+
+/// The share of children whose blocks come from two parents.
+fn share_with_two_parents() -> SettingRow<f32> {
+    number("Share with two parents", 0.0..=1.0)
+        .advanced()
+        .hint("Share of children whose blocks come from two parents, aligned by descent")
+        .slider(0.0, 1.0)
 }
 
 /// The step by which the genes of bodies of their own mutate, one in ten in a child.

@@ -1,7 +1,7 @@
 //! Settings of the genetic algorithm.
 
 use super::size::LARGEST_POPULATION;
-use crate::schema::{choice, choices, number, setting_group, whole};
+use crate::schema::{Need, choice, choices, number, setting_group, whole};
 
 setting_group! {
     /// Settings of the genetic algorithm.
@@ -59,13 +59,18 @@ setting_group! {
         /// own. Has no effect on other controllers, nor in novelty search.
         #[serde(default = "usual_takeover", skip_serializing_if = "is_usual_takeover")]
         wave_takeover: f32 = USUAL_TAKEOVER,
-            number("Wave takeover", 0.0..=1.0).advanced()
+            number("Wave takeover", 0.0..=1.0).advanced().needs(GaSettings::TAKEOVER)
                 .hint(
                     "For the controller rules: share of children that replace their parent's least used wave by the most \
                      used one of another of the best four",
                 )
                 .slider(0.0, 1.0);
     }
+}
+
+impl GaSettings {
+    /// Children that take over waves. Novelty search has the other settings in common with the genetic algorithm.
+    pub(super) const TAKEOVER: Need = Need("children that take over waves");
 }
 
 /// The takeover in files that do not state one.

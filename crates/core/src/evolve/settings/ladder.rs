@@ -17,7 +17,7 @@ setting_group! {
 
         /// How much higher the next rung is, in m.
         step_m: f32 = 0.05,
-            number("Rung", 0.001..=1.0)
+            number("Rung", 0.001..=1.0).used_if(*first_rise_m > 0.0)
                 .unit("m")
                 .hint("How much the rise grows from one rung to the next")
                 .slider(0.01, 0.2)
@@ -25,21 +25,21 @@ setting_group! {
 
         /// Share of a generation that has to succeed before the rise grows.
         share: f32 = 0.7,
-            number("Success of a rung", 0.01..=1.0)
+            number("Success of a rung", 0.01..=1.0).used_if(*first_rise_m > 0.0)
                 .hint("Share of a generation that has to succeed before the rise grows")
                 .slider(0.1, 1.0)
                 .fixed(BEGUN);
 
         /// Share of the way to the landing that a snake has to cover to succeed.
         way: f32 = 0.85,
-            number("Way of a success", 0.01..=1.0).advanced()
+            number("Way of a success", 0.01..=1.0).advanced().used_if(*first_rise_m > 0.0)
                 .hint("Share of the way to the landing that a snake has to cover to succeed")
                 .slider(0.1, 1.0)
                 .fixed(BEGUN);
 
         /// Number of generations without a success after which the rise falls by a rung.
         patience: u32 = 15,
-            whole("Patience", 1..=1000).advanced()
+            whole("Patience", 1..=1000).advanced().used_if(*first_rise_m > 0.0)
                 .hint("Number of generations without a success after which the rise falls by a rung")
                 .slider(1.0, 50.0)
                 .fixed(BEGUN);

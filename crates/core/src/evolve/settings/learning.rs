@@ -4,7 +4,7 @@ use crate::check::{Invalid, within};
 use crate::genome::controllers::{DECISION_DISCOUNT, DECISIONS_PER_S, JOINT_BENDS};
 use crate::learn::classifiers::{XcsSettings, ZcsSettings};
 use crate::learn::q_table::{ExplorationLadder, QRule};
-use crate::schema::{number, setting_group, whole};
+use crate::schema::{SettingRow, number, setting_group, whole};
 
 setting_group! {
     /// How boldly the snakes of a generation of learners explore.
@@ -54,9 +54,7 @@ setting_group! {
 
         /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
         trace: f32 = 0.8,
-            number("What came later", 0.0..=1.0).advanced()
-                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
-                .slider(0.0, 1.0);
+            share_of_later();
     }
 }
 
@@ -87,15 +85,11 @@ setting_group! {
 
         /// Probability that a bit does not matter in a rule for a new situation.
         wildcard_share: f32 = 0.05,
-            number("Wildcards", 0.0..=1.0)
-                .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
-                .slider(0.0, 1.0);
+            wildcards();
 
         /// Worth of what follows a decision.
         discount: f32 = 0.95,
-            number("Worth of the future", 0.0..=0.99)
-                .hint("What a reward counts one decision later, relative to one now")
-                .slider(0.0, 0.99);
+            worth_of_the_future();
 
         /// Learning rate.
         learning_rate: f32 = 0.05,
@@ -117,9 +111,7 @@ setting_group! {
 
         /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
         trace: f32 = 0.8,
-            number("What came later", 0.0..=1.0).advanced()
-                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
-                .slider(0.0, 1.0);
+            share_of_later();
     }
 }
 
@@ -161,15 +153,11 @@ setting_group! {
 
         /// Probability that a bit does not matter in a new rule.
         wildcard_share: f32 = 0.2,
-            number("Wildcards", 0.0..=1.0)
-                .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
-                .slider(0.0, 1.0);
+            wildcards();
 
         /// Share of a payment that reaches the rules of the decision before.
         discount: f32 = 0.9,
-            number("Worth of the future", 0.0..=0.99)
-                .hint("What a reward counts one decision later, relative to one now")
-                .slider(0.0, 0.99);
+            worth_of_the_future();
 
         /// Share of its strength that a rule pays and earns.
         learning_rate: f32 = 0.2,
@@ -185,9 +173,7 @@ setting_group! {
 
         /// Share of what came later in the outcome of a decision; the rest is what was expected of the next situation.
         trace: f32 = 0.8,
-            number("What came later", 0.0..=1.0).advanced()
-                .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
-                .slider(0.0, 1.0);
+            share_of_later();
     }
 }
 
@@ -204,6 +190,28 @@ impl ZcsRunSettings {
             ..ZcsSettings::default()
         }
     }
+}
+
+/// The share of what came later in the outcome of a decision.
+fn share_of_later() -> SettingRow<f32> {
+    number("What came later", 0.0..=1.0)
+        .advanced()
+        .hint("How much of what came later counts, in place of what was expected. Near 1 helps where situations look alike")
+        .slider(0.0, 1.0)
+}
+
+/// The probability that a bit does not matter in a new rule.
+fn wildcards() -> SettingRow<f32> {
+    number("Wildcards", 0.0..=1.0)
+        .hint("Probability that a new rule ignores a bit of the situation. More wildcards make rules more general")
+        .slider(0.0, 1.0)
+}
+
+/// The discount of rewards that come later.
+fn worth_of_the_future() -> SettingRow<f32> {
+    number("Worth of the future", 0.0..=0.99)
+        .hint("What a reward counts one decision later, relative to one now")
+        .slider(0.0, 0.99)
 }
 
 /// The most rules of a classifier system of a run: a checkpoint writes each in some hundred characters.

@@ -44,7 +44,8 @@ use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::schema::{
     self, Section, SettingGroup, Walk, choice, is_default, setting_group, settings, whole,
 };
-use crate::score::Trial;
+use crate::score::{AgentSettings, Trial};
+use crate::world::Stairs;
 
 /// The settings of an experiment. Equal settings and an equal seed give equal bits.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -221,45 +222,20 @@ impl Settings {
 impl SettingGroup for Settings {
     fn walk(&mut self, walk: &mut Walk<'_>) {
         let Self { trial, genome, evolution } = self;
-        // Novelty search has the group's other settings in common with the genetic algorithm.
-        let takes_over = evolution.strategy == StrategyKind::Ga
-            && genome.controller.uses("network.library_waves");
-        let mut unused = Vec::new();
-        if !takes_over {
-            unused.push("evolution.ga.wave_takeover");
-        }
-        if !evolution.ladder.is_used() {
-            unused.extend([
-                "evolution.ladder.step_m",
-                "evolution.ladder.share",
-                "evolution.ladder.way",
-                "evolution.ladder.patience",
-            ]);
-        }
-        let evolves_stairs = evolution.strategy.info().evolves_stairs;
-        if evolution.strategy == StrategyKind::BodyPoet {
-            unused.push("evolution.poet.pair_step");
-        }
-        walk.without_effect(unused);
+        let strategy = evolution.strategy;
+        let has_waves = genome.controller.uses("network.library_waves");
+        walk.meet(GaSettings::TAKEOVER, strategy == StrategyKind::Ga && has_waves);
+        walk.meet(PoetSettings::POINTS, strategy != StrategyKind::BodyPoet);
         walk.group("evolution", evolution);
         walk.fixed(
             "Takes effect with the next run, because existing genomes would not fit new ones.",
         );
         walk.group("genome", genome);
-        let mut unused = Vec::new();
-        if !genome.controller.senses_surroundings() {
-            unused.extend([
-                "trial.agent.senses.sight",
-                "trial.agent.senses.touch",
-                "trial.agent.senses.balance",
-            ]);
-        }
-        if evolves_stairs {
-            // It begins on stairs of its own with the same steps and treads.
-            unused.extend(["trial.stairs.rise_m", "trial.stairs.nosing_m", "trial.stairs.slope_m"]);
-        }
-        unused.extend(bodies::unused_of_body(&genome.bodies, &trial.agent));
-        walk.without_effect(unused);
+        walk.meet(AgentSettings::SENSING, genome.controller.senses_surroundings());
+        walk.meet(AgentSettings::GIVEN_BODY, !genome.bodies.vary);
+        walk.meet(AgentSettings::OWN_BODIES, genome.bodies.vary);
+        walk.meet(AgentSettings::SOFT_LIMBS, bodies::are_limbs_soft(&genome.bodies, &trial.agent));
+        walk.meet(Stairs::GIVEN, !strategy.info().evolves_stairs);
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",
         );

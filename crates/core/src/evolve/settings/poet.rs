@@ -2,7 +2,7 @@
 
 use super::size::{GenomeSize, LARGEST_GENERATION_GENES, LARGEST_SAMPLE, LARGEST_STATE_GENES};
 use crate::check::Invalid;
-use crate::schema::{number, setting_group, switch, whole};
+use crate::schema::{Need, number, setting_group, switch, whole};
 
 setting_group! {
     /// Settings of POET: paired open-ended trailblazer (Wang, Lehman, Clune, Stanley, 2019; "Enhanced POET", 2020).
@@ -24,7 +24,7 @@ setting_group! {
 
         /// First standard deviation of each gene, as a share of its range.
         pair_step: f32 = 0.15,
-            number("First step of a pair", 0.001..=1.0)
+            number("First step of a pair", 0.001..=1.0).needs(PoetSettings::POINTS)
                 .hint("Spread of a pair's first candidates around its snake, as a share of each gene's range")
                 .slider(0.01, 0.5)
                 .logarithmic_from(0.01)
@@ -107,6 +107,9 @@ setting_group! {
 }
 
 impl PoetSettings {
+    /// A search among points, which pairs have unless their bodies evolve.
+    pub(super) const POINTS: Need = Need("a search among points");
+
     /// Maximum number of stairs in a run, so that its state stays small; after that no more stairs come.
     pub const MOST_STAIRS: usize = 1000;
 

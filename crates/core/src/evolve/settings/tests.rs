@@ -1,6 +1,8 @@
 //! Settings that go together, and which of them have an effect.
 
 use super::*;
+use crate::schema::{NumberRange, SettingKind};
+use crate::world::Surface;
 
 #[test]
 fn every_strategy_has_a_row_of_its_own_and_is_stored_by_its_name() {
@@ -57,6 +59,63 @@ fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
 #[test]
 fn the_defaults_are_allowed() {
     assert_eq!(Settings::default().check(), Ok(()));
+}
+
+/// Two texts with the numbers next to the ends of a range, outside it, and two with its ends.
+fn around(range: &NumberRange) -> ([String; 2], [String; 2]) {
+    let NumberRange { least, most, is_whole, .. } = *range;
+    let beyond =
+        if is_whole { [least - 1.0, most + 1.0] } else { [least.next_down(), most.next_up()] };
+    (beyond.map(|number| number.to_string()), [least, most].map(|number| number.to_string()))
+}
+
+#[test]
+fn every_setting_is_allowed_within_its_range_and_refused_beyond_it_by_name_value_and_range() {
+    let mut settings = Settings::default();
+    settings.trial.ground = Some(Surface::default());
+    for listed in schema::list(&settings) {
+        let (path, setting) = (&listed.path, &listed.setting);
+        let allows = |text: &str| {
+            let value = setting.parse(text).unwrap_or_else(|| panic!("{path} = {text}"));
+            assert_eq!(setting.check(path, &value), Ok(()), "{path} = {text}");
+        };
+        let refuses = |text: &str, value: &str, allowed: &str| {
+            let refusal = with_field(&settings, path, text).expect_err(path).to_string();
+            assert_eq!(refusal, format!("{path} is {value}; allowed: {allowed}"));
+        };
+        let refuses_text = |text: &str| refuses(text, &format!("{text:?}"), &setting.allowed());
+        allows(&listed.value.to_string());
+        match setting.kind {
+            SettingKind::Number(range) => {
+                let (beyond, ends) = around(&range);
+                ends.iter().for_each(|end| allows(end));
+                for number in beyond {
+                    match range.is_whole && number.starts_with('-') {
+                        true => refuses_text(&number),
+                        false => refuses(&number, &number, &ends.join(" to ")),
+                    }
+                }
+                refuses_text("NaN");
+            }
+            SettingKind::List(range) => {
+                let (beyond, ends) = around(&range);
+                allows(&format!("[{}]", ends.join(", ")));
+                for number in beyond {
+                    refuses(&format!("[{number}]"), &number, &ends.join(" to "));
+                }
+                refuses_text("[NaN]");
+            }
+            SettingKind::Choice(choices) => {
+                choices().iter().for_each(|choice| allows(choice.name));
+                refuses_text("no such name");
+            }
+            SettingKind::Switch => {
+                ["false", "true"].iter().for_each(|text| allows(text));
+                refuses_text("yes");
+            }
+            SettingKind::Absent(_) => panic!("{path} is absent"),
+        }
+    }
 }
 
 #[test]
