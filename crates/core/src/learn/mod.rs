@@ -3,6 +3,7 @@
 pub mod classifiers;
 mod episode;
 pub mod neat;
+mod parameters;
 pub mod q_table;
 #[cfg(test)]
 mod tasks;

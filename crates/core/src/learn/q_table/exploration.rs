@@ -1,48 +1,26 @@
 //! How boldly each actor of a generation explores.
 
-use serde::{Deserialize, Serialize};
+use crate::learn::parameters::parameters;
 
-use crate::check::Invalid;
-use crate::check::within;
-
-/// The settings of the exploration ladder: the shares of random actions fall from generation to
-/// generation, and within a generation from actor 1 to the last.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ExplorationLadder {
-    /// The share of the boldest actor in generation 0: 0 to 1.
-    pub first: f32,
-    /// The factor of the boldest actor's share per generation: 0 to 1.
-    pub decay: f32,
-    /// The least share of the boldest actor of any generation: 0 to 1.
-    pub least_of_boldest: f32,
-    /// The least share of any exploring actor: 0 to 1. Without any exploration an actor whose table does
-    /// not change can stay in a loop for a whole episode.
-    pub least: f32,
-    /// The share of the last actor is that of the boldest to the power of 1 + `spread`: 0 to 20.
-    pub spread: f32,
-}
-
-impl Default for ExplorationLadder {
-    /// A ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR
-    /// 2018), with a base that falls over the generations.
-    fn default() -> Self {
-        Self { first: 0.6, decay: 0.985, least_of_boldest: 0.1, least: 0.02, spread: 3.0 }
-    }
-}
-
-impl ExplorationLadder {
-    /// Checks every setting.
+parameters! {
+    /// The settings of the exploration ladder: the shares of random actions fall from generation to generation, and within a
+    /// generation from actor 1 to the last.
     ///
-    /// # Errors
-    ///
-    /// The first setting that is outside its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("first", self.first, 0.0..=1.0)?;
-        within("decay", self.decay, 0.0..=1.0)?;
-        within("least_of_boldest", self.least_of_boldest, 0.0..=1.0)?;
-        within("least", self.least, 0.0..=1.0)?;
-        within("spread", self.spread, 0.0..=20.0)
+    /// The default is a ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR 2018),
+    /// with a base that falls over the generations.
+    #[derive(Copy)]
+    pub struct ExplorationLadder {
+        /// The share of the boldest actor in generation 0.
+        first: f32 = 0.6, 0.0..=1.0;
+        /// The factor of the boldest actor's share per generation.
+        decay: f32 = 0.985, 0.0..=1.0;
+        /// The least share of the boldest actor of any generation.
+        least_of_boldest: f32 = 0.1, 0.0..=1.0;
+        /// The least share of any exploring actor. Without any exploration an actor whose table does not change can stay in
+        /// a loop for a whole episode.
+        least: f32 = 0.02, 0.0..=1.0;
+        /// The share of the last actor is that of the boldest to the power of 1 + `spread`.
+        spread: f32 = 3.0, 0.0..=20.0;
     }
 }
 
@@ -104,22 +82,5 @@ mod tests {
             assert!((0.0..=1.0).contains(&epsilon(3, actor, actors, &ladder)));
             assert_eq!(epsilon(3, actor, actors, &none), 0.0);
         }
-    }
-
-    #[test]
-    fn a_setting_outside_its_range_is_refused() {
-        let good = ExplorationLadder::default();
-        assert_eq!(good.check(), Ok(()));
-        for bad in [
-            ExplorationLadder { first: 1.1, ..good },
-            ExplorationLadder { decay: -0.1, ..good },
-            ExplorationLadder { least_of_boldest: f32::NAN, ..good },
-            ExplorationLadder { least: 2.0, ..good },
-            ExplorationLadder { spread: f32::INFINITY, ..good },
-        ] {
-            assert!(bad.check().is_err(), "{bad:?}");
-        }
-        let bad = ExplorationLadder { spread: -1.0, ..good };
-        assert_eq!(bad.check().unwrap_err().to_string(), "spread is -1; allowed: 0 to 20");
     }
 }

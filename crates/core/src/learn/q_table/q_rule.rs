@@ -1,32 +1,24 @@
 //! How much an update moves a value, and how much later rewards count.
 
-use serde::{Deserialize, Serialize};
+use crate::learn::parameters::parameters;
 
-use crate::check::Invalid;
-use crate::check::within;
-
-/// The settings of the update rule.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct QRule {
-    /// The worth of a reward one tick later, relative to one now: 0 to 1.
-    pub discount_per_tick: f32,
-    /// The learning rate of a pair that was never visited: 0.001 to 1.
-    pub rate_scale: f32,
-    /// The power by which the learning rate falls with the visits: 0 to 1. 0 keeps it constant. Above 1
-    /// a table could come to rest far from the true values.
-    pub rate_power: f32,
-    /// The least learning rate: 0 to 1.
-    pub rate_floor: f32,
-}
-
-impl Default for QRule {
-    /// The discount is 0.98 per 15 ticks. With a power between 1/2 and 1 the time to converge is polynomial
-    /// in 1 / (1 - discount), with 1 it is exponential (Even-Dar & Mansour, "Learning rates for
-    /// Q-learning", JMLR 5, 2003). The floor keeps the table learning, because the state of a snake
-    /// leaves out much of the world.
-    fn default() -> Self {
-        Self { discount_per_tick: 0.998_654, rate_scale: 1.0, rate_power: 0.8, rate_floor: 0.05 }
+parameters! {
+    /// The settings of the update rule.
+    ///
+    /// With a power between 1/2 and 1 the time to converge is polynomial in 1 / (1 - discount), with 1 it is exponential
+    /// (Even-Dar & Mansour, "Learning rates for Q-learning", JMLR 5, 2003). The floor keeps the table learning, because the
+    /// state of a snake leaves out much of the world.
+    #[derive(Copy)]
+    pub struct QRule {
+        /// The worth of a reward one tick later, relative to one now. The default is 0.98 per 15 ticks.
+        discount_per_tick: f32 = 0.998_654, 0.0..=1.0;
+        /// The learning rate of a pair that was never visited.
+        rate_scale: f32 = 1.0, 0.001..=1.0;
+        /// The power by which the learning rate falls with the visits. 0 keeps it constant. Above 1 a table could come to
+        /// rest far from the true values.
+        rate_power: f32 = 0.8, 0.0..=1.0;
+        /// The least learning rate.
+        rate_floor: f32 = 0.05, 0.0..=1.0;
     }
 }
 
@@ -46,18 +38,6 @@ impl QRule {
     /// The worth of a reward `ticks` ticks later, relative to one now.
     pub fn discount(&self, ticks: u16) -> f32 {
         libm::powf(self.discount_per_tick, f32::from(ticks))
-    }
-
-    /// Checks every setting.
-    ///
-    /// # Errors
-    ///
-    /// The first setting that is outside its range.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("discount_per_tick", self.discount_per_tick, 0.0..=1.0)?;
-        within("rate_scale", self.rate_scale, 0.001..=1.0)?;
-        within("rate_power", self.rate_power, 0.0..=1.0)?;
-        within("rate_floor", self.rate_floor, 0.0..=1.0)
     }
 }
 
@@ -88,20 +68,5 @@ mod tests {
         let rule = QRule::default();
         assert!((rule.discount(15) - 0.98).abs() < 1e-5, "{}", rule.discount(15));
         assert_eq!(rule.discount(0), 1.0);
-    }
-
-    #[test]
-    fn a_setting_outside_its_range_is_refused() {
-        let good = QRule::default();
-        assert_eq!(good.check(), Ok(()));
-        let bad = [
-            (QRule { discount_per_tick: 1.5, ..good }, "discount_per_tick is 1.5; allowed: 0 to 1"),
-            (QRule { rate_scale: 0.0, ..good }, "rate_scale is 0; allowed: 0.001 to 1"),
-            (QRule { rate_power: -1.0, ..good }, "rate_power is -1; allowed: 0 to 1"),
-            (QRule { rate_floor: f32::NAN, ..good }, "rate_floor is NaN; allowed: 0 to 1"),
-        ];
-        for (rule, message) in bad {
-            assert_eq!(rule.check().unwrap_err().to_string(), message);
-        }
     }
 }
