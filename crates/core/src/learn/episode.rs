@@ -14,7 +14,7 @@ pub enum Episode {
     Table(Vec<Transition>),
     /// Of a system of rules: its decisions, and how the episode ended.
     Rules(Vec<RecordedDecision>, EpisodeEnd),
-    /// The same of a system of rules at each joint, from the head.
+    /// Of the system of rules at each joint, from the head: decisions and end as of [`Self::Rules`].
     Joints(Vec<(Vec<RecordedDecision>, EpisodeEnd)>),
 }
 

@@ -1,6 +1,6 @@
 //! Historical markings: the numbers of new links and nodes.
 //!
-//! The same structural novelty gets the same numbers wherever it arises within a generation. Children are therefore
+//! A structural novelty gets the same numbers wherever it arises within a generation. Children are therefore
 //! made without numbers and get them when all are there, in their order: threads cannot change them.
 
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub struct Innovations {
 pub struct Newborn {
     /// The genome without its novelty.
     pub genome: NetworkGenome,
-    /// What [`Innovations::settle`] will add to it.
+    /// The change that [`Innovations::settle`] will add to it.
     pub novelty: Option<StructuralNovelty>,
 }
 
@@ -47,7 +47,7 @@ pub enum StructuralNovelty {
     },
 }
 
-/// What makes two novelties of a generation the same.
+/// The identity of a novelty: those of a generation with equal keys get equal numbers.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum NoveltyKey {
     Link(u32, u32),

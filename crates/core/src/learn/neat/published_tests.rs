@@ -4,7 +4,7 @@ use super::genome::NetworkGenome;
 use super::play::NetworkPlay;
 use super::population::NeatPopulation;
 use super::rules::NeatRules;
-use crate::learn::tasks::double_pole::{self, SOLVED_ACTIONS};
+use crate::learn::tasks::double_pole::{self, DoublePole, SOLVED_ACTIONS};
 use crate::learn::tasks::xor::{self, XorScore};
 
 /// The first genome that solves a task and the number of evaluations up to it, or `None` after `generations`.
@@ -54,7 +54,7 @@ fn balanced_actions(genome: &NetworkGenome) -> usize {
         let [a, b, c, d, e, f] = *seen;
         2.0 * play.tick(&[a, b, c, d, e, f, 0.5])[0] - 1.0
     };
-    double_pole::balance(controller, SOLVED_ACTIONS)
+    double_pole::balance(DoublePole::usual(), controller, SOLVED_ACTIONS)
 }
 
 fn pole_solver(seed: u64) -> Option<(NetworkGenome, usize)> {

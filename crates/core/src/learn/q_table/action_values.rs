@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use super::q_rule::QRule;
 use super::sparse_values::SparseValues;
-use super::transition::check_index;
 use super::transition::{Next, Transition};
 use crate::check::Invalid;
 
@@ -57,22 +56,6 @@ impl ActionValues {
         row(&self.visits, state, self.actions)
     }
 
-    /// The number of pairs of state and action that were visited.
-    pub fn visited_pairs(&self) -> usize {
-        self.visits.iter().filter(|&&visits| visits > 0).count()
-    }
-
-    /// Learns from one transition, counts the visit, and returns the error of the value before:
-    /// reward + discount^ticks · (largest value of the next state) - value. The last product is 0
-    /// after a terminal transition.
-    ///
-    /// A transition outside the table, or with numbers that are not finite, changes nothing and returns 0.
-    pub fn update(&mut self, transition: &Transition, rule: &QRule) -> f32 {
-        let Some((pair, error)) = self.learn(transition, rule) else { return 0.0 };
-        self.visits[pair] = self.visits[pair].saturating_add(1);
-        error
-    }
-
     /// Checks that the table has as many states and actions as its user.
     ///
     /// # Errors
@@ -89,40 +72,29 @@ impl ActionValues {
         Ok(())
     }
 
-    /// Moves the value of a transition's pair without counting a visit. Returns the pair's place in the
-    /// table and the error of the value before; `None` if the transition teaches nothing.
-    pub(super) fn learn(&mut self, transition: &Transition, rule: &QRule) -> Option<(usize, f32)> {
-        let (state, action) = (transition.state as usize, usize::from(transition.action));
-        check_index("state", state, self.states).ok()?;
-        check_index("action", action, self.actions).ok()?;
+    /// Moves the value of a transition's pair towards its outcome and counts the visit, unless the value would not be finite.
+    /// The outcome is the reward and, discounted, what `worth` says of the next state. Returns the outcome; none if the
+    /// transition does not fit the table.
+    pub(super) fn learn(
+        &mut self,
+        transition: &Transition,
+        rule: &QRule,
+        worth: impl FnOnce(&Self, usize) -> f32,
+    ) -> Option<f32> {
+        transition.check(self.states, self.actions).ok()?;
         let future = match transition.next {
             Next::Terminal => 0.0,
-            Next::State(next) => {
-                check_index("next", next as usize, self.states).ok()?;
-                rule.discount(transition.ticks) * self.largest(next as usize)
-            }
+            Next::State(next) => rule.discount(transition.ticks) * worth(self, next as usize),
         };
-        let pair = state * self.actions + action;
-        let error = transition.reward + future - self.values[pair];
-        let moved = self.values[pair] + rule.rate(self.visits[pair]) * error;
-        if !(error.is_finite() && moved.is_finite()) {
-            return None;
-        }
-        self.values[pair] = moved.clamp(-LARGEST_VALUE, LARGEST_VALUE);
-        Some((pair, error))
-    }
-}
-
-impl ActionValues {
-    /// Moves the value of a pair towards an outcome and counts the visit. Nothing changes if the value would not be
-    /// finite.
-    pub(super) fn approach(&mut self, pair: usize, outcome: f32, rule: &QRule) {
+        let outcome = transition.reward + future;
+        let pair = transition.state as usize * self.actions + usize::from(transition.action);
         let value = self.values[pair];
         let moved = value + rule.rate(self.visits[pair]) * (outcome - value);
         if moved.is_finite() {
             self.values[pair] = moved.clamp(-LARGEST_VALUE, LARGEST_VALUE);
             self.visits[pair] = self.visits[pair].saturating_add(1);
         }
+        Some(outcome)
     }
 }
 
@@ -135,6 +107,7 @@ fn row<T>(entries: &[T], state: usize, actions: usize) -> &[T] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learn::q_table::LARGEST_REWARD;
 
     const HALF: QRule =
         QRule { discount_per_tick: 0.5, rate_scale: 0.5, rate_power: 0.0, rate_floor: 0.0 };
@@ -146,18 +119,17 @@ mod tests {
     #[test]
     fn an_update_moves_the_value_by_the_rate_times_the_error() {
         let mut table = ActionValues::new(3, 2);
-        assert_eq!(table.update(&transition(1, 0, 8.0, Next::Terminal), &HALF), 8.0);
+        table.update(&transition(1, 0, 8.0, Next::Terminal), &HALF);
         assert_eq!(table.values(1), [4.0, 0.0]);
         // Two ticks at 0.5 each: the target is 1 + 0.25 · 4 = 2, and half of it is learned.
-        assert_eq!(table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF), 2.0);
+        table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF);
         assert_eq!(table.values(0), [0.0, 1.0]);
-        assert_eq!(table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF), 1.0);
+        table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF);
         assert_eq!(table.values(0), [0.0, 1.5]);
         assert_eq!(
             (table.visits(0), table.visits(1), table.visits(2)),
             (&[0, 2][..], &[1, 0][..], &[0, 0][..])
         );
-        assert_eq!(table.visited_pairs(), 2);
     }
 
     #[test]
@@ -193,10 +165,11 @@ mod tests {
             transition(0, 0, f32::NAN, Next::Terminal),
             transition(0, 0, f32::INFINITY, Next::State(1)),
         ] {
-            assert_eq!(table.update(&bad, &HALF), 0.0, "{bad:?}");
+            table.update(&bad, &HALF);
+            assert_eq!(table, untouched, "{bad:?}");
         }
         let unchecked = QRule { rate_scale: f32::INFINITY, ..HALF };
-        assert_eq!(table.update(&transition(0, 0, 1.0, Next::Terminal), &unchecked), 0.0);
+        table.update(&transition(0, 0, 1.0, Next::Terminal), &unchecked);
         assert_eq!(table, untouched);
         assert_eq!((table.values(2).len(), table.visits(usize::MAX).len()), (0, 0));
         assert_eq!(table.check(2, 12).unwrap_err().to_string(), "actions is 2; allowed: 12");
@@ -206,7 +179,7 @@ mod tests {
     fn values_and_visits_stay_within_their_limits() {
         let mut table = ActionValues::new(1, 1);
         let rule = QRule::with_constant_rate(1.0, 1.0);
-        let gain = transition(0, 0, f32::MAX, Next::State(0));
+        let gain = transition(0, 0, LARGEST_REWARD, Next::State(0));
         for _ in 0..70_000 {
             table.update(&gain, &rule);
         }

@@ -17,7 +17,7 @@ const CAP: usize = 300;
 /// The share of random actions of every actor.
 const EPSILON: f32 = 0.1;
 
-/// What actors do with their copy of the table.
+/// The use that actors make of their copy of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ActorTable {
     /// They act by it, and it stays as it was.
@@ -26,7 +26,7 @@ enum ActorTable {
     Learning,
 }
 
-/// What came of some repetitions.
+/// The outcome of some repetitions.
 #[derive(Debug, Clone, Copy)]
 struct TaskOutcome {
     /// The mean number of moves in all episodes.
@@ -49,7 +49,11 @@ fn learn_in_generations<W: GridWorld>(actors: u32, kind: ActorTable) -> TaskOutc
             };
             let experience: Vec<_> = (0..actors).map(episode).collect();
             moves += experience.iter().map(Vec::len).sum::<usize>();
-            master.replay(&experience, &rule);
+            // Forwards in time and then backwards, which carries a reward back to the start of its episode.
+            let transitions = experience.iter().flatten();
+            for transition in transitions.clone().chain(transitions.rev()) {
+                master.update(transition, &rule);
+            }
         }
         let greedy = greedy_moves::<W>(&master, CAP);
         arrived += u32::from(greedy.is_some());

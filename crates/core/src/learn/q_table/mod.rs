@@ -6,16 +6,13 @@
 //! Intelligence 112, 1999). This module knows neither snakes nor physics: states and actions are numbers,
 //! and the caller says what they mean.
 //!
-//! A generation works on one master table. Each actor learns in a copy of it while it acts; the copies
-//! are thrown away, and the master table learns from the experience of all actors, in their order
-//! ([`ActionValues::replay`], or [`ActionValues::learn_returns`] where situations hide much of the world). The result
+//! A generation works on one master table. Each actor learns in a copy of it while it acts; the copies are thrown away, and
+//! the master table learns from the experience of all actors, in their order ([`ActionValues::learn_returns`]). The result
 //! depends on no thread.
 
 mod action_values;
-mod choice;
 mod exploration;
 mod q_rule;
-mod replay;
 mod returns;
 mod shaping;
 mod sparse_values;

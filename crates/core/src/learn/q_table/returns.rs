@@ -9,7 +9,7 @@
 
 use super::action_values::ActionValues;
 use super::q_rule::QRule;
-use super::transition::{Next, Transition};
+use super::transition::Transition;
 
 impl ActionValues {
     /// Learns from all episodes in the order of their actors, from each episode backwards in time, so that a reward
@@ -29,8 +29,8 @@ impl ActionValues {
         self.learn_return(transition, rule, None, 0.0);
     }
 
-    /// Moves the value of a transition's pair towards its outcome, counts the visit, and returns the outcome. `later` is
-    /// the outcome of the transition that followed. None if the transition teaches nothing.
+    /// Learns from one transition and returns its outcome. `later` is the outcome of the transition that followed. None if the
+    /// transition teaches nothing.
     fn learn_return(
         &mut self,
         transition: &Transition,
@@ -38,19 +38,10 @@ impl ActionValues {
         later: Option<f32>,
         trace: f32,
     ) -> Option<f32> {
-        transition.check(self.states, self.actions).ok()?;
-        let action = usize::from(transition.action);
-        let future = match transition.next {
-            Next::Terminal => 0.0,
-            Next::State(next) => {
-                let guess = self.largest_beside(next as usize, action);
-                let mixed = later.map_or(guess, |later| (1.0 - trace) * guess + trace * later);
-                rule.discount(transition.ticks) * mixed
-            }
-        };
-        let outcome = transition.reward + future;
-        self.approach(transition.state as usize * self.actions + action, outcome, rule);
-        Some(outcome)
+        self.learn(transition, rule, |table, next| {
+            let guess = table.largest_beside(next, usize::from(transition.action));
+            later.map_or(guess, |later| (1.0 - trace) * guess + trace * later)
+        })
     }
 
     /// The largest value in a state of the actions other than `action`; 0 if there is none.
@@ -63,6 +54,7 @@ impl ActionValues {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learn::q_table::Next;
 
     const RULE: QRule =
         QRule { discount_per_tick: 0.5, rate_scale: 1.0, rate_power: 0.0, rate_floor: 0.0 };

@@ -20,11 +20,11 @@ pub struct Transition {
     pub reward: f32,
     /// The duration of the action in ticks, at least 1.
     pub ticks: u16,
-    /// What came after the action.
+    /// The state that followed, or the end.
     pub next: Next,
 }
 
-/// What comes after an action.
+/// The state after an action, or the end of the episode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Next {
     /// The state in which the next action is chosen, from 0. This is also the end of an episode whose time

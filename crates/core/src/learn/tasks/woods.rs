@@ -85,7 +85,7 @@ impl Woods {
         free[rng.random_range(0..free.len())]
     }
 
-    /// What is seen from a cell: its neighbours clockwise from the north, each with its bits. The first bit of a
+    /// The situation in a cell: its neighbours clockwise from the north, each with its bits. The first bit of a
     /// cell says food, the second not empty, and the third, where there is one, which kind.
     pub fn situation(&self, cell: usize) -> u32 {
         let code = |neighbour: usize| match self.cells[neighbour] {
