@@ -73,18 +73,15 @@ fn landing(weights: &[f64], left: &mut f64) -> usize {
     last
 }
 
-/// An index drawn uniformly among those of the largest value; `None` if there is no value.
-pub fn random_largest(values: &[Option<f32>], rng: &mut impl Rng) -> Option<usize> {
-    let draw: u32 = rng.random_range(0..u32::MAX);
-    let largest = values[first_largest(values)?];
-    let mut ties = (0..values.len()).filter(|&index| values[index] == largest);
-    let count = ties.clone().count();
-    ties.nth(draw as usize % count.max(1))
-}
-
 /// The lowest index of the largest value; `None` if there is no value.
 pub fn first_largest(values: &[Option<f32>]) -> Option<usize> {
     two_largest(values)[0]
+}
+
+/// The largest value of all but the one at index `except`; 0 if there is none.
+pub fn largest_beside(values: &[Option<f32>], except: Option<usize>) -> f32 {
+    let others = values.iter().enumerate().filter(|(index, _)| Some(*index) != except);
+    others.filter_map(|(_, value)| *value).reduce(f32::max).unwrap_or(0.0)
 }
 
 /// The indices of the largest and of the second largest value, the lowest among equals; `None` where there is no value.
@@ -150,18 +147,16 @@ mod tests {
     }
 
     #[test]
-    fn ties_are_drawn_at_random_or_go_to_the_lowest() {
-        let mut rng = stream(1, 0, 0, Purpose::Birth);
+    fn of_equal_values_the_first_is_the_largest() {
         let values = [None, Some(2.0), Some(1.0), Some(2.0)];
         assert_eq!(first_largest(&values), Some(1));
-        let drawn: Vec<_> = (0..50).filter_map(|_| random_largest(&values, &mut rng)).collect();
-        assert!(drawn.contains(&1) && drawn.contains(&3) && !drawn.contains(&2), "{drawn:?}");
         assert_eq!(first_largest(&[None]), None);
-        assert_eq!(random_largest(&[None], &mut rng), None);
+        assert_eq!(two_largest(&values), [Some(1), Some(3)]);
+        assert_eq!((largest_beside(&values, Some(1)), largest_beside(&[None], None)), (2.0, 0.0));
     }
 
     #[test]
-    fn every_choice_draws_one_number() {
+    fn a_roulette_draws_one_number() {
         let after = |choose: &dyn Fn(&mut rand_chacha::ChaCha8Rng)| {
             let mut rng = stream(1, 0, 0, Purpose::Birth);
             choose(&mut rng);
@@ -169,8 +164,5 @@ mod tests {
         };
         let one = after(&|rng| _ = roulette(&[1.0, 1.0], rng));
         assert_eq!(one, after(&|rng| _ = roulette(&[], rng)));
-        let other = after(&|rng| _ = random_largest(&[Some(1.0), Some(1.0)], rng));
-        assert_eq!(other, after(&|rng| _ = random_largest(&[Some(1.0), Some(2.0)], rng)));
-        assert_eq!(other, after(&|rng| _ = random_largest(&[None], rng)));
     }
 }

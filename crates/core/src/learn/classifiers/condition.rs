@@ -22,7 +22,7 @@ pub const LENGTHS: RangeInclusive<usize> = 1..=32;
 pub struct Condition {
     /// Ones where a bit matters.
     care: u32,
-    /// What those bits must be; zero where a bit does not matter, so that equal conditions have equal words.
+    /// The values that those bits must have; zero where a bit does not matter, so that equal conditions have equal words.
     value: u32,
     /// Bits of a situation, 1 to 32.
     length: u8,
@@ -77,7 +77,7 @@ impl Condition {
         self.care
     }
 
-    /// What the bits that matter must be; zero elsewhere.
+    /// The values of the bits that matter; zero elsewhere.
     pub fn value(&self) -> u32 {
         self.value
     }

@@ -63,18 +63,25 @@ impl EpisodeEnd {
     }
 }
 
-/// How a learner chooses its action.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ActionChoice {
-    /// The action was chosen elsewhere and is learned from; see [`RecordedDecision`].
-    Given(usize),
-    /// As the textbook explores: XCS draws any action, all equally likely, ZCS by roulette on strength.
-    Explore,
-    /// The best known action, a random one among equals. XCS still corrects its rules, but breeds no new ones.
-    Exploit,
+/// Checks an episode for a learner of `length` bits and `actions` actions.
+///
+/// # Errors
+/// A decision or the end does not fit the learner, or a reward is outside `rewards`.
+pub fn check_episode(
+    decisions: &[RecordedDecision],
+    end: EpisodeEnd,
+    [length, actions]: [usize; 2],
+    rewards: RangeInclusive<f32>,
+) -> Result<(), Invalid> {
+    for (index, decision) in decisions.iter().enumerate() {
+        decision
+            .check(length, actions, rewards.clone())
+            .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
+    }
+    end.check(length)
 }
 
-/// What a replay met.
+/// Counts of a replay.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReplayReport {
     /// Decisions replayed.
@@ -84,11 +91,6 @@ pub struct ReplayReport {
 }
 
 impl ReplayReport {
-    /// The share of decisions for which a rule had to be made; 0 without decisions.
-    pub fn covering_share(&self) -> f32 {
-        if self.decisions == 0 { 0.0 } else { self.covered as f32 / self.decisions as f32 }
-    }
-
     /// Adds another replay to the report.
     pub fn add(&mut self, other: Self) {
         self.decisions = self.decisions.saturating_add(other.decisions);
@@ -114,14 +116,5 @@ mod tests {
         );
         assert!(EpisodeEnd::TimeOut { bits: 8 }.check(3).is_err());
         assert_eq!(EpisodeEnd::TimeOut { bits: u32::MAX }.check(32), Ok(()));
-    }
-
-    #[test]
-    fn reports_add_up() {
-        let mut report = ReplayReport::default();
-        assert_eq!(report.covering_share(), 0.0);
-        report.add(ReplayReport { decisions: 3, covered: 1 });
-        report.add(ReplayReport { decisions: 1, covered: 0 });
-        assert_eq!(report.covering_share(), 0.25);
     }
 }

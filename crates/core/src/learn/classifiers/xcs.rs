@@ -2,17 +2,15 @@
 //!
 //! Wilson, "Classifier fitness based on accuracy" (Evolutionary Computation 3(2), 1995), in the form of Butz and
 //! Wilson, "An algorithmic description of XCS" (LNAI 1996, 2001). This file is the population and what can be asked
-//! of it; one decision of learning is in `xcs_episode`, the discovery of new rules in `xcs_discovery`.
+//! of it; learning is in `xcs_returns`, the discovery of new rules in `xcs_discovery`.
 
-use rand::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::chance::first_largest;
 use super::condition::LENGTHS;
-use super::experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+use super::experience::{EpisodeEnd, RecordedDecision, check_episode};
 use super::limits::{MOST_ACTIONS, MOST_REWARD};
 use super::mask_table::MaskTable;
-use super::xcs_episode::XcsEpisode;
 use super::xcs_rules::{XcsRule, check_rules};
 use super::xcs_saved::SavedXcs;
 use super::xcs_settings::XcsSettings;
@@ -50,42 +48,17 @@ impl Xcs {
         SavedXcs { settings, situation_bits, actions, time: 0, rules: Vec::new() }.try_into()
     }
 
-    /// Learns from one recorded episode: the full cycle of covering, update, discovery and deletion for every
-    /// decision, with the recorded action in place of a choice.
-    ///
-    /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
-    pub fn learn(
-        &mut self,
-        decisions: &[RecordedDecision],
-        end: EpisodeEnd,
-        rng: &mut impl Rng,
-    ) -> Result<ReplayReport, Invalid> {
-        self.check_experience(decisions, end)?;
-        let mut episode = self.episode();
-        for decision in decisions {
-            episode.decide(decision.bits, ActionChoice::Given(usize::from(decision.action)), rng);
-            episode.reward(decision.reward);
-        }
-        Ok(episode.finish(end, rng))
-    }
-
     pub(super) fn check_experience(
         &self,
         decisions: &[RecordedDecision],
         end: EpisodeEnd,
     ) -> Result<(), Invalid> {
-        for (index, decision) in decisions.iter().enumerate() {
-            decision
-                .check(self.situation_bits, self.actions, -MOST_REWARD..=MOST_REWARD)
-                .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
-        }
-        end.check(self.situation_bits)
-    }
-
-    /// Starts an episode that is learned from one decision at a time.
-    pub fn episode(&mut self) -> XcsEpisode<'_> {
-        XcsEpisode::new(self)
+        check_episode(
+            decisions,
+            end,
+            [self.situation_bits, self.actions],
+            -MOST_REWARD..=MOST_REWARD,
+        )
     }
 
     /// The action of the largest predicted payoff, the lowest among equals; `None` if no rule matches. Makes no
@@ -153,15 +126,6 @@ impl Xcs {
         self.numerosity
     }
 
-    /// Share of `#` among the symbols of all conditions, each rule counted as often as its numerosity; 0 without
-    /// rules.
-    pub fn mean_generality(&self) -> f32 {
-        let wildcards = |rule: &XcsRule| u64::from(rule.condition.wildcards() * rule.numerosity);
-        let symbols = u64::from(self.numerosity) * self.situation_bits as u64;
-        let wildcards: u64 = self.rules.iter().map(wildcards).sum();
-        if symbols == 0 { 0.0 } else { wildcards as f32 / symbols as f32 }
-    }
-
     /// Goes on with other parameters, for instance without crossover and mutation, which condenses the population.
     ///
     /// # Errors
@@ -224,27 +188,9 @@ impl PredictionSum {
 
 #[cfg(test)]
 mod tests {
+    use super::super::xcs_rules::samples::{rule, saved};
     use super::*;
     use crate::rng::{Purpose, stream};
-
-    fn rule(condition: &str, action: u16, prediction: f32, fitness: f32) -> XcsRule {
-        XcsRule {
-            condition: condition.parse().unwrap(),
-            action,
-            prediction,
-            error: 0.0,
-            fitness,
-            experience: 1,
-            time_stamp: 0,
-            action_set_size: 1.0,
-            numerosity: 1,
-        }
-    }
-
-    fn saved(rules: Vec<XcsRule>) -> SavedXcs {
-        let settings = XcsSettings { population: 10, ..XcsSettings::default() };
-        SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
-    }
 
     #[test]
     fn predictions_are_means_weighted_by_fitness() {
@@ -259,7 +205,6 @@ mod tests {
         assert_eq!(xcs.prediction_array(0b001), [Some(400.0), None, Some(400.0)]);
         assert_eq!(xcs.frozen_action(0b001), Some(0), "ties go to the lowest action");
         assert_eq!(xcs.frozen_action(0b000), Some(1));
-        assert!((xcs.mean_generality() - 9.0 / 12.0).abs() < 1e-6);
     }
 
     #[test]

@@ -80,7 +80,8 @@ struct MatchedSituation {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ActionChoice, EpisodeEnd, XcsSettings};
+    use super::super::textbook::ActionChoice;
+    use super::super::{EpisodeEnd, XcsSettings};
     use super::*;
     use crate::rng::{Purpose, stream};
     use rand::RngExt;

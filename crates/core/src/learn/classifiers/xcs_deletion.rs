@@ -89,32 +89,20 @@ impl Xcs {
 #[cfg(test)]
 mod tests {
     use super::super::mask_table::MaskTable;
-    use super::super::{ActionChoice, EpisodeEnd, RecordedDecision, XcsSettings};
+    use super::super::textbook::ActionChoice;
+    use super::super::xcs_rules::samples::experienced;
+    use super::super::{EpisodeEnd, RecordedDecision, XcsSettings};
     use super::*;
     use crate::rng::{Purpose, stream};
-
-    fn rule(condition: &str) -> XcsRule {
-        XcsRule {
-            condition: condition.parse().unwrap(),
-            action: 0,
-            prediction: 100.0,
-            error: 0.0,
-            fitness: 0.5,
-            experience: 21,
-            time_stamp: 0,
-            action_set_size: 2.0,
-            numerosity: 1,
-        }
-    }
 
     /// Four rules with six in numerosity.
     fn four_rules(population: u32) -> Xcs {
         let settings = XcsSettings { population, ..XcsSettings::default() };
         let mut xcs = Xcs::new(settings, 3, 2).unwrap();
-        xcs.add(rule("1##"));
-        xcs.add(XcsRule { action_set_size: 6.0, numerosity: 3, ..rule("0##") });
-        xcs.add(XcsRule { fitness: 0.001, ..rule("#1#") });
-        xcs.add(XcsRule { fitness: 0.001, experience: 20, ..rule("#0#") });
+        xcs.add(experienced("1##", 0));
+        xcs.add(XcsRule { action_set_size: 6.0, numerosity: 3, ..experienced("0##", 0) });
+        xcs.add(XcsRule { fitness: 0.001, ..experienced("#1#", 0) });
+        xcs.add(XcsRule { fitness: 0.001, experience: 20, ..experienced("#0#", 0) });
         xcs
     }
 

@@ -6,49 +6,13 @@ use rand::RngExt;
 use super::chance::{happens, roulette};
 use super::condition::Condition;
 use super::xcs::Xcs;
-use super::xcs_episode::PendingActionSet;
 use super::xcs_rules::XcsRule;
 
 /// Share of its parents' fitness that a child starts with (Butz and Wilson 2001).
 const CHILD_FITNESS: f32 = 0.1;
 
 impl Xcs {
-    /// Writes the rules that match into `matched`, after making a rule for each action that has none. True if that
-    /// was needed. `waiting` is another set of rule indices that stays valid.
-    ///
-    /// Rules made for this situation cannot be deleted before it is dealt with; otherwise a small population could
-    /// delete what it has just made, for ever.
-    pub(super) fn match_or_cover(
-        &mut self,
-        bits: u32,
-        matched: &mut Vec<usize>,
-        waiting: &mut Vec<usize>,
-        rng: &mut impl Rng,
-    ) -> bool {
-        let mut deletable = self.rules.len();
-        let mut covered = false;
-        // Deletion may take the only rule of another action, so look again; each round protects at least one more.
-        loop {
-            self.masks.match_into(bits, matched);
-            let missing = self.actions_without_rule(matched);
-            if missing.is_empty() {
-                return covered;
-            }
-            covered = true;
-            for action in missing {
-                let rule = self.covering_rule(bits, action, rng);
-                self.add(rule);
-            }
-            deletable -= self.delete_surplus(deletable, waiting, rng);
-        }
-    }
-
-    fn actions_without_rule(&self, matched: &[usize]) -> Vec<usize> {
-        let mut has_rule = vec![false; self.actions];
-        matched.iter().for_each(|&index| has_rule[self.masks.action(index)] = true);
-        (0..self.actions).filter(|&action| !has_rule[action]).collect()
-    }
-
+    /// A new rule that matches a situation and advises an action.
     pub(super) fn covering_rule(&self, bits: u32, action: usize, rng: &mut impl Rng) -> XcsRule {
         let settings = &self.settings;
         XcsRule {
@@ -64,21 +28,22 @@ impl Xcs {
         }
     }
 
-    /// Breeds two children among the rules of an action set if the last time is long ago.
+    /// Breeds two children among the rules of an action set, for the situation of the set, if the last time is long ago.
+    /// `alive` is a set of rule indices that stays valid.
     pub(super) fn evolve(
         &mut self,
-        pending: &PendingActionSet,
+        set: &[usize],
+        bits: u32,
         alive: &mut Vec<usize>,
         rng: &mut impl Rng,
     ) {
-        let set = &pending.rules;
         if set.is_empty() || self.mean_age(set) <= f64::from(self.settings.ga_interval) {
             return;
         }
         set.iter().for_each(|&index| self.rules[index].time_stamp = self.time);
         let weights: Vec<f64> = set.iter().map(|&i| f64::from(self.rules[i].fitness)).collect();
         let parents = [set[roulette(&weights, rng)], set[roulette(&weights, rng)]];
-        for child in self.children(parents, pending.bits, rng) {
+        for child in self.children(parents, bits, rng) {
             self.settle(child, parents);
         }
         self.delete_surplus(self.rules.len(), alive, rng);
@@ -149,25 +114,12 @@ fn segment(length: usize, rng: &mut impl Rng) -> (usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::super::XcsSettings;
+    use super::super::xcs_rules::samples::experienced;
     use super::*;
     use crate::rng::{Purpose, stream};
 
     fn empty(settings: XcsSettings) -> Xcs {
         Xcs::new(settings, 3, 2).unwrap()
-    }
-
-    fn experienced(condition: &str, action: u16) -> XcsRule {
-        XcsRule {
-            condition: condition.parse().unwrap(),
-            action,
-            prediction: 100.0,
-            error: 0.0,
-            fitness: 0.5,
-            experience: 21,
-            time_stamp: 0,
-            action_set_size: 2.0,
-            numerosity: 1,
-        }
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! One episode of XCS, decision by decision: choose, reward, and correct the rules that led here.
+//! One episode of XCS as in its texts, decision by decision: choose, reward, and correct the rules that led here. Runs learn
+//! from whole episodes instead (`xcs_returns`); this form holds what both have in common to published results.
 //!
 //! The payoff of an action is known one decision later, P = r + γ · max PA, so the rules that chose it wait in a
 //! pending set.
@@ -6,11 +7,13 @@
 use rand::Rng;
 use rand::RngExt;
 
-use super::chance::random_largest;
+use super::chance::largest_beside;
 use super::condition::all_bits;
-use super::experience::{ActionChoice, EpisodeEnd, ReplayReport};
+use super::experience::{EpisodeEnd, RecordedDecision, ReplayReport};
 use super::limits::MOST_REWARD;
+use super::textbook::{ActionChoice, random_largest};
 use super::xcs::Xcs;
+use crate::check::Invalid;
 
 /// An episode in progress. If it is dropped instead of finished, nothing is learned from its last action.
 #[derive(Debug)]
@@ -25,19 +28,19 @@ pub struct XcsEpisode<'a> {
 
 /// The rules that advised the last action.
 #[derive(Debug)]
-pub(super) struct PendingActionSet {
+struct PendingActionSet {
     /// The situation in which the action was taken.
-    pub bits: u32,
+    bits: u32,
     /// Indices of the rules, rising.
-    pub rules: Vec<usize>,
+    rules: Vec<usize>,
     /// Reward since the action.
-    pub reward: f32,
+    reward: f32,
     /// Whether the genetic algorithm may run among the rules.
-    pub evolves: bool,
+    evolves: bool,
 }
 
 impl<'a> XcsEpisode<'a> {
-    pub(super) fn new(xcs: &'a mut Xcs) -> Self {
+    fn new(xcs: &'a mut Xcs) -> Self {
         Self { xcs, pending: None, matched: Vec::new(), report: ReplayReport::default() }
     }
 
@@ -61,7 +64,7 @@ impl<'a> XcsEpisode<'a> {
         let of_action = self.matched.iter().filter(|&&index| masks.action(index) == action);
         let mut rules: Vec<usize> = of_action.copied().collect();
         if let Some(pending) = self.pending.take() {
-            self.xcs.reinforce(pending, largest(&predictions), &mut rules, rng);
+            self.xcs.reinforce(pending, largest_beside(&predictions, None), &mut rules, rng);
         }
         let evolves = choice != ActionChoice::Exploit;
         self.pending = Some(PendingActionSet { bits, rules, reward: 0.0, evolves });
@@ -83,7 +86,8 @@ impl<'a> XcsEpisode<'a> {
             EpisodeEnd::Terminal => Some(0.0),
             EpisodeEnd::TimeOut { bits } => {
                 let predictions = self.xcs.prediction_array(bits);
-                predictions.iter().any(Option::is_some).then(|| largest(&predictions))
+                let is_known = predictions.iter().any(Option::is_some);
+                is_known.then(|| largest_beside(&predictions, None))
             }
         };
         if let (Some(pending), Some(next_payoff)) = (self.pending.take(), next_payoff) {
@@ -94,6 +98,86 @@ impl<'a> XcsEpisode<'a> {
 }
 
 impl Xcs {
+    /// Learns from one recorded episode: the full cycle of covering, update, discovery and deletion for every
+    /// decision, with the recorded action in place of a choice.
+    ///
+    /// # Errors
+    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
+    pub fn learn(
+        &mut self,
+        decisions: &[RecordedDecision],
+        end: EpisodeEnd,
+        rng: &mut impl Rng,
+    ) -> Result<ReplayReport, Invalid> {
+        self.check_experience(decisions, end)?;
+        let mut episode = self.episode();
+        for decision in decisions {
+            episode.decide(decision.bits, ActionChoice::Given(usize::from(decision.action)), rng);
+            episode.reward(decision.reward);
+        }
+        Ok(episode.finish(end, rng))
+    }
+
+    /// Starts an episode that is learned from one decision at a time.
+    pub fn episode(&mut self) -> XcsEpisode<'_> {
+        XcsEpisode::new(self)
+    }
+
+    /// Writes the rules that match into `matched`, after making a rule for each action that has none. True if that
+    /// was needed. `waiting` is another set of rule indices that stays valid.
+    ///
+    /// Rules made for this situation cannot be deleted before it is dealt with; otherwise a small population could
+    /// delete what it has just made, for ever.
+    fn match_or_cover(
+        &mut self,
+        bits: u32,
+        matched: &mut Vec<usize>,
+        waiting: &mut Vec<usize>,
+        rng: &mut impl Rng,
+    ) -> bool {
+        let mut deletable = self.rules.len();
+        let mut covered = false;
+        // Deletion may take the only rule of another action, so look again; each round protects at least one more.
+        loop {
+            self.masks.match_into(bits, matched);
+            let missing = self.actions_without_rule(matched);
+            if missing.is_empty() {
+                return covered;
+            }
+            covered = true;
+            for action in missing {
+                let rule = self.covering_rule(bits, action, rng);
+                self.add(rule);
+            }
+            deletable -= self.delete_surplus(deletable, waiting, rng);
+        }
+    }
+
+    fn actions_without_rule(&self, matched: &[usize]) -> Vec<usize> {
+        let mut has_rule = vec![false; self.actions];
+        matched.iter().for_each(|&index| has_rule[self.masks.action(index)] = true);
+        (0..self.actions).filter(|&action| !has_rule[action]).collect()
+    }
+
+    /// Lets the most general accurate rule of an action set, the oldest among equals, absorb the more special ones.
+    fn subsume_within(&mut self, set: &mut Vec<usize>, alive: &mut Vec<usize>) {
+        let mut subsumer: Option<usize> = None;
+        for &index in set.iter().filter(|&&index| self.may_subsume(&self.rules[index])) {
+            let wildcards = |index: usize| self.rules[index].condition.wildcards();
+            if subsumer.is_none_or(|best| wildcards(index) > wildcards(best)) {
+                subsumer = Some(index);
+            }
+        }
+        let Some(subsumer) = subsumer else { return };
+        let general = self.rules[subsumer].condition;
+        let is_absorbed = |&&i: &&usize| general.is_more_general_than(&self.rules[i].condition);
+        let absorbed: Vec<usize> = set.iter().filter(is_absorbed).copied().collect();
+        for &index in &absorbed {
+            self.rules[subsumer].numerosity += std::mem::take(&mut self.rules[index].numerosity);
+        }
+        self.remove_rules(&absorbed, [set, alive]);
+    }
+
     /// Corrects the rules of an action that earned its reward and led to a situation of payoff `next_payoff`, then
     /// lets new rules arise among them. `alive` is a set of rule indices that stays valid.
     fn reinforce(
@@ -108,21 +192,16 @@ impl Xcs {
             self.subsume_within(&mut pending.rules, alive);
         }
         if pending.evolves {
-            self.evolve(&pending, alive, rng);
+            self.evolve(&pending.rules, pending.bits, alive, rng);
         }
     }
 }
 
-/// The largest prediction; 0 if there is none.
-fn largest(predictions: &[Option<f32>]) -> f32 {
-    let largest = predictions.iter().flatten().copied().reduce(f32::max);
-    largest.unwrap_or_default()
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::xcs_rules::samples::{experienced, near};
     use super::*;
-    use crate::learn::classifiers::{RecordedDecision, XcsRule, XcsSettings};
+    use crate::learn::classifiers::{XcsRule, XcsSettings};
     use crate::rng::{Purpose, stream};
 
     /// An XCS with one rule for each bit and action, in which neither crossover nor mutation nor the genetic
@@ -135,13 +214,6 @@ mod tests {
 
     fn rule_of(xcs: &Xcs, bits: u32, action: u16) -> &XcsRule {
         xcs.rules.iter().find(|r| r.condition.matches(bits) && r.action == action).unwrap()
-    }
-
-    fn near(value: f32, expected: f32) {
-        assert!(
-            (value - expected).abs() <= 1e-4 * expected.abs().max(1.0),
-            "{value} is not {expected}"
-        );
     }
 
     #[test]
@@ -213,5 +285,21 @@ mod tests {
             counts[xcs.episode().decide(1, ActionChoice::Explore, &mut rng)] += 1;
         }
         assert!(counts[0] > 10 && counts[1] > 10, "{counts:?}");
+    }
+
+    #[test]
+    fn the_most_general_accurate_rule_of_an_action_set_absorbs_the_others() {
+        let mut xcs = Xcs::new(XcsSettings::default(), 3, 2).unwrap();
+        xcs.add(experienced("10#", 0));
+        xcs.add(XcsRule { error: 500.0, ..experienced("###", 0) });
+        xcs.add(experienced("1##", 0));
+        xcs.add(XcsRule { numerosity: 4, ..experienced("101", 0) });
+        xcs.add(experienced("##1", 0));
+        let (mut set, mut alive) = (vec![0, 1, 2, 3, 4], vec![2, 3, 4]);
+        xcs.subsume_within(&mut set, &mut alive);
+        let texts: Vec<String> = xcs.rules.iter().map(|rule| rule.condition.to_string()).collect();
+        assert_eq!(texts, ["###", "1##", "##1"], "the order of birth stays");
+        assert_eq!((xcs.rules[1].numerosity, xcs.numerosity), (6, 8));
+        assert_eq!((set, alive), (vec![0, 1, 2], vec![1, 2]));
     }
 }

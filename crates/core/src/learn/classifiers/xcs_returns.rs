@@ -7,9 +7,9 @@
 
 use rand::Rng;
 
+use super::chance::largest_beside;
 use super::experience::{EpisodeEnd, RecordedDecision, ReplayReport};
 use super::xcs::Xcs;
-use super::xcs_episode::PendingActionSet;
 use crate::check::Invalid;
 
 impl Xcs {
@@ -17,7 +17,7 @@ impl Xcs {
     /// (only the prediction counts) to 1 (only what came). Unless it `may_repeat`, no action is expected to follow itself.
     ///
     /// # Errors
-    /// As of [`Xcs::learn`]. Nothing is learned then.
+    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
     pub fn learn_returns(
         &mut self,
         decisions: &[RecordedDecision],
@@ -35,8 +35,9 @@ impl Xcs {
         let mut later = None;
         for decision in decisions.iter().rev() {
             let action = usize::from(decision.action);
+            let except = (!may_repeat).then_some(action);
             let guess =
-                next.map_or(0.0, |bits| self.payoff_beside(bits, (!may_repeat).then_some(action)));
+                next.map_or(0.0, |bits| largest_beside(&self.prediction_array(bits), except));
             let future = later.map_or(guess, |later| (1.0 - trace) * guess + trace * later);
             let payoff = decision.reward + self.settings.discount * future;
             let is_covered = self.learn_payoff(decision, payoff, rng);
@@ -67,8 +68,7 @@ impl Xcs {
             rules = self.action_set(bits, action);
         }
         self.update(&rules, payoff);
-        let pending = PendingActionSet { bits, rules, reward: 0.0, evolves: true };
-        self.evolve(&pending, &mut Vec::new(), rng);
+        self.evolve(&rules, bits, &mut Vec::new(), rng);
         is_covered
     }
 
@@ -77,13 +77,6 @@ impl Xcs {
         let mut matched = self.match_set(bits);
         matched.retain(|&index| self.masks.action(index) == action);
         matched
-    }
-
-    /// The largest payoff that is predicted in a situation for an action other than `except`; 0 if there is none.
-    fn payoff_beside(&self, bits: u32, except: Option<usize>) -> f32 {
-        let predictions = self.prediction_array(bits).into_iter().enumerate();
-        let others = predictions.filter(|(other, _)| Some(*other) != except);
-        others.filter_map(|(_, prediction)| prediction).reduce(f32::max).unwrap_or(0.0)
     }
 }
 

@@ -54,6 +54,45 @@ impl XcsRule {
     }
 }
 
+/// Rules and systems for tests.
+#[cfg(test)]
+pub(super) mod samples {
+    use super::super::{SavedXcs, XcsSettings};
+    use super::XcsRule;
+
+    /// A rule that is accurate and experienced enough to subsume others.
+    pub fn experienced(condition: &str, action: u16) -> XcsRule {
+        XcsRule {
+            condition: condition.parse().unwrap(),
+            action,
+            prediction: 100.0,
+            error: 0.0,
+            fitness: 0.5,
+            experience: 21,
+            time_stamp: 0,
+            action_set_size: 2.0,
+            numerosity: 1,
+        }
+    }
+
+    /// A rule of this prediction and fitness.
+    pub fn rule(condition: &str, action: u16, prediction: f32, fitness: f32) -> XcsRule {
+        XcsRule { prediction, fitness, ..experienced(condition, action) }
+    }
+
+    /// A system of up to ten rules over three bits and three actions, after five decisions.
+    pub fn saved(rules: Vec<XcsRule>) -> SavedXcs {
+        let settings = XcsSettings { population: 10, ..XcsSettings::default() };
+        SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
+    }
+
+    /// Checks a number that was computed by hand.
+    pub fn near(value: f32, expected: f32) {
+        let off = (value - expected).abs();
+        assert!(off <= 1e-4 * expected.abs().max(1.0), "{value} is not {expected}");
+    }
+}
+
 /// Checks a whole rule set: its size, each rule, and that no two rules have the same condition and action.
 ///
 /// # Errors

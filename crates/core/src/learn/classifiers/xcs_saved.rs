@@ -47,28 +47,10 @@ impl From<Xcs> for SavedXcs {
 
 #[cfg(test)]
 mod tests {
+    use super::super::xcs_rules::samples::{rule, saved};
     use super::*;
     use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
     use crate::rng::{Purpose, stream};
-
-    fn rule(condition: &str, action: u16, prediction: f32, fitness: f32) -> XcsRule {
-        XcsRule {
-            condition: condition.parse().unwrap(),
-            action,
-            prediction,
-            error: 0.0,
-            fitness,
-            experience: 1,
-            time_stamp: 0,
-            action_set_size: 1.0,
-            numerosity: 1,
-        }
-    }
-
-    fn saved(rules: Vec<XcsRule>) -> SavedXcs {
-        let settings = XcsSettings { population: 10, ..XcsSettings::default() };
-        SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
-    }
 
     #[test]
     fn hostile_rule_sets_are_refused() {

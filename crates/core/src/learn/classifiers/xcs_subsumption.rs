@@ -23,52 +23,20 @@ impl Xcs {
     }
 
     /// Whether a rule is accurate and experienced enough to replace more special ones.
-    fn may_subsume(&self, rule: &XcsRule) -> bool {
+    pub(super) fn may_subsume(&self, rule: &XcsRule) -> bool {
         rule.experience > self.settings.subsumption_experience
             && rule.error < self.settings.error_threshold
-    }
-
-    /// Lets the most general accurate rule of an action set, the oldest among equals, absorb the more special ones.
-    pub(super) fn subsume_within(&mut self, set: &mut Vec<usize>, alive: &mut Vec<usize>) {
-        let mut subsumer: Option<usize> = None;
-        for &index in set.iter().filter(|&&index| self.may_subsume(&self.rules[index])) {
-            let wildcards = |index: usize| self.rules[index].condition.wildcards();
-            if subsumer.is_none_or(|best| wildcards(index) > wildcards(best)) {
-                subsumer = Some(index);
-            }
-        }
-        let Some(subsumer) = subsumer else { return };
-        let general = self.rules[subsumer].condition;
-        let is_absorbed = |&&i: &&usize| general.is_more_general_than(&self.rules[i].condition);
-        let absorbed: Vec<usize> = set.iter().filter(is_absorbed).copied().collect();
-        for &index in &absorbed {
-            self.rules[subsumer].numerosity += std::mem::take(&mut self.rules[index].numerosity);
-        }
-        self.remove_rules(&absorbed, [set, alive]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::XcsSettings;
+    use super::super::xcs_rules::samples::experienced;
     use super::*;
 
     fn empty(settings: XcsSettings) -> Xcs {
         Xcs::new(settings, 3, 2).unwrap()
-    }
-
-    fn experienced(condition: &str, action: u16) -> XcsRule {
-        XcsRule {
-            condition: condition.parse().unwrap(),
-            action,
-            prediction: 100.0,
-            error: 0.0,
-            fitness: 0.5,
-            experience: 21,
-            time_stamp: 0,
-            action_set_size: 2.0,
-            numerosity: 1,
-        }
     }
 
     #[test]
@@ -90,21 +58,5 @@ mod tests {
         xcs.add(XcsRule { error: 500.0, ..experienced("10#", 0) });
         xcs.settle(experienced("10#", 0), [0, 0]);
         assert_eq!((xcs.rules.len(), xcs.rules[0].numerosity), (1, 2));
-    }
-
-    #[test]
-    fn the_most_general_accurate_rule_of_an_action_set_absorbs_the_others() {
-        let mut xcs = empty(XcsSettings::default());
-        xcs.add(experienced("10#", 0));
-        xcs.add(XcsRule { error: 500.0, ..experienced("###", 0) });
-        xcs.add(experienced("1##", 0));
-        xcs.add(XcsRule { numerosity: 4, ..experienced("101", 0) });
-        xcs.add(experienced("##1", 0));
-        let (mut set, mut alive) = (vec![0, 1, 2, 3, 4], vec![2, 3, 4]);
-        xcs.subsume_within(&mut set, &mut alive);
-        let texts: Vec<String> = xcs.rules.iter().map(|rule| rule.condition.to_string()).collect();
-        assert_eq!(texts, ["###", "1##", "##1"], "the order of birth stays");
-        assert_eq!((xcs.rules[1].numerosity, xcs.numerosity), (6, 8));
-        assert_eq!((set, alive), (vec![0, 1, 2], vec![1, 2]));
     }
 }

@@ -2,7 +2,8 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::experience::{ActionChoice, EpisodeEnd};
+use super::experience::EpisodeEnd;
+use super::textbook::ActionChoice;
 use super::xcs::Xcs;
 use super::xcs_settings::XcsSettings;
 use crate::learn::tasks::multiplexer::Multiplexer;

@@ -57,6 +57,7 @@ impl Xcs {
 
 #[cfg(test)]
 mod tests {
+    use super::super::xcs_rules::samples::{experienced, near};
     use super::*;
     use crate::learn::classifiers::{XcsRule, XcsSettings};
 
@@ -64,25 +65,16 @@ mod tests {
         let mut xcs = Xcs::new(XcsSettings::default(), 1, 2).unwrap();
         for (condition, error, fitness, numerosity) in rules {
             xcs.add(XcsRule {
-                condition: condition.parse().unwrap(),
-                action: 0,
                 prediction: 0.0,
                 error,
                 fitness,
                 experience: 1000,
-                time_stamp: 0,
                 action_set_size: 1.0,
                 numerosity,
+                ..experienced(condition, 0)
             });
         }
         xcs
-    }
-
-    fn near(value: f32, expected: f32) {
-        assert!(
-            (value - expected).abs() <= 1e-4 * expected.abs().max(1.0),
-            "{value} is not {expected}"
-        );
     }
 
     #[test]

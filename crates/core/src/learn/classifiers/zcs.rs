@@ -10,10 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::chance::first_largest;
 use super::condition::{Condition, LENGTHS};
-use super::experience::{ActionChoice, EpisodeEnd, RecordedDecision, ReplayReport};
+use super::experience::{EpisodeEnd, RecordedDecision, check_episode};
 use super::limits::{MOST_ACTIONS, MOST_REWARD};
 use super::mask_table::MaskTable;
-use super::zcs_episode::ZcsEpisode;
 use super::zcs_rules::{ZcsRule, ZcsSettings};
 use crate::check::{Invalid, within};
 
@@ -68,46 +67,12 @@ impl Zcs {
         Ok(zcs)
     }
 
-    /// Learns from one recorded episode: the full cycle for every decision, with the recorded action in place of
-    /// the roulette.
-    ///
-    /// Where no rule advises the recorded action, one is made. Payments between rules follow the recorded actions,
-    /// which an older population may have chosen.
-    ///
-    /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from 0 to 1e6: strengths are the weights
-    /// of a roulette. Nothing is learned then.
-    pub fn learn(
-        &mut self,
-        decisions: &[RecordedDecision],
-        end: EpisodeEnd,
-        rng: &mut impl Rng,
-    ) -> Result<ReplayReport, Invalid> {
-        self.check_experience(decisions, end)?;
-        let mut episode = self.episode();
-        for decision in decisions {
-            episode.decide(decision.bits, ActionChoice::Given(usize::from(decision.action)), rng);
-            episode.reward(decision.reward);
-        }
-        Ok(episode.finish(end))
-    }
-
     pub(super) fn check_experience(
         &self,
         decisions: &[RecordedDecision],
         end: EpisodeEnd,
     ) -> Result<(), Invalid> {
-        for (index, decision) in decisions.iter().enumerate() {
-            decision
-                .check(self.situation_bits, self.actions, 0.0..=MOST_REWARD)
-                .map_err(|error| error.inside(&format!("decisions[{index}]")))?;
-        }
-        end.check(self.situation_bits)
-    }
-
-    /// Starts an episode that is learned from one decision at a time.
-    pub fn episode(&mut self) -> ZcsEpisode<'_> {
-        ZcsEpisode::new(self)
+        check_episode(decisions, end, [self.situation_bits, self.actions], 0.0..=MOST_REWARD)
     }
 
     /// The action whose matching rules are strongest together, the lowest among equals; `None` if no rule matches.
@@ -162,13 +127,6 @@ impl Zcs {
     /// Number of actions.
     pub fn actions(&self) -> usize {
         self.actions
-    }
-
-    /// Share of `#` among the symbols of all conditions; 0 without rules.
-    pub fn mean_generality(&self) -> f32 {
-        let wildcards: u64 = self.rules.iter().map(|r| u64::from(r.condition.wildcards())).sum();
-        let symbols = self.rules.len() * self.situation_bits;
-        if symbols == 0 { 0.0 } else { wildcards as f32 / symbols as f32 }
     }
 
     /// Goes on with other parameters.

@@ -1,6 +1,7 @@
 //! ZCS held against the task that its author published.
 
-use super::experience::{ActionChoice, EpisodeEnd};
+use super::experience::EpisodeEnd;
+use super::textbook::ActionChoice;
 use super::zcs::Zcs;
 use super::zcs_rules::ZcsSettings;
 use crate::learn::tasks::woods::{DIRECTIONS, FOOD, MOST_STEPS, Woods};
