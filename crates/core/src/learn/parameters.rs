@@ -61,7 +61,7 @@ mod tests {
     use crate::check::Invalid;
     use crate::learn::classifiers::{XcsSettings, ZcsSettings};
     use crate::learn::neat::NeatRules;
-    use crate::learn::q_table::{ExplorationLadder, QRule};
+    use crate::learn::q_table::QRule;
 
     /// Checks that the defaults are allowed, and that each number of `usual` may have the values at both ends of the range
     /// that a refusal names, and none beyond them. Returns the number of ranges.
@@ -114,7 +114,6 @@ mod tests {
         };
         assert_eq!(ranges_of(&still, NeatRules::check), 26);
         assert_eq!(ranges_of(&QRule::default(), QRule::check), 4);
-        assert_eq!(ranges_of(&ExplorationLadder::default(), ExplorationLadder::check), 5);
     }
 
     #[test]

@@ -3,38 +3,37 @@
 use super::*;
 use crate::check::{Invalid, within};
 
-#[derive(Debug, Clone, PartialEq)]
-struct Wheels {
-    count: u32,
-    radius_m: f32,
-    widths_m: PerPart,
-    grip: Option<PerPart>,
-    angles_rad: Vec<f32>,
-    is_driven: bool,
-    tyre: Tyre,
-    axle: Axle,
+setting_group! {
+    /// Three wheels.
+    pub struct Wheels {
+        count: u32 = 3;
+        radius_m: f32 = 0.5;
+        widths_m: PerPart = 0.2.into();
+        grip: Option<PerPart> = None;
+        angles_rad: Vec<f32> = vec![0.5, 1.0];
+        is_driven: bool = false;
+        tyre: Tyre = Tyre::Soft;
+        axle: Axle = Axle::default();
+    }
 }
 
-#[derive(Debug, Clone, PartialEq)]
-struct Axle {
-    least_m: f32,
-    most_m: f32,
+setting_group! {
+    /// The axle of the wheels.
+    pub struct Axle in "Axle": "What joins the wheels." {
+        least_m: f32 = 1.0, number("Least", 0.0..=5.0).unit("m");
+        most_m: f32 = 2.0, number("Most", 0.0..=5.0).unit("m");
+    }
+
+    fn check_together(&self) -> Result<(), Invalid> {
+        within("most_m", self.most_m, self.least_m..=5.0)
+    }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Tyre {
-    Soft,
-    Hard,
-}
-
-impl Choices for Tyre {
-    const OPTIONS: &'static [Self] = &[Self::Soft, Self::Hard];
-
-    fn choice(self) -> Choice {
-        match self {
-            Self::Soft => Choice::new("soft", "Soft", "It gives way."),
-            Self::Hard => Choice::new("hard", "Hard", "It does not."),
-        }
+choices! {
+    /// The tyre of the wheels.
+    pub enum Tyre {
+        Soft = "soft", "Soft", "It gives way.";
+        Hard = "hard", "Hard", "It does not.";
     }
 }
 
@@ -57,37 +56,9 @@ impl SettingGroup for Wheels {
     }
 }
 
-impl SettingGroup for Axle {
-    fn walk(&mut self, walk: &mut Walk<'_>) {
-        let Self { least_m, most_m } = self;
-        walk.section(Section { title: "Axle", about: "What joins the wheels." });
-        settings! { walk,
-            least_m: number("Least", 0.0..=5.0).unit("m");
-            most_m: number("Most", 0.0..=5.0).unit("m");
-        }
-    }
-
-    fn check_together(&self) -> Result<(), Invalid> {
-        within("most_m", self.most_m, self.least_m..=5.0)
-    }
-}
-
-fn wheels() -> Wheels {
-    Wheels {
-        count: 3,
-        radius_m: 0.5,
-        widths_m: PerPart::All(0.2),
-        grip: None,
-        angles_rad: vec![0.5, 1.0],
-        is_driven: false,
-        tyre: Tyre::Soft,
-        axle: Axle { least_m: 1.0, most_m: 2.0 },
-    }
-}
-
 /// The wheels after a change of one setting, as far as it is allowed.
 fn changed(path: &str, text: &str) -> Result<Wheels, String> {
-    let mut changed = wheels();
+    let mut changed = Wheels::default();
     let result = find(&changed, path)
         .and_then(|path| set_text(&mut changed, &path, text))
         .and_then(|()| check(&changed));
@@ -96,7 +67,7 @@ fn changed(path: &str, text: &str) -> Result<Wheels, String> {
 
 #[test]
 fn the_list_has_every_setting_with_its_path_and_value() {
-    let listed: Vec<String> = list(&wheels())
+    let listed: Vec<String> = list(&Wheels::default())
         .iter()
         .map(|listed| format!("{} = {}", listed.path, listed.value))
         .collect();
@@ -153,7 +124,7 @@ fn a_wrong_value_is_refused_with_its_path_and_what_is_allowed() {
 
 #[test]
 fn a_setting_is_set_by_its_full_name_only() {
-    let mut wheels = wheels();
+    let mut wheels = Wheels::default();
     set_text(&mut wheels, "axle.least_m", "0.5").expect("its full name");
     assert_eq!(wheels.axle.least_m, 0.5);
     assert!(set_text(&mut wheels, "least_m", "0.5").is_err());
@@ -167,7 +138,7 @@ fn an_unknown_name_lists_the_nearest_and_an_ambiguous_one_all() {
             "set is \"axle.least\", an unknown setting; allowed: (nearest) axle.least_m"
         )
     );
-    let mut both = wheels();
+    let mut both = Wheels::default();
     both.axle.least_m = 0.0;
     #[derive(Clone)]
     struct Pair(Axle, Axle);
@@ -187,21 +158,21 @@ fn an_unknown_name_lists_the_nearest_and_an_ambiguous_one_all() {
 
 #[test]
 fn a_group_says_what_is_used_and_what_may_change() {
-    let listed = list(&wheels());
+    let listed = list(&Wheels::default());
     let of = |path: &str| {
         let listed = listed.iter().find(|listed| listed.path == path).expect("listed");
         (listed.section.title, listed.is_used, listed.live)
     };
     assert_eq!(of("count"), ("Wheels", true, Ok(())));
     assert_eq!(of("is_driven"), ("Wheels", true, Err("It is built in.")));
-    assert_eq!(of("axle.most_m"), ("Axle", true, Err("The frame cannot change.")));
+    assert_eq!(of("axle.most_m"), (Axle::SECTION.title, true, Err("The frame cannot change.")));
     let (_, is_used, live) = of("angles_rad");
     assert!(!is_used && live.is_err_and(|reason| reason.contains("does not use it")));
 }
 
 #[test]
 fn the_tables_have_a_row_for_each_setting() {
-    let text = markdown(&wheels());
+    let text = markdown(&Wheels::default());
     let row = "| `radius_m` | 0.1 to 2 m | `0.5` | may change | Radius: Half of its height. |";
     assert!(text.contains("## Wheels\n\nWhat it rolls on.\n"), "{text}");
     assert!(text.contains(row), "{text}");

@@ -172,8 +172,6 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (path, text, message) in [
-            ("surface.friction", "-1", "trial.surface.friction is -1; allowed: 0 to 1000"),
-            ("surface.friction", "NaN", "trial.surface.friction is \"NaN\"; allowed: 0 to 1000"),
             ("limbs", "2.5", "trial.agent.limbs is \"2.5\"; allowed: 2 to 12, whole numbers"),
             (
                 "limb_width_m",

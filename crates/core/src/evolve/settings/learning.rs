@@ -33,7 +33,7 @@ impl ExplorationSettings {
     /// The ladder from the boldest snake of a generation to the most careful one.
     pub fn ladder(&self) -> ExplorationLadder {
         let Self { first, decay, least } = *self;
-        ExplorationLadder { first, decay, least_of_boldest: least, ..ExplorationLadder::default() }
+        ExplorationLadder { first, decay, least_of_boldest: least }
     }
 }
 

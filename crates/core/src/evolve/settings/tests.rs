@@ -57,6 +57,32 @@ fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
 }
 
 #[test]
+fn a_setting_is_used_if_the_run_meets_its_need() {
+    type Change = fn(&mut Settings);
+    let default: Change = |_| {};
+    let varies: Change = |settings| settings.genome.bodies.vary = true;
+    let poet: Change = |settings| settings.evolution.strategy = StrategyKind::Poet;
+    let body_poet: Change = |settings| settings.evolution.strategy = StrategyKind::BodyPoet;
+    let ladder: Change = |settings| settings.evolution.ladder.first_rise_m = 0.1;
+    let soft: Change = |settings| settings.trial.agent.youngs_modulus_pa = Some(4.0e4.into());
+    for (path, with, without) in [
+        ("evolution.ladder.share", ladder, default),
+        ("evolution.poet.pair_step", poet, body_poet),
+        ("trial.stairs.rise_m", default, poet),
+        ("trial.agent.limb_width_m", default, varies),
+        ("trial.agent.torque_budget_nm", varies, default),
+        ("trial.agent.soft_parts", soft, default),
+    ] {
+        let is_used = [with, without].map(|change| {
+            let mut settings = Settings::default();
+            change(&mut settings);
+            schema::list(&settings).iter().any(|listed| listed.path == path && listed.is_used)
+        });
+        assert_eq!(is_used, [true, false], "{path}");
+    }
+}
+
+#[test]
 fn the_defaults_are_allowed() {
     assert_eq!(Settings::default().check(), Ok(()));
 }

@@ -42,7 +42,6 @@ mod zcs_textbook;
 
 pub use condition::Condition;
 pub use experience::{EpisodeEnd, RecordedDecision, ReplayReport};
-pub use limits::{MOST_ACTIONS, MOST_REWARD, MOST_RULES};
 pub use xcs::Xcs;
 pub use xcs_rules::XcsRule;
 pub use xcs_saved::SavedXcs;

@@ -116,16 +116,6 @@ impl Xcs {
         self.actions
     }
 
-    /// Decisions learned from so far.
-    pub fn time(&self) -> u64 {
-        self.time
-    }
-
-    /// Sum of the rules' numerosities, which the population limits.
-    pub fn numerosity(&self) -> u32 {
-        self.numerosity
-    }
-
     /// Goes on with other parameters, for instance without crossover and mutation, which condenses the population.
     ///
     /// # Errors

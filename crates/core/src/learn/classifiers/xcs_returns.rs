@@ -144,7 +144,7 @@ mod tests {
                 (0..20).map(|i| step((i + round) % 16, (i % 3) as u16, 1.0)).collect();
             xcs.learn_returns(&episode, EpisodeEnd::TimeOut { bits: 3 }, 0.8, false, &mut rng)
                 .unwrap();
-            assert!(xcs.check().is_ok() && xcs.numerosity() <= 6);
+            assert!(xcs.check().is_ok() && xcs.numerosity <= 6);
         }
         let bad = [step(0, 0, 0.0), step(16, 0, 0.0)];
         assert!(xcs.learn_returns(&bad, EpisodeEnd::Terminal, 0.8, false, &mut rng).is_err());

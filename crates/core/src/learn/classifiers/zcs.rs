@@ -114,11 +114,6 @@ impl Zcs {
         &self.rules
     }
 
-    /// The parameters.
-    pub fn settings(&self) -> &ZcsSettings {
-        &self.settings
-    }
-
     /// Bits of a situation.
     pub fn situation_bits(&self) -> usize {
         self.situation_bits

@@ -18,13 +18,8 @@ mod reproduction;
 mod rules;
 mod species;
 
-pub use distance::distance;
-pub use genome::{LinkGene, MOST_ENDS, MOST_HIDDEN, MOST_LINKS, NetworkGenome};
-pub use innovation::{Innovations, Newborn, StructuralNovelty};
-pub use mating::mated;
-pub use mutation::mutated;
-pub use offspring::offspring_numbers;
-pub use play::{NetworkPlay, STEEPNESS};
+pub use genome::{LinkGene, NetworkGenome};
+pub use play::NetworkPlay;
 pub use population::{LARGEST_NEAT_POPULATION, NeatPopulation};
 pub use rules::NeatRules;
 pub use species::SpeciesSummary;

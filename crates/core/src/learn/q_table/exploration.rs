@@ -1,33 +1,30 @@
 //! How boldly each actor of a generation explores.
 
-use crate::learn::parameters::parameters;
-
-parameters! {
-    /// The settings of the exploration ladder: the shares of random actions fall from generation to generation, and within a
-    /// generation from actor 1 to the last.
-    ///
-    /// The default is a ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR 2018),
-    /// with a base that falls over the generations.
-    #[derive(Copy)]
-    pub struct ExplorationLadder {
-        /// The share of the boldest actor in generation 0.
-        first: f32 = 0.6, 0.0..=1.0;
-        /// The factor of the boldest actor's share per generation.
-        decay: f32 = 0.985, 0.0..=1.0;
-        /// The least share of the boldest actor of any generation.
-        least_of_boldest: f32 = 0.1, 0.0..=1.0;
-        /// The least share of any exploring actor. Without any exploration an actor whose table does not change can stay in
-        /// a loop for a whole episode.
-        least: f32 = 0.02, 0.0..=1.0;
-        /// The share of the last actor is that of the boldest to the power of 1 + `spread`.
-        spread: f32 = 3.0, 0.0..=20.0;
-    }
+/// The exploration ladder: the shares of random actions fall from generation to generation, and within a generation from
+/// actor 1 to the last. All shares are from 0 to 1.
+///
+/// It is a ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR 2018), with a base that
+/// falls over the generations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExplorationLadder {
+    /// The share of the boldest actor in generation 0.
+    pub first: f32,
+    /// The factor of the boldest actor's share per generation.
+    pub decay: f32,
+    /// The least share of the boldest actor of any generation.
+    pub least_of_boldest: f32,
 }
+
+/// The least share of any exploring actor. Without any exploration an actor whose table does not change can stay in a loop for
+/// a whole episode.
+const LEAST: f32 = 0.02;
+/// The share of the last actor is that of the boldest to the power of 1 + this.
+const SPREAD: f64 = 3.0;
 
 /// The share of random actions, 0 to 1, of actor `actor` of `actors`, both from 0.
 ///
 /// Actor 0 is greedy: it shows what the table can do. Actor i from 1 has
-/// max(`least`, e^(1 + `spread` · (i - 1) / (`actors` - 2))) with
+/// max([`LEAST`], e^(1 + [`SPREAD`] · (i - 1) / (`actors` - 2))) with
 /// e = max(`least_of_boldest`, `first` · `decay`^`generation`).
 pub fn epsilon(generation: u32, actor: u32, actors: u32, ladder: &ExplorationLadder) -> f32 {
     let Some(rung) = actor.checked_sub(1) else { return 0.0 };
@@ -37,13 +34,16 @@ pub fn epsilon(generation: u32, actor: u32, actors: u32, ladder: &ExplorationLad
     // A single explorer is the boldest.
     let last_rung = actors.saturating_sub(2).max(1);
     let height = f64::from(rung) / f64::from(last_rung);
-    let share = libm::pow(boldest, 1.0 + f64::from(ladder.spread) * height);
-    share.max(f64::from(ladder.least)) as f32
+    let share = libm::pow(boldest, 1.0 + SPREAD * height);
+    share.max(f64::from(LEAST)) as f32
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const LADDER: ExplorationLadder =
+        ExplorationLadder { first: 0.6, decay: 0.985, least_of_boldest: 0.1 };
 
     fn close(a: f32, b: f32) -> bool {
         (a - b).abs() < 1e-6
@@ -51,8 +51,7 @@ mod tests {
 
     #[test]
     fn a_generation_spans_greedy_bold_and_careful_actors() {
-        let ladder = ExplorationLadder::default();
-        let shares: Vec<f32> = (0..32).map(|actor| epsilon(0, actor, 32, &ladder)).collect();
+        let shares: Vec<f32> = (0..32).map(|actor| epsilon(0, actor, 32, &LADDER)).collect();
         assert_eq!(shares[0], 0.0);
         assert!(close(shares[1], 0.6), "{shares:?}");
         // 0.6^(1 + 3 · 15/30) and 0.6^4.
@@ -62,25 +61,24 @@ mod tests {
 
     #[test]
     fn shares_fall_over_the_generations_to_their_least() {
-        let ladder = ExplorationLadder::default();
         // 0.6 · 0.985^50.
-        assert!(close(epsilon(50, 1, 32, &ladder), 0.281_814_4), "{}", epsilon(50, 1, 32, &ladder));
+        assert!(close(epsilon(50, 1, 32, &LADDER), 0.281_814_4), "{}", epsilon(50, 1, 32, &LADDER));
         for generation in [200, u32::MAX] {
-            assert!(close(epsilon(generation, 1, 32, &ladder), 0.1));
-            assert!(close(epsilon(generation, 31, 32, &ladder), 0.02));
-            assert_eq!(epsilon(generation, 0, 32, &ladder), 0.0);
+            assert!(close(epsilon(generation, 1, 32, &LADDER), 0.1));
+            assert!(close(epsilon(generation, 31, 32, &LADDER), 0.02));
+            assert_eq!(epsilon(generation, 0, 32, &LADDER), 0.0);
         }
     }
 
     #[test]
     fn few_actors_and_extreme_settings_still_have_a_share() {
-        let ladder = ExplorationLadder::default();
-        assert!(close(epsilon(0, 1, 2, &ladder), 0.6));
-        assert!(close(epsilon(0, 1, 3, &ladder), 0.6) && close(epsilon(0, 2, 3, &ladder), 0.1296));
-        let none = ExplorationLadder { first: 0.0, least_of_boldest: 0.0, least: 0.0, ..ladder };
+        assert!(close(epsilon(0, 1, 2, &LADDER), 0.6));
+        assert!(close(epsilon(0, 1, 3, &LADDER), 0.6) && close(epsilon(0, 2, 3, &LADDER), 0.1296));
+        let none = ExplorationLadder { first: 0.0, least_of_boldest: 0.0, ..LADDER };
         for (actor, actors) in [(0, 0), (1, 0), (5, 1), (u32::MAX, u32::MAX)] {
-            assert!((0.0..=1.0).contains(&epsilon(3, actor, actors, &ladder)));
-            assert_eq!(epsilon(3, actor, actors, &none), 0.0);
+            assert!((0.0..=1.0).contains(&epsilon(3, actor, actors, &LADDER)));
+            let least = if actor == 0 { 0.0 } else { LEAST };
+            assert_eq!(epsilon(3, actor, actors, &none), least);
         }
     }
 }
