@@ -96,7 +96,8 @@ impl SourceFile {
             match tokens[index].as_str() {
                 "{" | "(" | "[" => depth += 1,
                 "}" | ")" | "]" => depth -= 1,
-                "use" => {
+                // `+ use<>` lists what a type captures; it imports nothing.
+                "use" if next != "<" => {
                     index = read_use(&tokens, index + 1, &[], &mut uses);
                     continue;
                 }
