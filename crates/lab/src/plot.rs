@@ -1,5 +1,6 @@
 //! Charts as data, and as pictures and tables; and texts on pictures.
 
+mod canvas;
 mod colors;
 mod figure;
 mod film_text;
@@ -10,14 +11,12 @@ mod signal;
 mod table;
 mod ticks;
 
-use std::error::Error;
-use std::sync::OnceLock;
-
 use plotters::prelude::*;
-use plotters::style::{FontStyle, register_font};
 
 use snakes_core::save::Picture;
 
+pub use canvas::PlotError;
+use canvas::{FONT, INK, TEXT_PIXELS, draw_on};
 pub use colors::{BAND_OPACITY, ramp, role_color};
 pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent, padded_range, with_unit};
 pub use film_text::{FilmBand, FilmTitle, film_band, film_title};
@@ -25,23 +24,6 @@ pub use labels::beside_line;
 pub use paint::figure;
 pub use signal::signal;
 pub use ticks::{tick_step, tick_text};
-
-/// A plot could not be drawn.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the plot cannot be drawn: {0}")]
-pub struct PlotError(String);
-
-/// Colour of text and axes.
-const INK: RGBColor = RGBColor(0x22, 0x26, 0x2e);
-/// Colour of grid lines and frames.
-const FAINT: RGBColor = RGBColor(0xdd, 0xdf, 0xe4);
-const FONT: &str = "sans-serif";
-const TEXT_PIXELS: u32 = 18;
-
-/// The style of labels.
-fn text() -> TextStyle<'static> {
-    (FONT, TEXT_PIXELS).into_font().color(&INK)
-}
 
 /// Writes a line of text onto a picture, on a band along its lower edge.
 ///
@@ -98,31 +80,4 @@ pub fn tags(picture: &mut Picture, tags: &[NameTag]) -> Result<(), PlotError> {
         }
         Ok(())
     })
-}
-
-type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
-
-/// Draws on a picture, with the embedded font.
-fn draw_on(
-    picture: &mut Picture,
-    draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,
-) -> Result<(), PlotError> {
-    font()?;
-    let size = (picture.width, picture.height);
-    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
-    let drawn = draw(&area).and_then(|()| Ok(area.present()?));
-    drawn.map_err(|error| PlotError(error.to_string()))
-}
-
-/// Registers the embedded font with the plotting library, once. System fonts are not used, so a plot looks the same
-/// everywhere.
-fn font() -> Result<(), PlotError> {
-    static REGISTERED: OnceLock<bool> = OnceLock::new();
-    let register =
-        || register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok();
-    if *REGISTERED.get_or_init(register) {
-        Ok(())
-    } else {
-        Err(PlotError("the embedded font is broken".to_owned()))
-    }
 }

@@ -6,7 +6,7 @@ use std::error::Error;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Area, FONT, INK, PlotError, draw_on};
+use super::canvas::{Area, FONT, INK, PlotError, draw_on};
 use snakes_core::save::Picture;
 
 /// Opacity of the band and of a title's plate.

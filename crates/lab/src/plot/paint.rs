@@ -7,12 +7,12 @@ use plotters::prelude::*;
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::canvas::{Area, FAINT, FONT, INK, PlotError, TEXT_PIXELS, draw_on, text};
 use super::colors::{BAND_OPACITY, color_of};
+use super::figure::{Chart, Figure, Role, Series, Shape};
 use super::labels::beside_line;
 use super::series::{DASH, FigureAxes, paint_series};
 use super::ticks::TickedAxis;
-use super::{Area, Chart, FAINT, FONT, Figure, INK, PlotError, Role, Series, Shape};
-use super::{TEXT_PIXELS, draw_on, text};
 use snakes_core::save::Picture;
 
 /// Size of a picture of a figure, in pixels.

@@ -1,7 +1,8 @@
 //! The torque signal of a champion, as in the report's Figure 4.
 
+use super::canvas::PlotError;
+use super::figure::{Axis, Chart, Figure, Role, Series, Shape};
 use super::paint::figure_of_size;
-use super::{Axis, Chart, Figure, PlotError, Role, Series, Shape};
 use snakes_core::evolve::Champion;
 use snakes_core::genome::JointCommands;
 use snakes_core::save::Picture;
