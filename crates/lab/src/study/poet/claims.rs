@@ -1,7 +1,7 @@
 //! The verdicts of the study, as tables.
 
-use super::controls::is_enough;
-use super::{HARDEST, SEEDS, TRIALS};
+use super::controls::{SEEDS, is_enough};
+use super::hardest::{HARDEST, TRIALS};
 use crate::run::markdown::markdown_table;
 use snakes_core::save::{HardStairs, PoetStudy};
 

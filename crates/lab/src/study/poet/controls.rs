@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
-use super::{DIRECT, SEEDS};
 use crate::run::Evaluator;
 use crate::run::Experiment;
 use crate::run::headless::HeadlessError;
@@ -14,6 +13,10 @@ use snakes_core::save::{ControlRun, PoetStudy};
 
 /// Individuals of a generation of a direct search.
 const POPULATION: u32 = 12;
+/// Direct searches on each of the hardest stairs.
+pub(super) const SEEDS: u64 = 10;
+/// Share of the way that none of the direct searches may cover on stairs that only POET solves.
+const DIRECT: f32 = 0.55;
 
 /// A direct search that is to be made.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,5 @@
 //! The hardest of the stairs that a run of POET has solved.
 
-use super::{HARDEST, MUST_SUCCEED, SUCCESS, TRIALS};
 use crate::run::exam::exam_ends;
 use crate::run::{Cancelled, RunControl};
 use crate::run::{EvaluationResult, Evaluator, Job, evaluate_in_order};
@@ -8,6 +7,15 @@ use snakes_core::evolve::{RunPlan, StairsNode, StairsTree};
 use snakes_core::genome::Genome;
 use snakes_core::save::HardStairs;
 use snakes_core::score::{PerturbationRange, Trial, varied};
+
+/// Share of the way from which on a trial is a success.
+const SUCCESS: f32 = 0.85;
+/// Perturbed trials of the agent of solved stairs.
+pub(super) const TRIALS: u32 = 10;
+/// Number of them that have to succeed.
+const MUST_SUCCEED: u32 = 8;
+/// Number of the hardest stairs.
+pub(super) const HARDEST: usize = 5;
 
 /// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
 ///
