@@ -1,6 +1,7 @@
 //! Checks of a study before any run is made.
 
 use super::definition::{Goal, Study};
+use super::measure::Measure;
 use super::plans::is_short_for;
 use super::values::{Form, of_suite, value};
 use snakes_core::check::{Invalid, name, quoted, within};
@@ -96,6 +97,46 @@ impl Study {
                 Err(Invalid::new(field, quoted(name), allowed))
             }
             None => Ok(()),
+        }
+    }
+}
+
+impl Measure {
+    /// Checks the values that it names.
+    ///
+    /// # Errors
+    /// There is no such value, or it is of another form.
+    fn check(&self, study: &Study) -> Result<(), Invalid> {
+        let field = "demands.measure.of";
+        let is_expected = |form: Form| match self {
+            Self::MedianSize { .. } => form == Form::List,
+            Self::Distinct { .. } => form == Form::Text,
+            _ => !matches!(form, Form::List | Form::Text),
+        };
+        for name in self.values() {
+            if !is_expected(value(field, &name)?.form) {
+                let allowed = match self {
+                    Self::MedianSize { .. } => "a list",
+                    Self::Distinct { .. } => "a text",
+                    _ => "a number",
+                };
+                return Err(Invalid::new(field, format!("{name:?}"), allowed));
+            }
+        }
+        match self {
+            Self::TotalRatio { trials: Some(name), .. } | Self::Apart { trials: name, .. } => {
+                value("demands.measure.trials", name).map(drop)
+            }
+            Self::Newborns if study.newborns.is_none() => {
+                Err(Invalid::new("newborns", "none", "a number, about which a demand is"))
+            }
+            Self::BuiltInChampions { .. } if !study.built_in_champions => Err(Invalid::new(
+                "built_in_champions",
+                false,
+                "true, because a demand is about them",
+            )),
+            Self::BuiltInChampions { keep } => within("demands.measure.keep", *keep, 0.0..=1.0),
+            _ => Ok(()),
         }
     }
 }

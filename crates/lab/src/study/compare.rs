@@ -1,7 +1,7 @@
 //! Every arm against its baseline: a test, a corrected probability, a difference and an effect size.
 
 use super::definition::Arm;
-use super::measure::Results;
+use super::results::Results;
 use super::values::{ValueInfo, value};
 use crate::statistics::{PairedDifference, Superiority, holm};
 

@@ -1,7 +1,8 @@
 //! The results of a study as a figure: learning curves, means by generation, and the values of all runs.
 
 use super::definition::{Arm, Demand};
-use super::measure::{Measure, Results};
+use super::measure::Measure;
+use super::results::Results;
 use super::values::{Form, ValueInfo, value, values};
 use crate::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use crate::statistics::Quartiles;

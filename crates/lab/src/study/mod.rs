@@ -17,6 +17,7 @@ mod plans;
 pub mod poet;
 mod records;
 mod report;
+mod results;
 mod run;
 mod values;
 mod words;
@@ -28,11 +29,12 @@ pub use definition::{
 pub use driver::{StudyFiles, perform, picture};
 pub use figure::{controllers, curve, curves, short_title};
 pub use findings::Findings;
-pub use measure::{Measure, Measured, Results, Verdict};
+pub use measure::Measure;
 pub use newborns::NewbornStatistics;
 pub use plans::DURATION;
 pub use records::json_lines;
 pub use report::{tables, values_as_markdown};
+pub use results::{Measured, Results, Verdict};
 pub use run::{FinishedRun, PlannedRun};
 pub use values::{Form, ValueInfo, value, values};
 

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::compare::{ArmComparison, comparisons};
 use super::definition::{Arm, Demand};
 use super::driver::StudyFiles;
-use super::measure::Results;
+use super::results::Results;
 use super::values::{Form, ValueInfo, values};
 use crate::statistics::Quartiles;
 use snakes_core::save::{StudiedRun, StudyValue};

@@ -2,7 +2,7 @@
 
 use super::compare::{ArmComparison, comparisons};
 use super::definition::Arm;
-use super::measure::{Results, quartiles_text};
+use super::results::{Results, quartiles_text};
 use super::values::{Form, ValueInfo, number, signed, values};
 use crate::run::markdown::markdown_table;
 use crate::statistics::Quartiles;

@@ -268,6 +268,11 @@ pub fn value(field: &str, name: &str) -> Result<&'static ValueInfo, Invalid> {
     })
 }
 
+/// The value of a name; none for an unknown one, which the check of the study refuses.
+pub(super) fn info_of(name: &str) -> Option<&'static ValueInfo> {
+    value("of", name).ok()
+}
+
 impl ValueInfo {
     /// Title and unit.
     pub fn label(&self) -> String {

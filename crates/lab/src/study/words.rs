@@ -1,8 +1,8 @@
 //! Demands in words.
 
 use super::definition::{Arm, Demand, Study};
-use super::measure::{Measure, info_of};
-use super::values::{Form, number};
+use super::measure::Measure;
+use super::values::{Form, info_of, number};
 
 impl Demand {
     /// The measure in words.
