@@ -15,9 +15,6 @@ use super::groups::{
 };
 use super::robust::ExamArgs;
 use super::study::StudyArgs;
-use snakes_core::schema::Choices;
-use snakes_core::score::ExamSuite;
-use snakes_lab::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 
 /// A five-block snake evolves until it climbs a staircase.
 ///
@@ -219,20 +216,4 @@ pub enum ShownList {
         #[command(flatten)]
         output: OutputFlags,
     },
-}
-
-/// Lists every suite of an exam.
-pub(super) fn suite_help() -> String {
-    let choices = ExamSuite::choices().into_iter();
-    let rows: Vec<String> =
-        choices.map(|choice| format!("{}: {}", choice.name, choice.sentence)).collect();
-    format!("Suite of the exam; may be repeated [default: all]. {}", rows.join(" "))
-}
-
-/// Lists every suite of `snakes exam`.
-pub(super) fn exam_suite_help() -> String {
-    format!(
-        "{} {MUJOCO}: {MUJOCO_SENTENCE}",
-        suite_help().replace("[default: all]", "[default: all but engine and mujoco]")
-    )
 }

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::flags::exam_suite_help;
-use snakes_core::score::PerturbationRange;
+use snakes_core::schema::Choices;
+use snakes_core::score::{ExamSuite, PerturbationRange};
+use snakes_lab::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 
 /// The flags of `snakes exam` that no other command has.
 #[derive(Debug, clap::Args)]
@@ -59,4 +60,17 @@ impl From<&PerturbationArgs> for PerturbationRange {
             ..Self::default()
         }
     }
+}
+
+/// Help of a flag that names suites: every suite of the exam, and the suites without the flag.
+pub(super) fn suite_help(default: &str) -> String {
+    let choices = ExamSuite::choices().into_iter();
+    let rows: Vec<String> =
+        choices.map(|choice| format!("{}: {}", choice.name, choice.sentence)).collect();
+    format!("Suite of the exam; may be repeated [default: {default}]. {}", rows.join(" "))
+}
+
+/// Help of the flag of `snakes exam`, which knows one suite more.
+fn exam_suite_help() -> String {
+    format!("{} {MUJOCO}: {MUJOCO_SENTENCE}", suite_help("all but engine and mujoco"))
 }

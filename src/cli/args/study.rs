@@ -1,6 +1,6 @@
 //! The flags of `snakes study`.
 
-use super::flags::suite_help;
+use super::robust::suite_help;
 
 /// The flags of `snakes study`.
 #[derive(Debug, clap::Args)]
@@ -25,7 +25,7 @@ pub struct StudyArgs {
     /// Evaluations that a run may spend [default: the study's]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub evaluations: Option<String>,
-    #[arg(long, value_name = "NAME", help = study_suite_help())]
+    #[arg(long, value_name = "NAME", help = suite_help("the study's"))]
     pub suite: Vec<String>,
     /// Print the values that a study may name, as the table in docs/studies.md
     #[arg(long, conflicts_with = "study")]
@@ -33,8 +33,4 @@ pub struct StudyArgs {
     /// Rounds of the run of POET, of the study poet only [default: 100]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rounds: Option<String>,
-}
-
-fn study_suite_help() -> String {
-    suite_help().replace("[default: all]", "[default: the study's]")
 }
