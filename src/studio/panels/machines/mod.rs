@@ -2,6 +2,7 @@
 //! and the commands to type on other computers.
 
 mod queues;
+mod rows;
 mod workers;
 
 use bevy_egui::egui;
@@ -9,13 +10,13 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, MachinesCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::machines::{KnownServer, LinkState, MachinesLink, checked};
-use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::accent_button;
 use crate::studio::ui::lane_dot::dot;
 use crate::studio::ui::text_rows::{at_right, explain, problem, text_field, title};
 use crate::studio::ui::theme;
 
 use queues::queues;
+use rows::command_line;
 use workers::{in_threads, used, workers, workers_in_words};
 
 /// The panel with its text field.
@@ -40,8 +41,6 @@ struct RunPart {
 
 /// Command that starts a server.
 const SERVER: &str = "nats-server -js";
-/// Width that the button beside a command needs, in points.
-const COPY_WIDTH: f32 = 60.0;
 
 impl MachinesPanel {
     /// Draws the panel and collects the user's commands.
@@ -149,30 +148,6 @@ fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
     });
 }
 
-/// Draws the lines of one worker or run close together: a name, and what belongs to it at the right end of its line; then
-/// the rest.
-fn entry(
-    ui: &mut egui::Ui,
-    name: egui::RichText,
-    right: egui::RichText,
-    rest: impl FnOnce(&mut egui::Ui),
-) {
-    ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
-        ui.spacing_mut().interact_size.y = 0.0;
-        ui.horizontal(|ui| {
-            at_right(ui, |ui| {
-                ui.label(right);
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    ui.add(egui::Label::new(name).truncate());
-                });
-            });
-        });
-        rest(ui);
-    });
-    ui.add_space(theme::GAP / 2.0);
-}
-
 /// Draws what to do before the first connection.
 fn first_steps(ui: &mut egui::Ui, copied: &mut dyn FnMut(&str)) {
     title(ui, "How to begin");
@@ -257,31 +232,6 @@ fn worker_command(ui: &mut egui::Ui, address: &str, copied: &mut dyn FnMut(&str)
              in its place.",
         );
     }
-}
-
-/// Draws a command to type, with a button that copies it.
-fn command_line(ui: &mut egui::Ui, command: &str, copied: &mut dyn FnMut(&str)) {
-    let frame = egui::Frame::new()
-        .fill(theme::of(ui).field)
-        .corner_radius(4)
-        .inner_margin(egui::Margin::symmetric(8, 4));
-    frame.show(ui, |ui| {
-        ui.horizontal_top(|ui| {
-            let width = ui.available_width() - COPY_WIDTH;
-            ui.vertical(|ui| {
-                ui.set_width(width);
-                ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap());
-            });
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Min), |ui| {
-                let response = ui.small_button("Copy").on_hover_text("Copy this command");
-                let name = format!("Copy: {command}");
-                if named(response, egui::WidgetType::Button, &name).clicked() {
-                    ui.ctx().copy_text(command.to_owned());
-                    copied("Command");
-                }
-            });
-        });
-    });
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy_egui::egui;
 
-use super::{command_line, entry};
+use super::rows::{command_line, entry};
 use crate::studio::state::machines::KnownServer;
 use crate::studio::ui::text_rows::{explain, problem, title, weak};
 use snakes_cluster::Machines;

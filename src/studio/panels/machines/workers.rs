@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::entry;
+use super::rows::entry;
 use crate::studio::ui::text_rows::{at_right, explain, problem, title, weak};
 use crate::studio::ui::theme;
 use snakes_cluster::{Machines, WorkerNotice};
