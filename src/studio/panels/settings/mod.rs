@@ -13,18 +13,8 @@ mod slider;
 mod validation;
 mod values;
 
-use snakes_core::schema::{ListedSetting, Section};
-
 pub use form::Sheet;
 pub use values::every_setting;
-
-/// The sections of these settings, in order.
-pub fn sections_of<'a>(listed: impl IntoIterator<Item = &'a ListedSetting>) -> Vec<Section> {
-    let mut sections: Vec<Section> = listed.into_iter().map(|listed| listed.section).collect();
-    // Settings of one section are adjacent.
-    sections.dedup();
-    sections
-}
 
 #[cfg(test)]
 pub(super) mod tests;

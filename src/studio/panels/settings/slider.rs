@@ -75,7 +75,7 @@ impl Sheet {
 mod tests {
     use super::*;
     use crate::studio::commands::{Command, PlanCommand};
-    use crate::studio::panels::settings::sections_of;
+    use crate::studio::panels::settings::values::sections_of;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

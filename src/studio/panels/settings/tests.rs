@@ -12,7 +12,7 @@ use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::testing::{self, Sent, set};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 use snakes_core::evolve::{Settings, fields, with_field, with_fields};
-use snakes_core::schema::{NumberRange, Parts, SettingKind, list};
+use snakes_core::schema::{ListedSetting, NumberRange, Parts, Section, SettingKind, list};
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::studio::state::current_run::CurrentRun;
 use snakes_core::evolve::{Settings, fields};
-use snakes_core::schema::{Choices, ListedSetting, list};
+use snakes_core::schema::{Choices, ListedSetting, Section, list};
 use snakes_core::score::Trial;
 use snakes_core::world::PhysicsEngine;
 
@@ -117,6 +117,14 @@ pub fn every_setting() -> Vec<ListedSetting> {
     let mut settings = Settings::default();
     settings.trial.ground = Some(settings.trial.surface.clone());
     list(&settings)
+}
+
+/// The sections of these settings, in order.
+pub fn sections_of<'a>(listed: impl IntoIterator<Item = &'a ListedSetting>) -> Vec<Section> {
+    let mut sections: Vec<Section> = listed.into_iter().map(|listed| listed.section).collect();
+    // Settings of one section are adjacent.
+    sections.dedup();
+    sections
 }
 
 /// Parses a list: `[1, 2]`.
