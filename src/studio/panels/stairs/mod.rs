@@ -2,6 +2,7 @@
 
 mod choice;
 mod codes;
+mod edit;
 mod profile;
 mod random;
 mod table;
@@ -23,6 +24,7 @@ use snakes_core::world::Stairs;
 pub(super) use choice::stairs_choice;
 use choice::{name_of, replacement};
 use codes::codes;
+use edit::StairsEdit;
 use profile::{Grab, Profile};
 use random::RandomStairs;
 use table::table;
@@ -42,22 +44,6 @@ pub(super) struct StairsPanel {
     pointed: Option<u32>,
     name: OwnName,
     random: RandomStairs,
-}
-
-/// A change of the stairs by one of the panel's parts.
-#[derive(Debug, Clone, PartialEq)]
-struct StairsEdit {
-    /// The stairs after it.
-    stairs: Stairs,
-    /// Whether it is complete, or a drag is still going on.
-    is_complete: bool,
-}
-
-impl StairsEdit {
-    /// A change that is complete.
-    fn complete(stairs: Stairs) -> Self {
-        Self { stairs, is_complete: true }
-    }
 }
 
 impl StairsPanel {

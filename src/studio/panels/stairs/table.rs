@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::StairsEdit;
+use super::edit::StairsEdit;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::short;
 use crate::studio::ui::text_rows::explain;
