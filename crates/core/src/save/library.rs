@@ -12,6 +12,7 @@ mod list;
 mod moving;
 mod name;
 mod notes;
+mod place;
 mod problem;
 mod shipped;
 mod thumbnail;
@@ -21,9 +22,10 @@ pub use change::{DELETED, FileStep, delete, duplicate, rename};
 pub use details::{
     ChampionDetails, EntryDetails, RunDetails, load_entry, read_entry, shipped_champions,
 };
-pub use list::{LibraryEntry, SavePlace, list};
+pub use list::{LibraryEntry, list};
 pub use name::{check_entry_name, plain_name};
 pub use notes::{read_notes, set_notes_text};
+pub use place::SavePlace;
 pub use problem::EntryProblem;
 pub use thumbnail::Thumbnail;
 pub use transfer::{EXPORTS, export, import, run_of_plan};

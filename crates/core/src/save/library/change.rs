@@ -5,10 +5,10 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::details::{path_in_errors, text_of_champion};
-use super::list::SavePlace;
 use super::moving::{move_entry, taken};
 use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
 use super::notes::{add_copy, name_run, set_notes};
+use super::place::SavePlace;
 use crate::check::Invalid;
 use crate::save::lock::Lock;
 use crate::save::whole_file::prepare_folder;

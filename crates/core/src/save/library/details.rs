@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::list::SavePlace;
+use super::place::SavePlace;
 use super::shipped::{SHIPPED, shipped_text};
 use super::thumbnail::Thumbnail;
 use crate::Engine;

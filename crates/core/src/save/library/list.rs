@@ -2,55 +2,17 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use super::name::{NOTES_ENDING, notes_beside};
 use super::notes::read_notes;
+use super::place::SavePlace;
 use super::shipped::SHIPPED;
 use crate::save::files::modified;
 use crate::save::plan::RUN_FILE;
 use crate::save::record::LOG_FILE;
 use crate::save::{EntryNotes, SaveError, SavesFolder};
-
-/// The place of a library entry.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum SavePlace {
-    /// A champion that is part of the program, by name; read-only.
-    Shipped(&'static str),
-    /// A champion's file.
-    Champion(PathBuf),
-    /// A run's folder.
-    Run(PathBuf),
-}
-
-impl SavePlace {
-    /// Its name: that of the file without its extension, or that of the folder.
-    pub fn name(&self) -> String {
-        let part = match self {
-            Self::Shipped(name) => return (*name).to_owned(),
-            Self::Champion(path) => path.file_stem(),
-            Self::Run(path) => path.file_name(),
-        };
-        part.unwrap_or_default().to_string_lossy().into_owned()
-    }
-
-    /// The path of its file or folder, if it has one.
-    pub fn path(&self) -> Option<&Path> {
-        match self {
-            Self::Shipped(_) => None,
-            Self::Champion(path) | Self::Run(path) => Some(path),
-        }
-    }
-
-    /// The run's folder, if it is a run.
-    pub fn run(&self) -> Option<&Path> {
-        match self {
-            Self::Run(path) => Some(path),
-            Self::Shipped(_) | Self::Champion(_) => None,
-        }
-    }
-}
 
 /// A library entry, without its contents.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::change::FileStep;
-use super::list::SavePlace;
 use super::name::notes_beside;
+use super::place::SavePlace;
 use crate::check::Invalid;
 use crate::save::SaveError;
 use crate::save::notes::{EntryNotes, notes_in_run};

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::change::FileStep;
 use super::details::{text_of_champion, text_of_file};
-use super::list::SavePlace;
 use super::moving::{move_new, taken};
 use super::name::{ENDING, free_path, plain_name};
 use super::notes::add_copy;
+use super::place::SavePlace;
 use crate::save::files::read_bytes;
 use crate::save::lock::{LOCK_FILE, Lock, OWNER_FILE};
 use crate::save::plan::{RUN_FILE, load_plan};
