@@ -28,13 +28,13 @@ pub(crate) use declare::{listed_values, named_by_info, named_values, setting_gro
 pub use display::DisplayUnit;
 pub use parts::Parts;
 pub use per_part::PerPart;
-pub use setting::{NumberRange, Setting, SettingKind, SettingRow};
+pub use setting::{Need, NumberRange, Setting, SettingKind, SettingRow};
 pub use setting::{
     absent, choice, list_of_numbers, number, optional_per_part, per_part, switch, whole,
 };
 pub use table::markdown;
 pub use value::{SettingField, SettingValue};
-pub use walk::{ListedSetting, Need, Section, SettingGroup, SettingVisitor, Walk, walk};
+pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
 
 /// Whether a value is the default of its type.
 ///

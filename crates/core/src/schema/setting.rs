@@ -6,7 +6,6 @@ use std::ops::RangeInclusive;
 use super::display::DisplayUnit;
 use super::parts::Parts;
 use super::value::SettingValue;
-use super::walk::Need;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
 
@@ -64,6 +63,11 @@ pub struct NumberRange {
     /// The value with which an optional setting begins; none: the setting is not optional.
     pub begins_with: Option<f32>,
 }
+
+/// Something of a run without which some settings have no effect, such as soft limbs; the text says what. A row names what
+/// its setting needs, and a group that knows the run says whether it has that ([`Walk::meet`](super::Walk::meet)).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Need(pub &'static str);
 
 /// The row of a setting whose field is a `T`.
 #[derive(Debug, Clone, Copy)]

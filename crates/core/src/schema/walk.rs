@@ -1,6 +1,6 @@
 //! The way through all settings: groups, sections, and one visit for each field.
 
-use super::setting::{Setting, SettingRow};
+use super::setting::{Need, Setting, SettingRow};
 use super::value::{SettingField, SettingValue};
 use crate::check::Invalid;
 
@@ -12,11 +12,6 @@ pub struct Section {
     /// A sentence about these settings.
     pub about: &'static str,
 }
-
-/// Something of a run without which some settings have no effect, such as soft limbs; the text says what. A row names what
-/// its setting needs, and a group that knows the run says whether it has that ([`Walk::meet`]).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Need(pub &'static str);
 
 /// A struct of settings.
 pub trait SettingGroup {
