@@ -1,9 +1,7 @@
 //! Examinations of a champion: the same genome in many other conditions than those in which it evolved.
 
-mod stairs_grid;
 mod suites;
 
-pub use stairs_grid::{StairsCell, StairsGrid};
 pub use suites::varied;
 
 use serde::{Deserialize, Serialize};

@@ -18,15 +18,14 @@ mod recording;
 mod repeats;
 mod rollout;
 mod scored;
+mod stairs_grid;
 mod trial;
 mod way_up;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
 pub use evaluation::Evaluation;
-pub use exam::{
-    ExamCondition, ExamEnd, ExamSuite, StairsCell, StairsGrid, SuiteResult, median, varied,
-};
+pub use exam::{ExamCondition, ExamEnd, ExamSuite, SuiteResult, median, varied};
 pub use fitness::{FITNESS_RANGE, Fitness, arrived_y_m};
 pub use history::KeyframeHistory;
 pub use mirrored::MirroredRollout;
@@ -35,6 +34,7 @@ pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::Rollout;
 pub use scored::{Scored, evaluate, score, score_together};
+pub use stairs_grid::{StairsCell, StairsGrid};
 pub use trial::Trial;
 
 pub use crate::schema::PerPart;

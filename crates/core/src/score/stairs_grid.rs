@@ -1,7 +1,6 @@
 //! The exam on other stairs as a grid of rise and tread: how often a champion lands in each cell, and a typical trial.
 
-use super::{ExamCondition, ExamEnd, ExamSuite, median};
-use crate::score::Trial;
+use super::{ExamCondition, ExamEnd, ExamSuite, Trial, median};
 
 /// The results of a suite of [`ExamSuite::OF_STAIRS`] by rise and tread.
 #[derive(Debug, Clone, PartialEq)]
