@@ -7,8 +7,10 @@
 
 mod body;
 mod bounce;
+mod building_codes;
 mod contact;
 mod damping;
+mod discontinuity;
 mod effort;
 mod energy;
 mod health;
@@ -17,6 +19,7 @@ mod mount;
 mod physics;
 mod plan;
 mod pull;
+mod shove;
 mod simulation;
 mod soft_limb;
 mod stair_profile;
@@ -26,6 +29,8 @@ mod torque;
 mod turning;
 
 pub use body::{BodyPlan, JointPlan, PartPlan, SpringPlan, neighbours_pass};
+pub use building_codes::{BUILDING_CODES, BuildingCode, TRUE_MM_PER_M};
+pub use discontinuity::Discontinuity;
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
@@ -38,15 +43,16 @@ pub use plan::WorldPlan;
 pub use pull::Pull;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
+pub use shove::Shove;
 pub use simulation::mirror::LimbState;
 pub use simulation::observe::{ContactForce, JointState};
 pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{Discontinuity, LANES, LockStep, SeenPoint, Shove, Simulation};
+pub use simulation::{LANES, LockStep, SeenPoint, Simulation};
 pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
 };
 pub use stair_profile::ClimbProgress;
-pub use stairs::{BUILDING_CODES, BuildingCode, StairBox, StairSolid, Stairs, TRUE_MM_PER_M};
+pub use stairs::{StairBox, StairSolid, Stairs};
 pub use surface::{ERP_TIME_S, Skin, Surface};
 pub use torque::JointTorque;

@@ -28,10 +28,8 @@ use super::stair_profile::StairProfile;
 use super::torque::{AppliedTorque, JointTorque};
 use super::{BodyPlan, Disqualification, Effort, HealthLimits, PhysicsWorld, Pull, WorldPlan};
 use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
-pub use continued::Discontinuity;
 use lanes::LanesWorld;
 pub use lanes::{LANES, LockStep, SeenPoint};
-pub use shove::Shove;
 
 /// A running world. A clone continues with the bits of the original.
 pub struct Simulation {

@@ -1,14 +1,10 @@
 //! The staircase: its shape, and the meaning of a position on it.
 
-mod codes;
 mod editing;
 mod limits;
 mod shape;
 
-pub use codes::{BUILDING_CODES, BuildingCode, TRUE_MM_PER_M};
 pub use shape::{StairBox, StairSolid};
-
-use limits::GROUND_M;
 
 use crate::check::Invalid;
 use crate::schema::{
@@ -111,6 +107,9 @@ impl SettingGroup for Stairs {
         self.check_shape()
     }
 }
+
+/// A height over the ground below which a tread is the ground itself, in metres: sums of rises are not exact.
+const GROUND_M: f32 = 1.0e-4;
 
 impl Stairs {
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.

@@ -1,48 +1,9 @@
-//! A shove: a limb's velocity changes at one moment, as if something had hit it.
+//! Shoves a limb of a running world.
 
 use rapier3d::prelude::RigidBody;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Simulation;
-use crate::check::{Invalid, within};
-use crate::world::Vector;
-
-/// A sudden change of a limb's velocity. It turns the limb no faster and acts on no other limb, except through the joints.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Shove {
-    /// Index of the limb; the head is 0.
-    pub limb: usize,
-    /// When it happens, in s from the start. It acts before the step that begins then.
-    pub at_s: f32,
-    /// What it adds to the limb's velocity, in m/s.
-    #[serde(serialize_with = "write_vector", deserialize_with = "read_vector")]
-    pub change_m_s: Vector,
-}
-
-impl Shove {
-    /// Checks every value.
-    ///
-    /// # Errors
-    /// A value that no exam draws.
-    pub fn check(&self) -> Result<(), Invalid> {
-        within("limb", self.limb, 0..=1000)?;
-        within("at_s", self.at_s, 0.0..=1.0e4)?;
-        self.change_m_s
-            .to_array()
-            .into_iter()
-            .try_for_each(|change_m_s| within("change_m_s", change_m_s, -1.0e3..=1.0e3))
-    }
-}
-
-/// A vector as the list of its three coordinates.
-fn write_vector<S: Serializer>(vector: &Vector, serializer: S) -> Result<S::Ok, S::Error> {
-    vector.to_array().serialize(serializer)
-}
-
-fn read_vector<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vector, D::Error> {
-    <[f32; 3]>::deserialize(deserializer).map(Vector::from_array)
-}
+use crate::world::Shove;
 
 impl Simulation {
     /// Shoves a limb now. A limb that does not exist is not shoved. The energy that the shove brings or takes is no gain

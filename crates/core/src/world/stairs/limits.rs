@@ -1,14 +1,12 @@
 //! Limits between the settings of a staircase: what can be built.
 
-use super::{Stairs, no_slope};
+use super::{GROUND_M, Stairs, no_slope};
 use crate::check::Invalid;
 use crate::schema::PerPart;
 
 /// Least height of a step over the one below it, or below it, in metres. Below a centimetre the engine's tolerances are
 /// as high as the step.
 const LEAST_RISE_M: f32 = 0.01;
-/// A height over the ground below which a tread is the ground itself, in metres: sums of rises are not exact.
-pub(super) const GROUND_M: f32 = 1.0e-4;
 /// Least depth of the flat part of a tread, in metres.
 const LEAST_FLAT_M: f32 = 0.1;
 /// Least depth of a slope, in metres: a shallower one would be a board without depth.
