@@ -85,6 +85,8 @@ pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
 pub mod hex_hash {
     use serde::{Deserialize, Deserializer, Serializer, de};
 
+    use crate::check::hash_of;
+
     #[expect(missing_docs, reason = "serde asks for it")]
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
     pub fn serialize<S: Serializer>(hash: &u64, serializer: S) -> Result<S::Ok, S::Error> {
@@ -93,7 +95,7 @@ pub mod hex_hash {
 
     #[expect(missing_docs, reason = "serde asks for it")]
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
-        super::hash_of("hash", &String::deserialize(deserializer)?).map_err(de::Error::custom)
+        hash_of("hash", &String::deserialize(deserializer)?).map_err(de::Error::custom)
     }
 }
 
