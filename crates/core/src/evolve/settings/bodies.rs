@@ -1,29 +1,23 @@
 //! Checks of the settings of a run in which bodies evolve.
 
-use super::Settings;
+use super::{Settings, StrategyKind, are_limbs_soft};
 use crate::check::Invalid;
-use crate::genome::BodySpace;
 use crate::schema::Choices;
-use crate::score::{AgentSettings, Fitness, Trial};
+use crate::score::{Fitness, Trial};
 use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
 
 /// Room on the landing beside the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
-
-/// Whether the limbs of the snakes are soft.
-pub(super) fn are_limbs_soft(bodies: &BodySpace, agent: &AgentSettings) -> bool {
-    if bodies.vary { bodies.soft } else { agent.youngs_modulus_pa.is_some() }
-}
 
 impl Settings {
     /// Checks that strategy, controller and trial go with evolving bodies, if bodies evolve.
     pub(super) fn check_bodies(&self) -> Result<(), Invalid> {
         let (strategy, varies) = (self.evolution.strategy, self.genome.bodies.vary);
         if strategy.info().varies_bodies != varies {
-            let names = super::StrategyKind::ALL.into_iter();
+            let names = StrategyKind::ALL.into_iter();
             let fitting: Vec<&str> = names
                 .filter(|kind| kind.info().varies_bodies == varies)
-                .map(super::StrategyKind::name)
+                .map(StrategyKind::name)
                 .collect();
             let state =
                 if varies { "while bodies evolve" } else { "unless genome.bodies.vary is true" };
@@ -92,7 +86,7 @@ impl Settings {
             self.evolution.islands = Default::default();
         }
         if self.evolution.strategy.info().evolves_stairs {
-            self.trial.fitness = crate::score::Fitness::Share;
+            self.trial.fitness = Fitness::Share;
             let poet = &mut self.evolution.poet;
             (poet.pair_candidates, poet.learn_generations, poet.transfers) = (4, 1, 1);
         }
@@ -102,7 +96,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{StrategyKind, with_fields};
+    use crate::evolve::with_fields;
     use crate::genome::ControllerKind;
 
     #[test]
