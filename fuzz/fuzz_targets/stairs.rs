@@ -10,7 +10,7 @@ fuzz_target!(|text: &str| match parse_stairs(Path::new("x"), text) {
     Ok(named) => {
         let stairs = named.stairs;
         assert_eq!(snakes_core::schema::check(&stairs), Ok(()));
-        // What is built from an allowed file is finite, and its surface is nowhere below the ground.
+        // Stairs from an allowed file are finite, and their surface is nowhere below the ground.
         for solid in stairs.solids() {
             assert!(solid.half_m.min_element() > 0.0 && solid.pose.translation.is_finite(), "{solid:?}");
         }

@@ -128,7 +128,7 @@ pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, Py
     Ok(run)
 }
 
-/// What `snakes replay FILE --no-render --json` prints; `matches` is false if the record differs.
+/// The result that `snakes replay FILE --no-render --json` prints; `matches` is false if the record differs.
 #[pyfunction]
 pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
     let mut out = Vec::new();
@@ -146,7 +146,7 @@ pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>
 
 #[pymethods]
 impl Champion {
-    /// Everything in the file but the poses.
+    /// The champion as a dictionary: the whole file without the poses.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.json()?)
     }

@@ -51,7 +51,7 @@ pub fn whole(field: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<u64>) 
     whole_as(field, value, range, &allowed)
 }
 
-/// The same with other words for what is allowed.
+/// A whole number of a range. An error says `allowed` instead of the limits of the range.
 pub fn whole_as(
     field: &str,
     value: &Bound<'_, PyAny>,

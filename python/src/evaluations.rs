@@ -96,7 +96,7 @@ impl Evaluations {
         self.scored.len()
     }
 
-    /// So that results travel between processes, with all their bits.
+    /// Packs the results for pickle, so that they travel between processes with all their bits.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
         let packed = |(scored, genome): (&Scored, &u64)| PackedResult {
             genome: *genome,

@@ -35,7 +35,7 @@ pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(dictionary)
 }
 
-/// What a problem is for, which decides the settings that have an effect.
+/// The purpose of a problem, which decides the settings that have an effect.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
     Environment,

@@ -10,7 +10,7 @@ use snakes_lab::run::caught;
 
 use crate::errors::{crashed, invalid};
 
-/// What an action says of each joint axis.
+/// The meaning of an action's number for each joint axis.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ActionKind {
     /// The angle that the servo pulls to, in radians.
@@ -19,7 +19,7 @@ pub enum ActionKind {
     Torques,
 }
 
-/// What all worlds of an environment have in common.
+/// The rules that all worlds of an environment share.
 pub struct WorldRules {
     pub trial: Trial,
     /// Gives the snake its body; its controller is never asked.
@@ -75,7 +75,7 @@ impl WorldRules {
     }
 }
 
-/// What a step led to.
+/// The outcome of a step.
 #[derive(Clone, Copy, Default)]
 pub struct StepResult {
     pub reward: f64,

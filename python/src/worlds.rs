@@ -26,7 +26,7 @@ pub struct Worlds {
     limits: Arc<[f32]>,
     senses: usize,
     worlds: Vec<Option<World>>,
-    /// What the worlds sense, one row each.
+    /// The readings of the senses, one row for each world.
     sensed: Array2<f32>,
     threads: usize,
     /// The pool, and the process that started it: threads do not survive a fork.

@@ -8,7 +8,7 @@ use super::error::CliError;
 use snakes_lab::run::Evaluator;
 
 /// The evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
-/// results: the same command in the same place finds what is left of it there.
+/// results: the same command in the same place finds the work that an interrupted one has left there.
 pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
     if args.workers.nats.is_none() {
         return args.local_evaluator();

@@ -22,7 +22,8 @@ use snakes_lab::study::poet::{
     hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
 };
 
-/// Seed of the run unless one is given: no setting was chosen by it or by those of the direct searches after it.
+/// Seed of the run unless one is given. No setting was chosen by this seed or by the seeds of the direct searches after
+/// it.
 const FIRST_SEED: u64 = 401;
 /// Rounds of the run unless a number is given.
 const ROUNDS: u32 = 100;

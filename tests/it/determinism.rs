@@ -1,4 +1,4 @@
-//! The same seed and settings give the same bits.
+//! Runs with equal seed and settings give equal bits.
 //!
 //! `cargo test --release --test it golden -- --ignored` writes the golden values to
 //! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in

@@ -19,10 +19,10 @@ use snakes_lab::run::{LocalPool, RecordedRun, RunControl, RunSource};
 
 use super::program::{folder, json_lines, run, snakes, with_slashes};
 
-/// So short that most of the time goes into writing.
+/// Flags of a run so short that most of the time goes into writing.
 const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
                     --threads 2";
-/// What lets bodies evolve in such a run.
+/// Settings with which bodies evolve in such a run.
 const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
 
 /// Stairs that rise and fall every few generations.
@@ -34,7 +34,7 @@ const WITH_LADDER: &str = "--set stairs.steps=1 --set first_riser_y_m=-2.2 --set
 const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=2000";
 const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
 
-/// What lets creatures evolve in such a run.
+/// Settings with which creatures evolve in such a run.
 const WITH_CREATURES: &str =
     "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
 

@@ -1,4 +1,4 @@
-//! The same bits with other compiler settings, on other processors, and under a memory checker.
+//! The program computes the same bits with other compiler settings, on other processors, and under a memory checker.
 //!
 //! Building and emulation take about half an hour on two cores:
 //!

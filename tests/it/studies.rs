@@ -48,7 +48,7 @@ fn a_study_killed_after_a_run_continues_to_the_same_files() {
     assert_eq!(String::from_utf8_lossy(&output.stdout).replace("killed", "whole"), text);
     let [whole, killed] = ["whole", "killed"].map(|name| written(&folder.path().join(name)));
     assert!(whole == killed, "all files have the same bytes");
-    // Nothing is left to do, and JSON has the same runs.
+    // The whole study has no work left, and JSON has its runs.
     let lines = json_lines(folder.path(), &format!("{} --json", arguments("whole", 2)));
     assert_eq!((&lines[0]["type"], &lines[0]["arm"]), (&json!("run"), &json!("zcs")));
     assert_eq!(lines[0]["seed"], json!(201));

@@ -49,7 +49,7 @@ enum Command {
     Best,
 }
 
-/// What a page has begun.
+/// The replay and the evolution that a page has begun.
 #[derive(Default)]
 pub struct Page {
     replay: Option<Replay>,

@@ -108,7 +108,7 @@ impl Broker {
 
     /// The largest message that the server takes, in bytes.
     pub(super) fn largest_message(&self) -> usize {
-        // The rest is for headers.
+        // The remaining 4 KiB of a message are for headers.
         self.client.server_info().max_payload.saturating_sub(4096)
     }
 

@@ -15,9 +15,9 @@ const LONGEST_MESSAGE: usize = 4000;
 /// The outcome of a task.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Of a genome in a trial.
+    /// The outcome of a genome in a trial.
     Scored(EvaluationResult),
-    /// Of a condition of an exam.
+    /// The outcome of a condition of an exam.
     Examined(ExamEnd),
     /// The worker could not read the task.
     Refused(String),

@@ -24,7 +24,7 @@ impl Invalid {
         Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// The same error about a field inside `parent`.
+    /// This error with its field named inside `parent`.
     pub fn inside(mut self, parent: &str) -> Self {
         self.field = format!("{parent}.{}", self.field);
         self

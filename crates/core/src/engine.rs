@@ -48,7 +48,7 @@ impl Engine {
 }
 
 impl Processors {
-    /// Those of this machine.
+    /// The processors of this machine.
     pub const THIS: Self = if cfg!(any(
         all(target_arch = "x86_64", target_feature = "sse2"),
         all(target_arch = "wasm32", target_feature = "simd128")

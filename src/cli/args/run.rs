@@ -138,7 +138,7 @@ impl Args {
         let with = |changes: &[(&str, String)]| {
             with_fields(&settings, changes.iter().map(|(name, value)| (*name, value.as_str())))
         };
-        // Those of --set are the last.
+        // The changes of --set come last.
         let of_flags = changes.len() - self.run.settings.set.len();
         let changed = with(&changes).map_err(|invalid| {
             // An error that is there without --set, too, comes from another flag.

@@ -5,7 +5,7 @@
 pub(crate) enum Turn {
     /// The next champion; after the last, the first.
     Next,
-    /// The one before; before the first, the last.
+    /// The champion before this one; before the first, the last.
     Previous,
     /// The first.
     First,

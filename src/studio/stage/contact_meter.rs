@@ -34,7 +34,7 @@ struct ContactSample {
     damping: Vec<SurfaceDamping>,
 }
 
-/// What limbs do on a surface, over [`SPAN_S`].
+/// Readings of the contacts of limbs with a surface, over [`SPAN_S`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceReading {
     /// Number of limbs that touched it.
@@ -107,7 +107,9 @@ impl ContactMeter {
         self.reading(is_playing, |patch| is_meant(patch.touched), is_damping)
     }
 
-    /// The same for one limb, without the damping of surfaces.
+    /// Reading of the surfaces for which `is_meant` holds, at one limb and without the damping of surfaces; `None` if the
+    /// limb has not touched them. While the stage plays, it changes eight times per simulated second; paused, it is that
+    /// of the shown moment.
     pub fn limb(
         &self,
         is_playing: bool,

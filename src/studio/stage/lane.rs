@@ -101,7 +101,7 @@ impl Lane {
         self
     }
 
-    /// The same lane as a ghost.
+    /// This lane as a ghost.
     #[cfg(test)]
     pub fn into_ghost(self) -> Self {
         Self { is_ghost: true, ..self }

@@ -43,7 +43,7 @@ pub(super) enum StageMode {
     Solo,
     /// Several snakes side by side.
     Race,
-    /// The same snake in its own world and in changed ones, in the order of the changes.
+    /// One snake in its own world and in changed ones, in the order of the changes.
     WhatIf {
         /// Plan of the next run before the first change.
         before: Box<RunPlan>,
@@ -125,7 +125,7 @@ pub(super) fn lanes(champions: Vec<StagedChampion>, mode: &StageMode) -> (Vec<La
     lanes_after(champions, mode, &mut [])
 }
 
-/// The same with what earlier lanes have computed.
+/// Builds lanes for champions as [`lanes`] does, with the steps that earlier lanes have computed.
 fn lanes_after(
     champions: Vec<StagedChampion>,
     mode: &StageMode,
@@ -200,7 +200,7 @@ fn put_on_stage(
     let mut outdated: Vec<(Entity, Mut<Lane>)> = entities.into_iter().zip(earlier).collect();
     *on_stage = if lanes.len() > 1 { mode } else { StageMode::Solo };
     for lane in lanes {
-        // What surrounds a lane of a what-if stays on the stage while another lane changes.
+        // The other lanes of a what-if stay on the stage while one lane changes.
         let stays = matches!(*on_stage, StageMode::WhatIf { .. });
         match outdated.iter().position(|(_, earlier)| stays && earlier.is_like(&lane)) {
             Some(index) => *outdated.swap_remove(index).1 = lane,

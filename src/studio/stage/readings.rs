@@ -17,7 +17,7 @@ pub(crate) struct Readings {
     pub speeds_m_s: Vec<f32>,
     /// Energy that the snake has lost since the start; unknown for a recording and after a pull.
     pub energy_lost: Option<EnergyLost>,
-    /// What the limbs did on the surfaces in the last moments; empty for a recording and for a ghost.
+    /// Contacts of the limbs with the surfaces in the last moments; empty for a recording and for a ghost.
     pub meter: ContactMeter,
 }
 

@@ -107,12 +107,12 @@ impl StagedChampion {
         Self { source: ChampionSource::Edited, ..Self::from_run(champion, 0) }
     }
 
-    /// The same champion under another name.
+    /// This champion under another name.
     pub fn named(self, name: String) -> Self {
         Self { name, ..self }
     }
 
-    /// The same champion in another world. The genome may not fit there: see [`Self::check`].
+    /// This champion in another world. The genome may not fit there: see [`Self::check`].
     pub fn in_world(&self, trial: &Trial, what_is_other: String) -> Self {
         if *trial == self.champion.trial {
             return self.as_found();
@@ -120,7 +120,7 @@ impl StagedChampion {
         self.changed(trial, what_is_other, Beginning::Start)
     }
 
-    /// The same champion in another world from a moment of its rollout on; from the start without one, or if the state
+    /// This champion in another world from a moment of its rollout on; from the start without a moment, or if the state
     /// at that moment does not fit the other world.
     pub fn in_world_from(
         &self,
@@ -144,7 +144,7 @@ impl StagedChampion {
         Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
     }
 
-    /// The same champion in a trial of its exam, on other stairs in words.
+    /// This champion in a trial of its exam; `stairs` names the other stairs in words.
     pub fn on_stairs_of_exam(&self, trial: &Trial, stairs: String) -> Self {
         let (trial, beginning) = (trial.clone(), Beginning::Start);
         let world = ChangedWorld { trial, what_is_other: stairs, beginning, is_of_exam: true };
@@ -156,7 +156,7 @@ impl StagedChampion {
         matches!(&self.shown_as, ShownAs::Changed(world) if world.is_of_exam)
     }
 
-    /// The same champion in the same world from the start.
+    /// This champion, shown in its present world from the start.
     pub fn shown_from_start(&self) -> Self {
         match &self.shown_as {
             ShownAs::Changed(world) => self.in_world(&world.trial, world.what_is_other.clone()),
@@ -224,12 +224,12 @@ impl StagedChampion {
         self.trial().check_genome(&self.champion.genome).map_err(|error| error.inside("genome"))
     }
 
-    /// The same champion in its own world.
+    /// This champion in its own world.
     pub fn as_found(&self) -> Self {
         Self { shown_as: ShownAs::Found, ..self.clone() }
     }
 
-    /// The same champion, simulated by this engine instead of played from a recording.
+    /// This champion, simulated by this engine instead of played from a recording.
     pub fn simulated(&self) -> Self {
         let shown_as = match &self.shown_as {
             ShownAs::Found if self.recording().is_some() => ShownAs::Simulated,

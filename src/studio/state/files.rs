@@ -173,7 +173,7 @@ fn request(question: &FileQuestion, paths: &[PathBuf]) -> Option<LibraryCommand>
     Some(match question {
         FileQuestion::Open => LibraryCommand::Replay(run_of_plan(first)),
         FileQuestion::Import => LibraryCommand::Import(paths.to_vec()),
-        // That is no task of the library.
+        // A question about a file to share is no task of the library.
         FileQuestion::Share(..) => return None,
         FileQuestion::Export(places) => {
             LibraryCommand::Export { places: places.clone(), to: Some(first.clone()) }

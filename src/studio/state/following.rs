@@ -40,7 +40,7 @@ pub(crate) struct Following {
 /// Plan of the next generations on the stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 enum FollowPlan {
-    /// None: the user's choice stays.
+    /// No plan: the user's choice stays.
     #[default]
     Nothing,
     /// Each generation that is better than all before it, until a snake lands.

@@ -101,7 +101,7 @@ impl MachinesLink {
         Ok(())
     }
 
-    /// The rest happens in the background.
+    /// Stops using the server at once; the rest of the disconnection happens in the background.
     fn disconnect(&mut self, run: &mut CurrentRun) {
         run.share(None);
         (self.watch, self.asked, self.state) = (None, None, LinkState::Off);

@@ -72,7 +72,7 @@ impl Milestones {
             // On a ladder, only on the stairs to which it leads.
             is_landed: report.on_landing > 0
                 && champion.evaluation.is_on_landing(&champion.trial.stairs),
-            // Those on stairs of their own would be shown on those of the run.
+            // Members on stairs of their own would be shown on the stairs of the run.
             members: match report.stairs {
                 Some(_) => Arc::default(),
                 None => snakes.map_or_else(Arc::default, members_to_show),

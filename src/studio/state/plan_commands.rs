@@ -14,7 +14,7 @@ use snakes_core::genome::ControllerKind;
 use snakes_core::schema::Choices;
 use snakes_core::score::Trial;
 
-/// What a choice of strategy or controller changed beside itself, in words.
+/// A notice of the setting that a choice of strategy or controller changed beside itself.
 fn partner_in_words((field, name): (&str, &str)) -> String {
     match field {
         "genome.controller" => match ControllerKind::named(field, name) {

@@ -1,4 +1,4 @@
-//! What-if: copies of the champion in changed worlds, beside the original.
+//! Copies of the champion in changed worlds beside the original, which answer the question "what if?".
 //!
 //! A change acts on the latest copy, which starts over from the moment of the change. A copy that stays beside the next
 //! one no longer changes.

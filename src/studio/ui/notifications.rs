@@ -201,7 +201,7 @@ impl Notices {
     ) -> (Option<egui::Rect>, Option<Command>) {
         // Older messages for which there is no room wait behind the later ones.
         let fitting = self.fitting(room.height());
-        // The rest is for the card's margins.
+        // The remaining width is for the card's margins.
         let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
         let (mut heights, mut taken) = (Vec::new(), None);
         let shown = egui::Area::new(egui::Id::new("notices"))

@@ -33,7 +33,7 @@ pub fn rounds() -> u64 {
     wanted.unwrap_or(1)
 }
 
-/// What a fault can reach.
+/// The parts of a test run that a fault can reach.
 struct Room {
     server: Server,
     workers: Vec<Process>,

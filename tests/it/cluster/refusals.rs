@@ -16,7 +16,7 @@ fn refusal(folder: &Path, arguments: &str) -> String {
     lines[0].to_owned()
 }
 
-/// What a coordinator and a worker say.
+/// The error lines of a coordinator and of a worker.
 fn refusals(folder: &Path, flags: &str) -> [String; 2] {
     let evolve = format!("--no-render --population 6 --generations 1 --duration 1 {flags}");
     [refusal(folder, &evolve), refusal(folder, &format!("worker {flags}"))]

@@ -53,7 +53,7 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The one line of an error, with its exit code.
+/// The only line of an error, with its exit code.
 fn refusal(output: &Output) -> (Option<i32>, String) {
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(text.lines().count(), 1, "{text}");

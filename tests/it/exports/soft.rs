@@ -9,7 +9,7 @@ use snakes_core::world::{SOFTEST_M4_S2, STIFFEST_M4_S2, WorldPlan, modulus_at_pa
 
 use super::models::{champion, compared_in_mujoco, description, export, log_between, random_trial};
 
-/// The same trial with soft limbs: each of a random modulus, from as soft as allowed to rigid.
+/// The trial with soft limbs: each of a random modulus, from as soft as allowed to rigid.
 fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
     let agent = &trial.agent;
     let modulus = |limb: usize| {

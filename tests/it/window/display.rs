@@ -305,7 +305,7 @@ impl Studio {
         self.program.lock().expect("no panic").try_wait().expect("a status")
     }
 
-    /// What the program has written to standard error, where its log goes.
+    /// The text that the program has written to standard error, where its log goes.
     pub fn log(&self) -> String {
         String::from_utf8_lossy(&fs::read(self.folder.path().join(LOG)).expect("a log"))
             .into_owned()

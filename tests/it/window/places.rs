@@ -194,7 +194,7 @@ impl Studio {
         self.scrolled_to_where(label, |place| place.role == role && place.label == label)
     }
 
-    /// The same for a control that meets a condition.
+    /// Waits for a control of the upper panels that meets a condition, scrolling until it is visible.
     pub fn scrolled_to_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
         let [top, below] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
         // In a low window all panels are side by side at full height.

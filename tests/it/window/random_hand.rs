@@ -151,7 +151,7 @@ fn assert_no_fault(log: &str) {
     assert!(faults.is_empty(), "the log has faults:\n{}", faults.join("\n"));
 }
 
-/// What has happened, for the report and for a failure.
+/// A record of the session, for the report and for a failure.
 struct Session {
     seed: u64,
     folder: PathBuf,

@@ -19,7 +19,7 @@ struct ActivityState {
     hosts: BTreeMap<String, String>,
     /// Runs for which batches were computed.
     computed: BTreeSet<String>,
-    /// Those of which the user was told.
+    /// Runs of which the user was told.
     told: BTreeSet<String>,
     /// Number of batches in work.
     busy: usize,

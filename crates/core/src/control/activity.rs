@@ -56,9 +56,9 @@ pub enum NodeColumn {
 /// A link from one node to another, by their places in the list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkLink {
-    /// Where it begins.
+    /// Index of the node at which the link begins.
     pub from: usize,
-    /// Where it ends.
+    /// Index of the node at which the link ends.
     pub to: usize,
     /// Factor of the signal.
     pub weight: f32,

@@ -17,7 +17,7 @@ pub struct Senses {
 impl Senses {
     /// The joints alone.
     pub const JOINTS: Self = Self { joints: true, surroundings: false, climb: false };
-    /// All that a snake has.
+    /// All senses that a snake has.
     pub const ALL: Self = Self { joints: true, surroundings: true, climb: false };
 }
 

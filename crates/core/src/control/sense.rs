@@ -161,7 +161,7 @@ setting_group! {
 }
 
 impl ActiveSenses {
-    /// None but the joints' own.
+    /// No senses but the joints' own.
     pub const NONE: Self = Self { sight: false, touch: false, balance: false };
 
     /// Whether an organ works.

@@ -12,7 +12,7 @@ pub struct IndividualId {
 /// The parents of an individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parents {
-    /// None: its genome was drawn at random.
+    /// No parents: the genome was drawn at random.
     None,
     /// One, of which it is a copy, varied or not.
     One(IndividualId),

@@ -102,7 +102,7 @@ impl StairsNode {
     pub fn check(&self, index: usize, round: u32, plan: &RunPlan) -> Result<(), Invalid> {
         check(&self.stairs)?;
         check_score("score", self.score)?;
-        // Those before it; the root has none.
+        // The parent comes before its child; the root has none.
         if self.parent.is_none_or(|parent| parent as usize >= index) != (index == 0) {
             let found = self.parent.map_or("none".to_owned(), |parent| parent.to_string());
             return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
@@ -163,7 +163,7 @@ impl StairsCount {
         }
     }
 
-    /// In words.
+    /// These counts in words.
     pub fn words(self) -> String {
         let Self { rounds, all, active, solved, challenges } = self;
         let round = rounds.saturating_add(1);

@@ -42,8 +42,8 @@ pub trait Strategy: Send {
     /// Learns from the candidates that the last `ask` returned and their evaluations, in the same order.
     fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]);
 
-    /// Forgets the values of all generations so far, with which those of later ones cannot be compared, because a ladder may
-    /// put them on other stairs. A search that ends when its values no longer change would end too early.
+    /// Forgets the values of all generations so far. A ladder may put later generations on other stairs, whose values do
+    /// not compare with earlier ones; a search that ends when its values no longer change would end too early.
     fn forget_values(&mut self) {}
 
     /// Whether it learns from the experience of episodes, beside their evaluations.
@@ -55,8 +55,8 @@ pub trait Strategy: Send {
     /// evaluations. An evaluation that failed has none.
     fn learn(&mut self, _episodes: Vec<Option<Episode>>) {}
 
-    /// Everything it has learned: together with settings, seed and the number of finished generations, enough to
-    /// continue bit for bit.
+    /// The state of the strategy: everything that it has learned. Together with settings, seed and the number of finished
+    /// generations, it is enough to continue bit for bit.
     fn state(&self) -> StrategyState;
 
     /// Adopts the settings of a plan in which some have changed that

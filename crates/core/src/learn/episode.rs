@@ -10,11 +10,11 @@ use crate::check::{Invalid, within};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Episode {
-    /// Of a table.
+    /// The experience of a table.
     Table(Vec<Transition>),
-    /// Of a system of rules: its decisions, and how the episode ended.
+    /// The experience of a system of rules: its decisions, and how the episode ended.
     Rules(Vec<RecordedDecision>, EpisodeEnd),
-    /// Of the system of rules at each joint, from the head: decisions and end as of [`Self::Rules`].
+    /// The experience of the system of rules at each joint, from the head: its decisions, and how the episode ended.
     Joints(Vec<(Vec<RecordedDecision>, EpisodeEnd)>),
 }
 

@@ -29,7 +29,7 @@ pub fn converted(mut trial: Trial) -> Trial {
     }
     let skin = &mut trial.agent.skin;
     convert_softness(&mut skin.soft_erp, &mut skin.soft_cfm_m_s_per_n, steps_per_s);
-    // The same stiffness. The damping of a soft joint follows it, because joints have no ERP of their own.
+    // The joints keep their stiffness. The damping of a soft joint follows it, because joints have no ERP of their own.
     let stiffer = 1.0 / (ERP_TIME_S * steps_per_s);
     trial.agent.joint_cfm_m_s_per_n =
         trial.agent.joint_cfm_m_s_per_n.map(|cfm| (cfm * stiffer).min(MOST_JOINT_CFM));
@@ -62,7 +62,7 @@ fn convert_softness(erp: &mut f32, cfm_m_s_per_n: &mut f32, steps_per_s: f32) {
         *erp = (1.0 - libm::powf(1.0 - *erp, steps)).max(LEAST_ERP);
         return;
     }
-    // The same spring ERP / (h CFM) and the same damper (1 - ERP) / CFM.
+    // The conversion keeps the spring ERP / (h CFM) and the damper (1 - ERP) / CFM.
     let stiff = *erp * steps;
     let new_erp = stiff / (stiff + 1.0 - *erp);
     *cfm_m_s_per_n = (*cfm_m_s_per_n * new_erp / stiff).min(MOST_CFM);

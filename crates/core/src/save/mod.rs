@@ -3,7 +3,8 @@
 //!
 //! The outermost type of a file is one of this module; what it contains are mostly types of the core, written as they
 //! are. From the first release on, every released format stays readable (see `v5`).
-//! Whatever is read is checked before it is used; an error names the file, the field, the value and what is allowed.
+//! Everything that is read is checked before it is used; an error names the file, the field, the value and the allowed
+//! values.
 
 mod champion;
 mod champion_exam;

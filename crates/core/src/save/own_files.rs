@@ -36,9 +36,9 @@ pub trait OwnKind: Clone {
         embedded_names(Self::EMBEDDED)
     }
 
-    /// Its name.
+    /// The name of the file.
     fn name(&self) -> &str;
-    /// The same under another name.
+    /// This file under another name.
     #[must_use]
     fn renamed(self, name: &str) -> Self;
     /// Reads one; `path` is the file's name in errors.
@@ -192,7 +192,7 @@ impl<T: OwnKind> KnownFiles<T> {
         &self.own
     }
 
-    /// The one with this name, if there is one.
+    /// The file with this name, if there is one.
     ///
     /// # Errors
     /// It is damaged: the error in one line.

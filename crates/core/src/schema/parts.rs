@@ -3,7 +3,7 @@
 /// The parts of the snake or the stairs that may have a value each, and their number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parts {
-    /// None: there is one value.
+    /// No parts: there is one value.
     One,
     /// The limbs.
     Limbs(usize),

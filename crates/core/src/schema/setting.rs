@@ -164,26 +164,26 @@ pub fn absent(label: &'static str, how: &'static str) -> SettingRow<()> {
 }
 
 impl<T> SettingRow<T> {
-    /// With the unit of files and flags. Panels show angles in degrees: see [`DisplayUnit::of_unit`].
+    /// Gives the setting the unit of files and flags. Panels show angles in degrees: see [`DisplayUnit::of_unit`].
     pub fn unit(mut self, unit: &'static str) -> Self {
         self.setting.unit = unit;
         self.setting.display = DisplayUnit::of_unit(unit);
         self
     }
 
-    /// That panels show only among the advanced settings of its section.
+    /// Lets panels show the setting only among the advanced settings of its section.
     pub fn advanced(mut self) -> Self {
         self.setting.is_advanced = true;
         self
     }
 
-    /// With a sentence, without its full stop, about its effect on the snake or on the search.
+    /// Gives the setting a sentence, without its full stop, about its effect on the snake or on the search.
     pub fn hint(mut self, hint: &'static str) -> Self {
         self.setting.hint = hint;
         self
     }
 
-    /// With a slider between these values.
+    /// Gives the setting a slider between these values.
     pub fn slider(mut self, least: f32, most: f32) -> Self {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.slider = Some([least, most]);
@@ -191,7 +191,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// With a slider that is logarithmic from a value up.
+    /// Makes the setting's slider logarithmic from a value up.
     pub fn logarithmic_from(mut self, value: f32) -> Self {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.logarithmic_from = Some(value);
@@ -199,7 +199,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// That has an effect only in runs that meet a need.
+    /// Restricts the effect of the setting to runs that meet a need.
     pub fn needs(mut self, need: Need) -> Self {
         self.need = Some(need);
         self
@@ -211,7 +211,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// That may not change during a run; the reason is a sentence.
+    /// Forbids changes of the setting during a run; the reason is a sentence.
     pub fn fixed(mut self, reason: &'static str) -> Self {
         self.setting.fixed = Some(reason);
         self

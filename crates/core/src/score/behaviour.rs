@@ -54,7 +54,7 @@ impl Behaviour {
     }
 }
 
-/// What the [`Behaviour`] at a moment needs to know of the rollout.
+/// Data about a moment of the rollout, from which its [`Behaviour`] is computed.
 #[derive(Debug, Clone, Copy)]
 pub struct BehaviourMoment {
     /// Position of the middle limb's centre, in m.

@@ -302,8 +302,10 @@ impl SuiteResult {
         }
     }
 
-    /// The result of the starts in the own engine, followed by the same starts in the other: of the latter, but with the share of
-    /// the way from the same start in the own engine, over those from which there is a way.
+    /// The result of an exam of the own engine against the other one. `ends` has the starts in the own engine, followed
+    /// by the same starts in the other. Counts and the median of steps are those of the other engine. `kept` is the
+    /// median of the way in the other engine as a share of the way from the same start in the own, over the starts from
+    /// which there is a way.
     fn between_engines(ends: &[ExamEnd]) -> Self {
         let (own, other) = ends.split_at(ends.len() / 2);
         let shares = own.iter().zip(other).filter(|(own, _)| own.way > 0.0);

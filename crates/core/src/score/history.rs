@@ -36,7 +36,8 @@ impl KeyframeHistory {
         Self::of_rollout(Rollout::new(genome, trial), goes_on)
     }
 
-    /// The same for a rollout at its start.
+    /// Runs a rollout from its start to its end. `goes_on` is called after every step with the step's number; if it
+    /// returns `false`, the result is `None`.
     pub fn of_rollout(mut rollout: Rollout, mut goes_on: impl FnMut(u32) -> bool) -> Option<Self> {
         let steps = rollout.last_step();
         let keyframe_steps = steps.div_ceil(MAX_KEYFRAMES).max(MIN_STEPS_BETWEEN_KEYFRAMES);

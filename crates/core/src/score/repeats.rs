@@ -26,8 +26,8 @@ setting_group! {
         champion_trials: u32 = 0;
         /// Maximum perturbation of the other trials.
         off: PerturbationRange = PerturbationRange::default();
-        /// Number of the list of a generation's perturbations, which its run draws; 0 for any other list. It is no
-        /// setting: a champion's file has that of its generation.
+        /// Number of the list of a generation's perturbations, which its run draws; 0 for any other list. No user sets
+        /// it: a champion's file has the number of its generation.
         #[serde(default, skip_serializing_if = "is_default")]
         list_number: u32 = 0;
     }
@@ -92,7 +92,7 @@ impl SettingGroup for Repeats {
 const LARGEST_LIST_NUMBER: u32 = 0xff_ffff;
 
 impl Repeats {
-    /// These repeats for a generation of a run with this seed.
+    /// The repeats of a generation of a run with this seed.
     #[must_use]
     pub fn in_generation(&self, seed: u64, generation: u32) -> Self {
         let list_number = match self.list {

@@ -60,7 +60,8 @@ impl Rollout {
         Self::in_world(genome, trial, trial.world_plan(genome))
     }
 
-    /// The same in a slightly different world.
+    /// Builds a perturbed form of the trial's world with the genome's body. Genome and trial must have passed their
+    /// checks.
     pub fn perturbed(genome: &Genome, trial: &Trial, perturbation: &Perturbation) -> Self {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
@@ -134,8 +135,9 @@ impl Rollout {
         self.simulation.common()
     }
 
-    /// The same with torques from outside instead of the genome's controller, one per joint from the head; a joint without
-    /// one is not driven. The evaluation then describes the controller outside.
+    /// Takes one step, unless the rollout is over, with torques from outside instead of the genome's controller, one per
+    /// joint from the head; a joint without one is not driven. Returns whether it took a healthy step. The evaluation
+    /// then describes the controller outside.
     pub fn advance_with(&mut self, torques: &[JointTorque]) -> bool {
         if self.is_over() {
             return false;
@@ -310,7 +312,7 @@ impl Rollout {
         episode.filter(|_| !self.is_disturbed)
     }
 
-    /// What the snake sensed before the last step; empty for a controller that does not sense its surroundings.
+    /// The snake's perception before the last step; empty for a controller that does not sense its surroundings.
     pub fn perception(&self) -> &Perception {
         self.control.perception()
     }
@@ -320,8 +322,8 @@ impl Rollout {
         self.control.active_senses()
     }
 
-    /// What the controller does at a joint, the first of which is 0; none before the first step, and for a controller that
-    /// has nothing to show.
+    /// The activity of the controller at a joint, the first of which is 0; none before the first step, and for a
+    /// controller that has nothing to show.
     pub fn activity(&self, joint: usize) -> Option<Activity> {
         self.control.activity(joint)
     }

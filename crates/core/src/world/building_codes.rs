@@ -11,7 +11,7 @@ pub const TRUE_MM_PER_M: f32 = 350.0;
 /// Rules for the rises and treads of stairs. All lengths are in millimetres of real stairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildingCode {
-    /// Where it applies.
+    /// Kind of building and country to which the code applies.
     pub name: &'static str,
     /// Its name and section.
     pub source: &'static str,

@@ -8,11 +8,11 @@
 /// Factors on velocities in half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HalfStepDamping {
-    /// Of the air, on the angular velocity.
+    /// Factor of the air on the angular velocity.
     pub air: f32,
-    /// Of the stairs, on both velocities of a limb that touches them.
+    /// Factor of the stairs on both velocities of a limb that touches them.
     pub stairs: f32,
-    /// Of the ground, likewise.
+    /// Factor of the ground on both velocities of a limb that touches it.
     pub ground: f32,
 }
 

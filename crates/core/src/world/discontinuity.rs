@@ -9,11 +9,11 @@ pub enum Discontinuity {
     Body,
     /// A step has another length, so the steps of both worlds have different times.
     StepLength,
-    /// The snake starts elsewhere, which is over.
+    /// The snake has another place at the start, and the start is over.
     Start,
     /// The stairs have another shape, and a limb has reached them: it could be inside a step.
     Stairs,
-    /// The other trial is over by then.
+    /// The other trial is over by that step.
     Duration,
 }
 

@@ -11,9 +11,9 @@ pub(super) struct EnergyBalance {
     pub joint_work_j: f64,
     /// Energy that the joints spent on motion, in J, driving or braking.
     pub motion_j: f32,
-    /// What the damping of the joints took, in J.
+    /// Energy that the damping of the joints took, in J.
     pub joint_damping_j: f64,
-    /// What the damping of the limbs' rotation took, in J.
+    /// Energy that the damping of the limbs' rotation took, in J.
     pub rotation_damping_j: f64,
     /// Whether something acted whose work is not counted: a user's pull, or a change of the engine's state.
     pub has_unknown_work: bool,
@@ -21,15 +21,15 @@ pub(super) struct EnergyBalance {
 
 /// Energy that may come from nothing, as a share of the energy that the joints spent: the error of the balance.
 const GAIN_SHARE: f32 = 0.05;
-/// The same at the start, in J: the contacts settle.
+/// Energy that may come from nothing beside that share, in J: the contacts settle at the start.
 const GAIN_J: f32 = 1.0;
 
 /// Rotation of a limb before a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LimbTurn {
-    /// In the world.
+    /// Rotation of the limb in the world.
     pub rotation: Rotation,
-    /// In rad/s, in the world.
+    /// Angular velocity of the limb in the world, in rad/s.
     pub rate: Vector,
 }
 
@@ -53,8 +53,8 @@ pub struct EnergyLost {
 }
 
 impl EnergyLost {
-    /// What neither damping took, in J: the loss in contacts (friction, impacts, dents, damping of surfaces), at the
-    /// stops of the joints, and in the springs of soft limbs. The balance cannot separate these;
+    /// Energy that neither damping took, in J: the loss in contacts (friction, impacts, dents, damping of surfaces), at
+    /// the stops of the joints, and in the springs of soft limbs. The balance cannot separate these;
     /// [`super::Simulation::contact_patches`] has the power of friction.
     pub fn elsewhere_j(&self) -> f32 {
         self.total_j - self.joint_damping_j - self.rotation_damping_j

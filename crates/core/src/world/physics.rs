@@ -24,7 +24,7 @@ choices! {
 }
 
 impl PhysicsEngine {
-    /// The one that this is not.
+    /// The engine that this one is not.
     #[must_use]
     pub fn other(self) -> Self {
         match self {

@@ -13,7 +13,7 @@ pub struct Shove {
     pub limb: usize,
     /// When it happens, in s from the start. It acts before the step that begins then.
     pub at_s: f32,
-    /// What it adds to the limb's velocity, in m/s.
+    /// Change of the limb's velocity, in m/s, added at once.
     #[serde(serialize_with = "write_vector", deserialize_with = "read_vector")]
     pub change_m_s: Vector,
 }

@@ -48,7 +48,7 @@ pub struct Simulation {
     arena_front_y_m: f32,
     /// Torque of the joints' drives on each part, in N·m.
     torques_in_world: Vec<Vector>,
-    /// What the joints' damping adds to it.
+    /// Torque of the joints' damping on each part, in N·m, added to that of the drives.
     damping_in_world: Vec<Vector>,
     applied: Vec<AppliedTorque>,
     effort: Effort,

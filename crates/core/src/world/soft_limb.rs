@@ -86,8 +86,8 @@ impl Elasticity {
 }
 
 impl BodyPlan {
-    /// The same body with elastic limbs where their material bends. All limbs must be rigid before; one elasticity per limb,
-    /// none where a limb is rigid.
+    /// This body with elastic limbs where their material bends. All limbs must be rigid before. `elastic` gives the
+    /// elasticity of each limb, and none where a limb is rigid.
     pub fn with_soft_limbs(mut self, elastic: impl Fn(usize) -> Option<Elasticity>) -> Self {
         let rigid = std::mem::take(&mut self.parts);
         let (mut first_of, mut last_of) = (Vec::new(), Vec::new());

@@ -95,7 +95,7 @@ impl StairProfile {
         }
     }
 
-    /// The same in line with the stairs, for a point with this number of treads passed.
+    /// Height of the surface in line with the stairs, in metres, at a y with this number of treads passed.
     fn surface_after_m(&self, passed: usize, y_m: f32) -> f32 {
         let below_m = self.heights_m.get(passed).copied().unwrap_or(0.0);
         let Some(top_m) = self.heights_m.get(passed + 1) else { return below_m };

@@ -27,7 +27,7 @@ impl ExportedChampion {
     pub fn take_result_of_this_engine(&mut self) {
         let LoadedChampion { champion, engine, recording, exam } = &mut self.loaded;
         champion.evaluation = evaluate(&champion.genome, &champion.trial);
-        // Both describe the other record.
+        // Engine and recording belong to the replaced record.
         (*engine, *recording) = (Engine::THIS, None);
         exam.clear();
     }

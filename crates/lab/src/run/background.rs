@@ -33,7 +33,7 @@ pub enum RunEvent {
     SettingNotChanged {
         /// Its full dotted name.
         field: String,
-        /// Why, in a line.
+        /// The reason, in a line.
         reason: String,
     },
     /// The run's folder cannot be opened, and why: nothing is evolved.

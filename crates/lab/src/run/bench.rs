@@ -145,7 +145,7 @@ fn evaluated_steps(pool: &LocalPool, threads: usize, genomes: &[Genome], trial: 
         let of_one = result.map_or(0, |scored| scored.evaluation.steps);
         steps.fetch_add(of_one.into(), Ordering::Relaxed);
     };
-    // Nothing cancels it.
+    // The control is never cancelled.
     let _ = pool.evaluate_batch(trial, &all, &RunControl::default(), &count);
     steps.into_inner()
 }

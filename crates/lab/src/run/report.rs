@@ -105,7 +105,7 @@ impl GenerationReport {
     pub fn champion_rank(&self) -> Option<[f32; 2]> {
         let champion = self.champion.as_ref()?;
         match self.stairs {
-            // Such a run keeps only the champions that are better than all before.
+            // A run in which stairs evolve keeps only the champions that are better than all before.
             Some(_) => Some([self.generation as f32, 0.0]),
             None => Some(champion.rank()),
         }

@@ -45,11 +45,11 @@ pub struct Trajectories {
     /// The processors.
     #[serde(default, skip_serializing_if = "is_default")]
     pub processors: Processors,
-    /// In a fixed order.
+    /// The trajectories, in a fixed order.
     pub trajectories: Vec<Trajectory>,
 }
 
-/// The trajectories cannot be compared.
+/// Errors of a comparison of trajectories.
 #[derive(Debug, thiserror::Error)]
 pub enum VerifyError {
     /// An embedded preset is broken, which a test rules out.

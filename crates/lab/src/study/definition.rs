@@ -52,7 +52,7 @@ pub struct Study {
     /// Strategies that are crossed with controllers; each pair that fits together is an arm.
     #[serde(default)]
     pub methods: Option<Methods>,
-    /// The other arms.
+    /// Arms beside those of `methods`.
     #[serde(default)]
     pub arms: Vec<Arm>,
     /// The arm with which the others are compared; the first, if none is named.

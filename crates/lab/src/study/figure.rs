@@ -139,7 +139,7 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
 /// For each shown number, the values of all runs, arm by arm.
 fn value_charts(results: &Results<'_>) -> Vec<Chart> {
     let study = results.study;
-    // Those that the study names come first, in its order.
+    // Numbers that the study names come first, in its order.
     let mut shown = study.show.clone();
     shown.extend(study.shown().into_iter().filter(|name| !study.show.contains(name)));
     let infos = shown.iter().filter_map(|name| value("show", name).ok());

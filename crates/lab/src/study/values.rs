@@ -294,7 +294,7 @@ pub fn number(value: f64, digits: usize) -> String {
     (if text == "-0" { "0" } else { text }).to_owned()
 }
 
-/// The same with its sign.
+/// A number with its sign and at most `digits` decimal places.
 pub(super) fn signed(value: f64, digits: usize) -> String {
     let sign = if value >= 0.0 && value.is_finite() { "+" } else { "" };
     format!("{sign}{}", number(value, digits))

@@ -29,7 +29,7 @@ pub(super) struct Climb {
 /// Time of a landing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum LandingTime {
-    /// In simulated seconds.
+    /// The time of landing, in simulated seconds.
     Known(f64),
     /// It does not end on the landing.
     None,

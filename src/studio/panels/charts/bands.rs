@@ -44,9 +44,9 @@ pub(super) struct BestNumbers {
     pub names: [&'static str; 2],
     /// Heads of the table's columns.
     pub columns: [&'static str; 2],
-    /// Both numbers; none for a generation without a best snake.
+    /// The two numbers; none for a generation without a best snake.
     pub of: fn(&GenerationReport) -> Option<[f64; 2]>,
-    /// Both in words, a line for each.
+    /// The two numbers in words, a line for each.
     pub words: fn([f64; 2]) -> String,
 }
 

@@ -53,7 +53,7 @@ impl CurvesPanel {
                 }
             }
         });
-        // Nothing in it can be clicked.
+        // The chart has nothing to click.
         draw::draw(ui, "curves", &self.view, height, &[], &mut Vec::new());
         self.table(ui);
     }

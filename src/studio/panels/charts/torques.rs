@@ -27,7 +27,7 @@ struct Subject {
     name: String,
     genome: Arc<Genome>,
     trial: Trial,
-    /// None if the genes are the torques.
+    /// The simulation that computes the torques; none if the genes are the torques.
     lookahead: Option<Lookahead>,
     lines: Option<Vec<TorqueLines>>,
     is_of_run: bool,

@@ -15,7 +15,7 @@ const LEAST_MESSAGES: f32 = 200.0;
 pub(super) struct AroundLimb<'a> {
     /// Room for the card.
     pub room: Rect,
-    /// The other cards.
+    /// Areas of the other cards.
     pub taken: &'a [Rect],
     /// The selected limb.
     pub selected: Option<Rect>,

@@ -31,9 +31,9 @@ fn tenths(value: f32) -> f32 {
 /// How much the card shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CardSize {
-    /// Everything.
+    /// All readings of the limb.
     Full,
-    /// Everything that changes, in fewer digits.
+    /// All readings that change, in fewer digits.
     Narrow,
     /// Speed and contact.
     Least,

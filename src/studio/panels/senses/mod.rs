@@ -1,4 +1,4 @@
-//! What the snake on the stage senses, and how its controller turns that into motion.
+//! The senses of the snake on the stage, and how its controller turns them into motion.
 //!
 //! The panel shows the shown moment of one lane. Its switches take senses away through the same command as the settings of
 //! the World panel, so a copy without them walks beside the snake.

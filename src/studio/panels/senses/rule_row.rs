@@ -1,11 +1,11 @@
-//! A list of rules: the condition of each above, what it does below. Those that hold are lit.
+//! A list of rules: each with its condition above and its action below. The rules that hold are lit.
 
 use bevy_egui::egui;
 
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 
-/// Height of a rule in the list, in points: two lines for its condition, one for what it does.
+/// Height of a rule in the list, in points: two lines for its condition, one for its action.
 const RULE_HEIGHT: f32 = theme::GAP * 6.75;
 /// Height of the list, in points. The panel scrolls, too, and a list in it would otherwise get no more than the room that
 /// is left in the window.
@@ -28,13 +28,13 @@ pub(super) fn rule_list(
 pub(super) struct RuleRow {
     /// Its condition: "If ...".
     pub condition: String,
-    /// What it does.
+    /// The action of the rule, in words.
     pub action: String,
     /// Whether its condition holds.
     pub holds: bool,
     /// Whether it holds and decides.
     pub decides: bool,
-    /// Both in a sentence without a full stop.
+    /// Whether the rule holds and decides, in a sentence without a full stop.
     pub state: &'static str,
 }
 

@@ -1,4 +1,5 @@
-//! What the snakes on the stage do on a surface at the shown moment, above the settings of that surface.
+//! Readings of the contacts between the snakes on the stage and a surface at the shown moment, above the settings of that
+//! surface.
 
 mod lane_column;
 

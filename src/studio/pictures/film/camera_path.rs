@@ -8,7 +8,7 @@ use crate::studio::scene::camera::view::CameraView;
 
 /// Time before and after a frame from which its target is averaged, in seconds of the film.
 const TARGET_S: f32 = 0.8;
-/// The same of the distance.
+/// Time before and after a frame from which the camera's distance is averaged, in seconds of the film.
 const DISTANCE_S: f32 = 1.2;
 
 /// The camera's place in each frame, from the points that each has to show. A film of a single frame shows them as a

@@ -11,7 +11,7 @@ impl Lane {
         !self.is_ghost && !self.is_broken && self.staged == *staged
     }
 
-    /// The same lane at the start of a replay. It takes over what this one has computed in advance.
+    /// This lane at the start of a replay. The new lane takes over the steps that this one has computed in advance.
     pub fn renewed(&mut self) -> Self {
         let lookahead = std::mem::take(&mut self.lookahead);
         Self {

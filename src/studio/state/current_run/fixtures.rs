@@ -149,7 +149,7 @@ fn a_reset_that_discards_finished_generations_says_so_and_offers_to_resume_them(
     assert_eq!(notices.last(), Some(news));
     let resume = Command::Run(RunCommand::Continue(folder));
     assert_eq!(notices.last_offers(), [("Resume it instead".to_owned(), resume)]);
-    // Nothing is lost by another one.
+    // A second reset loses nothing, so it gives no further notice.
     run.apply(&RunCommand::Reset, &mut notices).expect("allowed");
     assert_eq!(notices.len(), 1);
 }

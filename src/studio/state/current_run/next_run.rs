@@ -149,7 +149,7 @@ impl CurrentRun {
         self.in_words(self.preset(), self.settings())
     }
 
-    /// The same for the next run.
+    /// The preset of the next run in words, like [`Self::preset_in_words`].
     pub fn next_preset_in_words(&self) -> String {
         self.in_words(self.next_preset(), self.next_settings())
     }

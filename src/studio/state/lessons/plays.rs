@@ -27,12 +27,12 @@ pub(crate) struct Play {
 /// The playback in progress.
 #[derive(Debug, Default)]
 enum CurrentPlay {
-    /// None has begun since the last end.
+    /// No playback has begun since the last end.
     #[default]
     None,
-    /// All of it so far at this speed, in simulated seconds per second.
+    /// The whole playback so far at this speed, in simulated seconds per second.
     At(f32),
-    /// At several speeds.
+    /// The playback so far at several speeds.
     Mixed,
 }
 

@@ -22,7 +22,7 @@ fn held_run() -> (tempfile::TempDir, CurrentRun) {
 /// A link that waits for a server that never answers.
 fn connecting() -> MachinesLink {
     let mut link = MachinesLink::of_test("nats://127.0.0.1:1", LinkState::Connecting);
-    // Nothing listens there, but that news is never read.
+    // No server listens at this address; that news is never read.
     let server = BrokerOptions { url: "nats://127.0.0.1:1".to_owned(), ..Default::default() };
     link.watch = Some(ServerWatch::start(server).expect("a thread"));
     link
@@ -66,7 +66,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     link.take_in_news(coordinates(&link.asked.clone().expect("asked").1), &mut run, &mut notices);
     assert!(run.is_shared());
 
-    // So does another run.
+    // Another run needs another coordinator, too.
     run.reset().expect("allowed");
     assert!(!run.is_shared());
     link.follow(&mut run);

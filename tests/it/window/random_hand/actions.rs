@@ -12,7 +12,8 @@ pub const SCREEN: (i32, i32) = (1280, 800);
 /// Usual size of the window: the smallest that the panels are laid out for, which is drawn soonest.
 pub const USUAL_SIZE: (i32, i32) = (1024, 640);
 
-/// What the hand types. No text has a slash or climbs to the folder above, so no path leads out of the test's folder.
+/// Texts that the hand types. No text has a slash or climbs to the folder above, so no path leads out of the test's
+/// folder.
 const TEXTS: [&str; 24] = [
     "0",
     "-1",

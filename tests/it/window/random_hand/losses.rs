@@ -19,7 +19,7 @@ const UNFINISHED: &str = ".unfinished-";
 /// Time in which a resumed run must report a generation, or be ended in good order.
 const RESUMED_FOR: Duration = Duration::from_secs(4);
 
-/// What a folder of saves contains.
+/// Contents of a folder of saves.
 #[derive(Debug)]
 pub struct Inventory {
     taken: SystemTime,
@@ -144,7 +144,7 @@ fn resume(folder: &Path) {
     let (sender, reported) = mpsc::channel();
     let reader = thread::spawn(move || {
         for line in lines.map_while(Result::ok) {
-            // Nobody waits for the later ones.
+            // Only the first line is awaited, so a later line may fail to be sent.
             let _ = sender.send(line);
         }
     });

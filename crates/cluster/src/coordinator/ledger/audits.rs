@@ -37,7 +37,7 @@ pub enum Finding {
     Equal(String),
     /// The check is to be repeated by this machine.
     Repeat(AuditTask),
-    /// These workers sent other bits than this machine.
+    /// The named workers sent other bits than this machine.
     Wrong(Vec<String>),
 }
 

@@ -109,7 +109,7 @@ fn the_choice_that_is_shown_is_the_one_that_was_made() {
             (shown.targets.bend.at(shown.phase.into()), waves.joints[1].bend.at(periods));
         assert!((0.0..1.0).contains(&shown.phase) && (now - then).abs() < 1e-4, "{now} {then}");
     }
-    // What it senses between decisions changes nothing of what it shows.
+    // Senses between decisions change nothing of the choice that is shown.
     let mut later = moment(60, |_| ());
     later.step = 46;
     follower.act(&later, &mut [JointTorque::default(); 4]);

@@ -1,4 +1,4 @@
-//! What limits a run, and whether it has ended.
+//! The limits of a run, and whether it has ended.
 //!
 //! A run has two limits: its number of generations, and as many evaluations as that many generations of its population
 //! have ([`RunPlan::budget`]). Generations of some strategies are larger than the population, as the first one of CMA-ES
@@ -32,7 +32,8 @@ impl RunPlan {
         match evolution.strategy {
             // Generations of islands shrink, to two islands in the end.
             StrategyKind::Islands => last.min(2 * u64::from(evolution.islands.candidates)),
-            // Those with stairs vary; only the state of the strategy says what comes next.
+            // Generations of strategies that evolve stairs vary in size; only the state of the strategy tells the next
+            // one.
             kind if kind.info().evolves_stairs => 1,
             kind if kind.info().is_budget_driven => last,
             _ => 0,

@@ -30,7 +30,7 @@ setting_group! {
         /// Number of random genomes in a first generation of their own, the best of which is the start of the search. 0:
         /// the search starts in the middle of all ranges.
         newborns: u32 = 0,
-            // They are a generation of their own, beyond the budget.
+            // The random snakes are a generation of their own, beyond the budget.
             whole("Random snakes first", 0..=10_000)
                 .hint(
                     "The search starts at the best of this many random snakes; at 0, in the middle of all ranges",

@@ -1,6 +1,6 @@
 //! MAP-Elites over bodies (Mouret and Clune, arXiv:1504.04909): the best snake of each number of blocks and each length.
 //!
-//! The cells protect new bodies: a changed body competes only with bodies of its own kind.
+//! The cells protect new bodies: a changed body competes only with bodies of its own cell.
 
 use rand::RngExt;
 

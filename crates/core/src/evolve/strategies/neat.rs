@@ -108,6 +108,6 @@ impl Strategy for Neat {
         }
     }
 
-    /// Nothing of it may change during a run.
+    /// No setting of NEAT may change during a run.
     fn apply_settings(&mut self, _: &RunPlan) {}
 }

@@ -13,10 +13,10 @@ use crate::control::WaveUses;
 use crate::evolve::plan::RunPlan;
 use crate::score::Evaluation;
 
-/// So many of the best give waves.
+/// Number of the best individuals that give waves.
 const DONORS: usize = 4;
 
-/// Where the waves of a library are in a point of the unit cube.
+/// The places of a library's waves in a point of the unit cube.
 #[derive(Debug, Clone)]
 pub struct WaveTakeover {
     /// The coordinates of each wave; empty without a library.

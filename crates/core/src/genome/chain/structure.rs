@@ -185,7 +185,7 @@ struct BodyInChange<'a> {
 }
 
 impl BodyInChange<'_> {
-    /// None if the body has as many blocks as it may have.
+    /// Says whether another block fits: `None` if the body has as many blocks as it may have.
     fn room(&self) -> Option<()> {
         (self.segments.len() < self.space.bodies.limbs_max as usize).then_some(())
     }

@@ -4,10 +4,10 @@
 //! abstract says that standard McCulloch-Pitts neurons replace the more complex set of neurons of Sims' creatures. Their
 //! creatures evolve bodies, too; the layout for a body that stays, with its numbers, is this program's own.
 //!
-//! What a neuron is and reads are choices, and every strategy searches them as coordinates: a step of CMA-ES or MAP-Elites
-//! across the border between two choices changes the wiring, although neighbours in the list have nothing in common. The
-//! report's strategy keeps the choices of the first generation. Only mutations of the genetic algorithm, and of novelty
-//! search, which is one, have rules for them.
+//! The kind of a neuron and its inputs are choices, and every strategy searches them as coordinates: a step of CMA-ES or
+//! MAP-Elites across the border between two choices changes the wiring, although neighbours in the list have nothing in
+//! common. The report's strategy keeps the choices of the first generation. Only mutations of the genetic algorithm, and
+//! of novelty search, which is one, have rules for them.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};

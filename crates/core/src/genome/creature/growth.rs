@@ -22,7 +22,7 @@ pub struct GrownPart {
     pub parent: Option<usize>,
     /// Size across x, along y and along z, in metres.
     pub size_m: [f32; 3],
-    /// Where its joint holds it.
+    /// Place on the parent at which its joint holds it.
     pub mount: Mount,
     /// Whether it is a mirror image of what its node says.
     pub is_mirrored: bool,

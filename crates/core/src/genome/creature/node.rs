@@ -49,7 +49,7 @@ named_values! {
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NodeJoint {
-        /// None: it holds the part in its place.
+        /// No axis: the joint holds the part in its place.
         Rigid = "rigid";
         /// It bends.
         Revolute = "revolute";

@@ -1,4 +1,5 @@
-//! What a classifier system learns from: recorded decisions, how an episode ended, and a report of the replay.
+//! The experience from which a classifier system learns: recorded decisions, how an episode ended, and a report of the
+//! replay.
 
 use std::ops::RangeInclusive;
 

@@ -20,9 +20,9 @@ const EPSILON: f32 = 0.1;
 /// The use that actors make of their copy of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ActorTable {
-    /// They act by it, and it stays as it was.
+    /// Actors act by their copy, which stays as it was.
     Frozen,
-    /// They learn in it while they act.
+    /// Actors learn in their copy while they act.
     Learning,
 }
 

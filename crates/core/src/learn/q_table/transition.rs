@@ -1,4 +1,4 @@
-//! What an actor experiences with one action: the unit from which a table learns.
+//! The experience of an actor with one action: the unit from which a table learns.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What the grid worlds of the tests have in common: cells as states, and four moves as actions.
+//! Features that all grid worlds of the tests share: cells as states, and four moves as actions.
 
 /// The moves, in the order of their numbers: up, right, down, left, as (rows, columns).
 const MOVES: [(i32, i32); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];

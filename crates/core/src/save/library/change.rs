@@ -38,7 +38,7 @@ pub enum FileStep {
     Restored {
         /// Its path before it was deleted.
         wanted: PathBuf,
-        /// Its new path; another one if the former path was taken meanwhile.
+        /// Its path now; it differs from the former path if that was taken meanwhile.
         to: PathBuf,
     },
     /// A new copy was added.

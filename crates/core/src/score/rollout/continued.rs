@@ -61,8 +61,8 @@ impl Rollout {
         }
     }
 
-    /// The same rollout of a genome with another trial from `step` on, which must not be past: limbs, controller,
-    /// energy and furthest position go on from their state at that moment.
+    /// This rollout of a genome with another trial from `step` on, which must not be past: limbs, controller, energy and
+    /// furthest position go on from their state at that moment.
     ///
     /// Its evaluation is that of no trial, and must not be compared with a record.
     ///

@@ -136,7 +136,7 @@ const FLAT: f32 = 1.0e-6;
 struct BlockPair {
     /// Half the sizes of the first, in metres.
     first_half_m: Vector,
-    /// Those of the second.
+    /// Half the sizes of the second, in metres.
     second_half_m: Vector,
     /// Centre of the second, in metres.
     place: Vector,
@@ -154,7 +154,7 @@ impl BlockPair {
         }
     }
 
-    /// The same pair in the frame of the second.
+    /// This pair in the frame of the second box, which becomes the first.
     fn seen_from_second(&self) -> Self {
         let axes = &self.axes;
         Self {
@@ -378,7 +378,7 @@ mod tests {
         Block { centre: pose.translation, axes, half_m }
     }
 
-    /// The same contacts as those that rapier sees: as many points in the same places, along the same normal.
+    /// Random boxes have the contacts that rapier sees: as many points in the same places, along the same normal.
     #[test]
     fn random_boxes_touch_as_in_parry() {
         let mut rng = stream(1, 1, 1, Purpose::Birth);

@@ -134,7 +134,7 @@ pub(crate) struct Chain {
     pub state: Vec<PartState>,
     /// The contacts of the last step: those between parts first, then those of each part with the world.
     pub contacts: Vec<Contact>,
-    /// Those of the step before; its memory is used again.
+    /// The contacts of the step before the last one; their memory is used again.
     pub(super) earlier: Vec<Contact>,
 }
 

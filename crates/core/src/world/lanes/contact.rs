@@ -32,9 +32,9 @@ pub(crate) struct ContactPoint {
     pub on_other: Vector,
     /// At the beginning of the step, in metres.
     pub(super) distance_m: f32,
-    /// Of the last substep, along the normal, in N·s.
+    /// Impulse of the last substep, along the normal, in N·s.
     pub impulse_ns: f32,
-    /// Of the whole step, in N·s.
+    /// Impulse of the whole step, along the normal, in N·s.
     pub total_ns: f32,
     /// Whether it carried no load in the step before.
     pub is_new: bool,
@@ -53,7 +53,7 @@ pub(crate) struct Contact {
     pub normal: Vector,
     /// Coulomb coefficient of the materials.
     pub material_friction: f32,
-    /// That of this step, which is lower where the surface lets the part slip.
+    /// Coulomb coefficient of this step, which is lower where the surface lets the part slip.
     pub(super) friction: f32,
     pub(super) bounce: f32,
     pub(super) correction_per_s: f32,

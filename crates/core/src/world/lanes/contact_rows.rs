@@ -10,9 +10,10 @@ use crate::world::Vector;
 /// A point of a contact in each lane.
 #[derive(Debug, Clone, Copy)]
 struct WidePoint<const N: usize> {
-    /// From the centres of the part and of the one that it touches to the point, at the beginning of the step.
+    /// Levers in the world from the centres of the part and of the one that it touches to the point, at the beginning of
+    /// the step.
     levers: [WideVector<N>; 2],
-    /// The same in the frames of the parts.
+    /// The levers at the beginning of the step, each in the frame of its body.
     own: [WideVector<N>; 2],
     axes: [WideVector<N>; 2],
     by_inertia: [WideVector<N>; 2],
@@ -43,7 +44,7 @@ pub(super) struct WideContact<const N: usize> {
     points: [WidePoint<N>; MOST_POINTS],
     /// The greatest number of points of any lane.
     count: usize,
-    /// Levers of the middle of the points, and the same in the frames of the parts.
+    /// Levers of the middle of the points in the world. `own` has these levers in the frames of the bodies.
     levers: [WideVector<N>; 2],
     own: [WideVector<N>; 2],
     /// Axes and products with the inertias of both tangents, of the part and of the other.

@@ -222,7 +222,7 @@ impl<const N: usize> WideJoint<N> {
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let joint = &chain.joints[index];
         let substep_s = chain.common.step_s / chain.common.substeps as f32;
-        // The same in all lanes.
+        // The snakes of all lanes have as many parts, so this joint connects the same two parts in every lane.
         self.parts = joint.parts;
         self.anchors_m[0].0[lane] = -chain.parts[joint.parts[0]].half_m.y;
         self.anchors_m[1].0[lane] = chain.parts[joint.parts[1]].half_m.y;

@@ -9,7 +9,7 @@
 //!    steps in physics simulation", SCA 2019): forces change the velocities; rows for all joints and contacts change them until
 //!    they agree with what these allow, together with a correction of the positions; the parts move; and a last pass takes the
 //!    corrections out of the velocities again. A pass goes over every other joint, over those between, and then over the
-//!    contacts, so that the ground has the last word.
+//!    contacts, so that those with the ground are solved last.
 //! 3. **Rows** are sequential impulses (Catto, "Iterative dynamics with temporal coherence", GDC 2005): each takes the velocity
 //!    in its direction to its target, at once, and remembers the sum of its impulses, within its limits. Rows that stand for a
 //!    spring and a damper are soft constraints (Catto, "Soft constraints", GDC 2011): compliance makes them yield.

@@ -80,8 +80,8 @@ impl<const N: usize> LaneSolver<N> {
         }
         self.contacts_used = 0;
         let mut next = [0; N];
-        // Contacts between parts, in the order of the pairs; then those of each part with the world, so that the world has the
-        // last word.
+        // Contacts between parts come in the order of the pairs. The contacts of each part with the world follow, so that
+        // the world's constraints are solved last.
         for front in 0..common.parts {
             for rear in front + 1..common.parts {
                 self.load_contact(chains, &mut next, rear, Some(front));

@@ -94,7 +94,7 @@ impl<const N: usize> Wide<N> {
     pub const ZERO: Self = Self([0.0; N]);
     pub const ONE: Self = Self([1.0; N]);
 
-    /// The same number in all lanes.
+    /// One number for all lanes.
     #[inline(always)]
     pub fn all(value: f32) -> Self {
         Self([value; N])
@@ -155,7 +155,7 @@ impl<const N: usize> Wide<N> {
         any
     }
 
-    /// The same numbers, with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
+    /// These numbers with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
     /// products, quotients by numbers other than zero, roots and comparisons let nothing else come of such a difference.
     #[inline(always)]
     pub fn without_signed_zeros(self) -> Self {

@@ -28,8 +28,8 @@ pub(super) struct LanesWorld {
 }
 
 impl LanesWorld {
-    /// That of a plan that asks for the engine. A plan that it cannot run is refused before it is built; if one came here, rapier
-    /// would run it.
+    /// The world of a plan that asks for the engine *lanes*. A plan that it cannot run is refused before it is built; if
+    /// one came here, rapier would run it.
     pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
         let is_possible = plan.body.obstacle_in_lanes().is_none();
         let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;

@@ -51,7 +51,8 @@ impl Simulation {
         })
     }
 
-    /// The same of each limb: of a soft one the mean of its parts.
+    /// Velocity of each limb's centre in m/s, and its angular velocity in rad/s, both in the world, head first: of a soft
+    /// limb the mean of its parts.
     pub fn limb_velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
         let parts: Vec<_> = self.velocities().collect();
         (0..self.body.limbs()).map(move |limb| {

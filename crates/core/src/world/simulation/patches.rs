@@ -60,9 +60,9 @@ pub struct SurfaceDamping {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SolvedVelocity {
     centre_m: Vector,
-    /// In m/s.
+    /// Linear velocity, in m/s.
     linear: Vector,
-    /// In rad/s.
+    /// Angular velocity, in rad/s.
     angular: Vector,
 }
 

@@ -1,4 +1,4 @@
-//! What the limbs feel and see: touch and load, attitude, and the way to the next step.
+//! The senses of the limbs: touch and load, attitude, and the way to the next step.
 
 use std::ops::Range;
 
@@ -93,7 +93,7 @@ impl Simulation {
         self.lowest_z_of_m(part, body.translation(), axes)
     }
 
-    /// The same of a part whose centre is there, and which has these axes.
+    /// Height of the lowest corner of a part with this centre and these axes, in metres.
     fn lowest_z_of_m(&self, part: usize, centre: Vector, axes: [Vector; 3]) -> f32 {
         let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
         let reach_m = axes.into_iter().zip(half_m);

@@ -86,7 +86,7 @@ fn plan(limbs: usize) -> WorldPlan {
     }
 }
 
-/// The same snake without gravity and far above the ground.
+/// A snake of [`plan`] without gravity, far above the ground.
 fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     let mut plan = plan(limbs);
     plan.physics.gravity_m_s2 = 0.0;

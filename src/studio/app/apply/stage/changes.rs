@@ -18,7 +18,7 @@ use snakes_lab::run::caught;
 
 /// The moment from which a change is tried.
 struct TriedMoment {
-    /// In simulated seconds.
+    /// Time of the moment, in simulated seconds.
     time_s: f64,
     /// The rollout of the original at that moment; `None` at its start.
     rollout: Option<Rollout>,

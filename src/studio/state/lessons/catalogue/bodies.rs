@@ -52,7 +52,7 @@ const UNPROTECTED: [(&str, &str); 7] = of_runs("none");
 
 const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 7] {
     [
-        // That of the runs of which the conclusion speaks.
+        // The engine of the runs of which the conclusion speaks.
         ("engine", "rapier"),
         ("strategy", "body_ga"),
         ("body_ga.protection", protection),

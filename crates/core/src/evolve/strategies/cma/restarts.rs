@@ -70,7 +70,8 @@ impl RestartedCma {
         })
     }
 
-    /// These runs, whose first has a standard deviation of its own for each coordinate, as a factor of the step.
+    /// This series of runs; its first run has a standard deviation of its own for each coordinate, as a factor of the
+    /// step.
     #[must_use]
     pub fn with_scales(mut self, scales: &[f64]) -> Self {
         self.current.scale(scales);

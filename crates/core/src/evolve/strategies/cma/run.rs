@@ -155,8 +155,8 @@ impl Cma {
         Ok(())
     }
 
-    /// Forgets the values of all iterations so far, so that the criteria that compare them begin anew: values of later
-    /// iterations cannot be compared with them.
+    /// Forgets the values of all iterations so far, because they do not compare with values of later iterations. The
+    /// criteria that compare values begin anew.
     pub fn forget_values(&mut self) {
         self.history = ValueHistory::default();
     }

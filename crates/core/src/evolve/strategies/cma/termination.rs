@@ -16,7 +16,7 @@ const LONGEST_HISTORY: usize = 20_000;
 pub enum StopReason {
     /// The best values of many iterations are all the same (EqualFunValues).
     EqualValues,
-    /// They, and all values of the latest iteration, differ by less than 1e-12 (TolFun).
+    /// The best values of many iterations, and all values of the latest one, differ by less than 1e-12 (TolFun).
     CloseValues,
     /// Neither best nor median values have improved for many iterations (Stagnation).
     Stagnation,

@@ -51,7 +51,7 @@ impl<S: Strategy> FirstSearch<S> {
     }
 }
 
-/// Everything that the run has found.
+/// The whole progress of the run.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct MccProgress<S> {

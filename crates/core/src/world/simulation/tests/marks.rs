@@ -1,4 +1,4 @@
-//! What the engine may skip where no body is marked as changed.
+//! The engine may skip work where no body is marked as changed: that changes no bit.
 
 use super::*;
 
