@@ -88,7 +88,6 @@ pub mod hex_hash {
     use crate::check::hash_of;
 
     #[expect(missing_docs, reason = "serde asks for it")]
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
     pub fn serialize<S: Serializer>(hash: &u64, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(&format_args!("{hash:016x}"))
     }

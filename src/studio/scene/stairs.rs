@@ -111,7 +111,7 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
 
 /// Brightness of a step.
 fn tone_of(step: u32) -> Vec3 {
-    Vec3::splat(if step % 2 == 0 { 1.0 } else { OTHER_STEP })
+    Vec3::splat(if step.is_multiple_of(2) { 1.0 } else { OTHER_STEP })
 }
 
 /// Where the stairs stand on the ground: the ends along y of their boxes, and of slopes from or to the ground, in metres.

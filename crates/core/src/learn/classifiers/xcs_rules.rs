@@ -54,6 +54,31 @@ impl XcsRule {
     }
 }
 
+/// Checks a whole rule set: its size, each rule, and that no two rules have the same condition and action.
+///
+/// # Errors
+/// The first fault found.
+pub fn check_rules(
+    rules: &[XcsRule],
+    population: u32,
+    length: usize,
+    actions: usize,
+    time: u64,
+) -> Result<(), Invalid> {
+    within("rules", rules.len(), 0..=population as usize)?;
+    let mut known = BTreeSet::new();
+    for (index, rule) in rules.iter().enumerate() {
+        let at = format!("rules[{index}]");
+        rule.check(length, actions, time).map_err(|error| error.inside(&at))?;
+        if !known.insert((rule.action, rule.condition.care(), rule.condition.value())) {
+            let field = format!("{at}.condition");
+            return Err(Invalid::new(field, rule.condition, "one rule per condition and action"));
+        }
+    }
+    let total: u64 = rules.iter().map(|rule| u64::from(rule.numerosity)).sum();
+    within("sum of numerosities", total, 0..=u64::from(population))
+}
+
 /// Rules and systems for tests.
 #[cfg(test)]
 pub(super) mod samples {
@@ -91,29 +116,4 @@ pub(super) mod samples {
         let off = (value - expected).abs();
         assert!(off <= 1e-4 * expected.abs().max(1.0), "{value} is not {expected}");
     }
-}
-
-/// Checks a whole rule set: its size, each rule, and that no two rules have the same condition and action.
-///
-/// # Errors
-/// The first fault found.
-pub fn check_rules(
-    rules: &[XcsRule],
-    population: u32,
-    length: usize,
-    actions: usize,
-    time: u64,
-) -> Result<(), Invalid> {
-    within("rules", rules.len(), 0..=population as usize)?;
-    let mut known = BTreeSet::new();
-    for (index, rule) in rules.iter().enumerate() {
-        let at = format!("rules[{index}]");
-        rule.check(length, actions, time).map_err(|error| error.inside(&at))?;
-        if !known.insert((rule.action, rule.condition.care(), rule.condition.value())) {
-            let field = format!("{at}.condition");
-            return Err(Invalid::new(field, rule.condition, "one rule per condition and action"));
-        }
-    }
-    let total: u64 = rules.iter().map(|rule| u64::from(rule.numerosity)).sum();
-    within("sum of numerosities", total, 0..=u64::from(population))
 }

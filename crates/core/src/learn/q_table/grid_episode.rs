@@ -34,7 +34,7 @@ fn greedy(table: &ActionValues, state: u32) -> u16 {
 /// the first of equal values a table that learns would try the same action again and again wherever it knows nothing.
 fn epsilon_greedy(table: &ActionValues, state: u32, epsilon: f32, random: &mut impl Rng) -> u16 {
     let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-    let mut below = |count: usize| (u128::from(random.next_u64()) * count as u128 >> 64) as usize;
+    let mut below = |count: usize| ((u128::from(random.next_u64()) * count as u128) >> 64) as usize;
     if share < f64::from(epsilon) {
         return below(table.actions()) as u16;
     }
