@@ -7,7 +7,6 @@ use std::time::Duration;
 use pyo3::prelude::*;
 use snakes_core::genome::Genome;
 use snakes_core::score::{Evaluation, Scored, Trial};
-use snakes_core::world::Disqualification;
 use snakes_lab::run::{
     Evaluator, LocalPool, RunControl, THREADS_RANGE, available_cores, evaluate_caught,
 };
@@ -25,16 +24,7 @@ pub fn threads_of(threads: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
 
 /// The result for a genome whose simulation panicked: what a run counts, too.
 fn void() -> Scored {
-    let evaluation = Evaluation {
-        fitness: 0.0,
-        centre_y_m: 0.0,
-        disqualified: Some(Disqualification::Crashed),
-        trace_hash: 0,
-        steps: 0,
-        effort: None,
-        behaviour: None,
-    };
-    Scored { evaluation, episode: None }
+    Scored { evaluation: Evaluation::void(), episode: None }
 }
 
 /// Time between two looks for an interrupt. Python itself reacts in some milliseconds.

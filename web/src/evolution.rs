@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use snakes_core::evolve::{
-    Candidate, Champion, Founder, Origin, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
+    Candidate, Champion, Founder, RunPlan, Settings, Strategy, StrategyKind, begin, ranking,
 };
 use snakes_core::genome::GenomeSpace;
 use snakes_core::save::champion_text;
@@ -75,12 +75,7 @@ impl Evolution {
                 trial,
                 evaluation,
                 chosen_by: None,
-                origin: Origin {
-                    preset: self.plan.preset.clone(),
-                    seed: self.plan.seed,
-                    generation: self.generation,
-                    individual: index as u32,
-                },
+                origin: self.plan.origin(self.generation, index),
             });
         }
         if self.scored.len() == self.candidates.len() {

@@ -163,7 +163,7 @@ impl StairsCount {
         }
     }
 
-    /// These counts in words.
+    /// The numbers of rounds, stairs and challenges in words.
     pub fn words(self) -> String {
         let Self { rounds, all, active, solved, challenges } = self;
         let round = rounds.saturating_add(1);

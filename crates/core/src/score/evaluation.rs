@@ -47,6 +47,19 @@ impl Evaluation {
         }
     }
 
+    /// The evaluation of an individual whose simulation panicked.
+    pub fn void() -> Self {
+        Self {
+            fitness: 0.0,
+            centre_y_m: 0.0,
+            disqualified: Some(Disqualification::Crashed),
+            trace_hash: 0,
+            steps: 0,
+            effort: None,
+            behaviour: None,
+        }
+    }
+
     /// Checks every value that was read from a file.
     ///
     /// # Errors

@@ -3,9 +3,7 @@
 use std::cmp::Ordering;
 
 use super::generation_trials::GenerationTrials;
-use snakes_core::evolve::{
-    Candidate, Champion, Front, FrontMember, Origin, RunPlan, Rung, ranking,
-};
+use snakes_core::evolve::{Candidate, Champion, Front, FrontMember, RunPlan, Rung, ranking};
 use snakes_core::score::Evaluation;
 
 /// A generation that was just evaluated.
@@ -30,12 +28,7 @@ impl EvaluatedGeneration<'_> {
             trial: self.trials.of(index).clone(),
             evaluation: self.evaluations[index],
             chosen_by: None,
-            origin: Origin {
-                preset: self.plan.preset.clone(),
-                seed: self.plan.seed,
-                generation: self.generation,
-                individual: index as u32,
-            },
+            origin: self.plan.origin(self.generation, index),
         }
     }
 

@@ -38,7 +38,7 @@ pub struct Experiment {
     /// Recorded changes that take effect with later generations, the earliest first.
     ahead: VecDeque<SettingChange>,
     strategy: Box<dyn Strategy>,
-    /// The candidates of the next generation, once somebody has asked for them.
+    /// The candidates of the next generation, from the first question for them until it is evaluated or a setting changes.
     asked: OnceLock<Vec<Candidate>>,
     ladder: Option<Ladder>,
     front: Front,

@@ -9,6 +9,7 @@ pub use live_changes::{MOST_CHANGES, SettingChange, SettingChanges, may_change_d
 
 use std::sync::Arc;
 
+use super::champion::Origin;
 use super::settings::Settings;
 use crate::check::Invalid;
 use crate::genome::Genome;
@@ -34,6 +35,12 @@ impl RunPlan {
     pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
         let (founder, changes) = (None, SettingChanges::default());
         Self { preset: preset.to_owned(), seed, settings, founder, changes }
+    }
+
+    /// The origin of an individual of this run. The first generation is 1, the first individual 0.
+    pub fn origin(&self, generation: u32, individual: usize) -> Origin {
+        let individual = individual as u32;
+        Origin { preset: self.preset.clone(), seed: self.seed, generation, individual }
     }
 
     /// The trial of a generation: that of the settings, with the perturbations that the generation has in common.

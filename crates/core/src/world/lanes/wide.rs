@@ -155,7 +155,7 @@ impl<const N: usize> Wide<N> {
         any
     }
 
-    /// These numbers with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
+    /// The number in each lane, with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
     /// products, quotients by numbers other than zero, roots and comparisons let nothing else come of such a difference.
     #[inline(always)]
     pub fn without_signed_zeros(self) -> Self {

@@ -71,12 +71,13 @@ impl Experiment {
     /// generation were made under the old setting and are dropped.
     pub fn apply_change(&mut self, proposed: ProposedChange) {
         self.apply_due_changes();
-        self.adopt(proposed.plan);
+        self.plan = proposed.plan;
+        self.adopt_settings();
         self.known.clear();
     }
 
-    fn adopt(&mut self, plan: RunPlan) {
-        self.plan = plan;
+    /// Makes the search follow a changed plan.
+    fn adopt_settings(&mut self) {
         self.strategy.apply_settings(&self.plan);
         self.asked.take();
     }
@@ -86,10 +87,9 @@ impl Experiment {
         let next = self.finished + 1;
         // One by one, as they were made: changing a setting there and back differs from not changing it.
         while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
-            let mut plan = self.plan.clone();
             // All were checked before.
-            let _ = plan.change(&change);
-            self.adopt(plan);
+            let _ = self.plan.change(&change);
+            self.adopt_settings();
         }
     }
 }

@@ -9,7 +9,6 @@ use crate::run::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::Candidate;
 use snakes_core::learn::Episode;
 use snakes_core::score::{Evaluation, Scored};
-use snakes_core::world::Disqualification;
 
 /// The results of a generation. All lists are in the order of the candidates.
 pub struct GenerationResults {
@@ -76,7 +75,7 @@ impl GenerationResults {
             let (scored, message) = match result {
                 Ok(scored) => (scored, None),
                 Err(message) => {
-                    (Scored { evaluation: void_evaluation(), episode: None }, Some(message))
+                    (Scored { evaluation: Evaluation::void(), episode: None }, Some(message))
                 }
             };
             evaluations.push(scored.evaluation);
@@ -84,18 +83,5 @@ impl GenerationResults {
             messages.push(message);
         }
         Self { evaluations, episodes, messages }
-    }
-}
-
-/// The evaluation of an individual whose simulation panicked.
-fn void_evaluation() -> Evaluation {
-    Evaluation {
-        fitness: 0.0,
-        centre_y_m: 0.0,
-        disqualified: Some(Disqualification::Crashed),
-        trace_hash: 0,
-        steps: 0,
-        effort: None,
-        behaviour: None,
     }
 }
