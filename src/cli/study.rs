@@ -1,5 +1,7 @@
 //! `snakes study`: the runs, exams and results of a built-in study or of a user's own.
 
+use std::path::Path;
+
 use super::args::{Args, StudyArgs, WHOLE, number, number_or};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
@@ -35,7 +37,15 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let control = cancel_on_interrupt();
     let performed = perform(&study, &files, args.run.restart, &*evaluator, &control);
     let performed = performed.map_err(|error| match error {
-        HeadlessError::Save(SaveError::Study(invalid)) => of_its_flag(args, wanted, invalid).into(),
+        HeadlessError::Save(SaveError::Study(invalid)) => {
+            let of_flag = of_its_flag(args, wanted, invalid.clone());
+            let is_from_file = of_flag == invalid && Path::new(named).exists();
+            if is_from_file {
+                SaveError::invalid(Path::new(named))(invalid).into()
+            } else {
+                of_flag.into()
+            }
+        }
         HeadlessError::Save(error) => CliError::from(error),
         other => other.into(),
     });

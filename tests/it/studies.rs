@@ -115,6 +115,11 @@ fn what_a_study_cannot_do_is_refused_by_the_name_of_its_flag() {
         let message = String::from_utf8_lossy(&output.stderr);
         assert!(message.starts_with(refusal), "{flags}: {message}");
     }
+    let study = r#"(name: "own", title: "Own", evaluations: 24, arms: [(name: "a", settings: {"ga.step": 0.5})])"#;
+    fs::write(folder.path().join("own.ron"), study).expect("written");
+    let message = run(folder.path(), "study own.ron").stderr;
+    let message = String::from_utf8_lossy(&message);
+    assert!(message.starts_with("error: own.ron: evolution.ga.step of a is 0.5; "), "{message}");
     let listed = stdout_of(folder.path(), "study");
     assert!(listed.contains("families ") && listed.contains("poet "), "{listed}");
 }

@@ -1,6 +1,6 @@
 //! The finished runs of a study as RON, and studies that users write.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use ron::extensions::Extensions;
@@ -58,8 +58,8 @@ pub struct StudiedArm {
     pub runs: Vec<StudiedRun>,
 }
 
-/// Settings, budget and stop rule of an arm: with a seed they decide a run. An arm continues only under the same protocol.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Settings, budget and stop rule of an arm: with a seed they decide a run. An arm continues only under an equal protocol.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
     /// Name of the preset from which its settings come.
@@ -77,6 +77,40 @@ pub struct Protocol {
     /// Whether a run ends with the generation that reaches the goal.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stops_at_goal: bool,
+    /// The settings that differ from the preset's, as text by their dotted names; none in files of earlier versions. Equal fingerprints
+    /// make protocols equal without this list.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub changed: Option<BTreeMap<String, String>>,
+}
+
+impl PartialEq for Protocol {
+    fn eq(&self, other: &Self) -> bool {
+        let all = |of: &Self| (of.settings.clone(), of.budget, of.stops_at_goal);
+        all(self) == all(other)
+    }
+}
+
+impl Protocol {
+    /// The settings in which `now` differs, in words; the fingerprints if one of the two has no list of its settings.
+    pub fn difference(&self, now: &Self) -> String {
+        let lists = self.changed.as_ref().zip(now.changed.as_ref());
+        let differing = lists.map_or_else(Vec::new, |(before, after)| {
+            let value = |of: &Self, list: &BTreeMap<String, String>, name| {
+                list.get(name).map_or_else(|| format!("as in {}", of.preset), String::clone)
+            };
+            let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+            let differing = names.into_iter().filter_map(|name| {
+                let [before, after] = [value(self, before, name), value(now, after, name)];
+                (before != after).then(|| format!("{name} was {before} and is {after}"))
+            });
+            differing.collect()
+        });
+        if differing.is_empty() {
+            let words = |of: &Self| format!("{} with {} evaluations", of.settings, of.budget);
+            return format!("the fingerprint was {} and is {}", words(self), words(now));
+        }
+        differing.join(", ")
+    }
 }
 
 /// One run of an arm.
@@ -246,6 +280,7 @@ mod tests {
             fitness: Fitness::Climb,
             budget: 64,
             stops_at_goal: false,
+            changed: None,
         }
     }
 

@@ -17,7 +17,7 @@ use crate::run::progress_bar::{bar_of, with_bar};
 use crate::run::{Evaluator, RunControl, whole_runs};
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::{
-    MAX_STUDY_RUNS, Picture, Protocol, SaveError, SavesFolder, StudiedRun, StudyRuns, StudyValue,
+    MAX_STUDY_RUNS, Picture, SaveError, SavesFolder, StudiedRun, StudyRuns, StudyValue,
     load_champion, load_study, store_champion, store_csv, store_exam, store_picture, store_study,
 };
 use snakes_core::score::ExamSuite;
@@ -153,13 +153,13 @@ fn earlier_runs(
     for PlannedRun { arm, protocol, .. } in planned {
         let earlier = finished.arm(&arm.name).map(|arm| &arm.protocol);
         if let Some(earlier) = earlier.filter(|earlier| *earlier != protocol) {
-            let words = |of: &Protocol| format!("{} with {} evaluations", of.settings, of.budget);
-            let allowed = format!(
-                "{}, the fingerprint of its present settings; --restart begins its runs again, and --out names another folder",
-                words(protocol)
-            );
             let field = format!("settings of {}", arm.name);
-            return Err(refused(Invalid::new(field, words(earlier), allowed)));
+            let allowed = "those of its finished runs; --restart begins its runs again, and --out names another folder";
+            return Err(refused(Invalid::new(
+                field,
+                format!("changed: {}", earlier.difference(protocol)),
+                allowed,
+            )));
         }
     }
     Ok(finished)

@@ -2,10 +2,12 @@
 
 use super::definition::{Arm, Plain, Study};
 use snakes_core::check::{Invalid, within};
-use snakes_core::evolve::{RunPlan, Settings, StrategyKind, check_effects, with_fields};
+use snakes_core::evolve::{
+    RunPlan, Settings, StrategyKind, changed_values, check_effects, with_fields,
+};
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::{Protocol, SaveError, load_preset, load_stairs, settings_fingerprint};
-use snakes_core::schema::Choices;
+use snakes_core::schema::{Choices, SettingValue};
 use snakes_core::score::ExamSuite;
 use snakes_core::world::PhysicsEngine;
 
@@ -103,8 +105,13 @@ impl Study {
 
 impl Arm {
     /// The protocol of its runs, from the plan of one of them.
-    pub fn protocol(&self, plan: &RunPlan) -> Protocol {
-        Protocol {
+    ///
+    /// # Errors
+    /// The preset of the plan cannot be read.
+    pub fn protocol(&self, plan: &RunPlan) -> Result<Protocol, SaveError> {
+        let changed = changed_values(&load_preset(&plan.preset)?.settings, &plan.settings);
+        let in_words = |(name, value): (String, SettingValue)| (name, value.to_string());
+        Ok(Protocol {
             preset: plan.preset.clone(),
             settings: settings_fingerprint(plan),
             strategy: plan.settings.evolution.strategy,
@@ -112,7 +119,8 @@ impl Arm {
             fitness: plan.settings.trial.fitness,
             budget: plan.budget(),
             stops_at_goal: self.stops_at_goal,
-        }
+            changed: Some(changed.into_iter().map(in_words).collect()),
+        })
     }
 }
 

@@ -48,7 +48,7 @@ impl Study {
         let mut of_arms = Vec::new();
         for arm in self.selected_arms() {
             let plan = self.plan(arm, self.first_seed)?;
-            of_arms.push((arm, arm.protocol(&plan), plan));
+            of_arms.push((arm, arm.protocol(&plan)?, plan));
         }
         for (arm, _, plan) in &of_arms {
             let fitness = plan.settings.trial.fitness;

@@ -93,7 +93,8 @@ fn a_study_has_the_same_results_for_any_number_of_threads_and_continues_with_wha
     let pool = LocalPool::new(1).expect("threads");
     let refusal =
         perform(&other, &files, false, &pool, &RunControl::default()).expect_err("refused");
-    assert!(refusal.to_string().contains("tiny.ron: settings of search is "), "{refusal}");
+    let changed = "tiny.ron: settings of search is changed: trial.surface.friction was as in climb and is 0.8;";
+    assert!(refusal.to_string().contains(changed), "{refusal}");
     assert!(
         perform(&other, &files, true, &pool, &RunControl::default()).is_ok(),
         "it begins again"
@@ -193,6 +194,7 @@ fn runs(arms: &[(&str, Values<'_>)]) -> StudyRuns {
         fitness: Fitness::Climb,
         budget: 100,
         stops_at_goal: false,
+        changed: None,
     };
     let mut runs = StudyRuns::new("test");
     for (arm, values) in arms {
