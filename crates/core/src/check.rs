@@ -1,37 +1,37 @@
 //! Validation of input: one error type for every value that comes from outside.
 //!
-//! A value is checked where it enters (a flag, a preset, a save, a panel). The message always has the same
-//! three parts: the field, its value, and the allowed range.
+//! Input (a flag, a preset, a save, a field of a panel) is checked where it enters. The error message always has three parts: the field,
+//! its value, and the allowed range.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-/// A value from outside that is not allowed.
+/// An error: a value from outside the program that is not allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{field} is {value}; allowed: {allowed}")]
 pub struct Invalid {
-    /// The dotted name of the field, as presets and saves spell it.
+    /// Dotted name of the field, as presets and saves spell it.
     pub field: String,
-    /// The value that was given.
+    /// Text of the value that was given.
     pub value: String,
-    /// The values that are allowed.
+    /// Description of the allowed values.
     pub allowed: String,
 }
 
 impl Invalid {
-    /// An error about a field with its value and the allowed values.
+    /// Makes an error about a field with its value and a description of the allowed values.
     pub fn new(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
         Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// This error with its field named inside `parent`.
+    /// Returns this error with `parent` and a dot in front of its field's name.
     pub fn inside(mut self, parent: &str) -> Self {
         self.field = format!("{parent}.{}", self.field);
         self
     }
 }
 
-/// Accepts `value` if it lies in `range`. NaN lies in no range.
+/// Accepts `value` if it lies in `range`, ends included. NaN lies in no range.
 pub fn within<T: PartialOrd + Display>(
     field: &str,
     value: T,
@@ -44,7 +44,7 @@ pub fn within<T: PartialOrd + Display>(
     }
 }
 
-/// Accepts a name that may become part of a file name: it can neither leave a folder nor make a hidden file.
+/// Accepts a name that may become part of a file name. The allowed characters exclude paths to other folders and hidden files.
 pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     if (1..=40).contains(&value.len()) && value.chars().all(plain) {
@@ -53,8 +53,8 @@ pub fn name(field: &str, value: &str) -> Result<(), Invalid> {
     Err(Invalid::new(field, quoted(value), "1 to 40 characters, each a-z, 0-9 or -"))
 }
 
-/// Refuses a file's name that Windows keeps for a device, with any extension and in any case: no file can have it there, and
-/// files are shared between systems. [Naming Files](https://learn.microsoft.com/windows/win32/fileio/naming-a-file) lists them.
+/// Refuses a file's name that Windows reserves for a device, with any extension and in any case. It is refused on every system, because
+/// files are shared between systems. [Naming Files](https://learn.microsoft.com/windows/win32/fileio/naming-a-file) lists the names.
 pub fn no_device(field: &str, value: &str) -> Result<(), Invalid> {
     let stem = value.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let number = stem.strip_prefix("com").or_else(|| stem.strip_prefix("lpt"));
@@ -71,17 +71,17 @@ pub fn no_device(field: &str, value: &str) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// A hash of 64 bits from its 16 hexadecimal digits.
+/// Reads a hash of 64 bits from its 16 hexadecimal digits.
 ///
 /// # Errors
-/// `text` is something else; the error calls it `field`.
+/// Fails if `text` is not 16 hexadecimal digits; the error names the value `field`.
 pub fn hash_of(field: &str, text: &str) -> Result<u64, Invalid> {
     let digits = text.len() == 16 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
     let hash = u64::from_str_radix(text, 16).ok().filter(|_| digits);
     hash.ok_or_else(|| Invalid::new(field, quoted(text), "16 hexadecimal digits"))
 }
 
-/// A hash of 64 bits in files: 16 hexadecimal digits. For `#[serde(with = "hex_hash")]`.
+/// Writes a hash of 64 bits to files as 16 hexadecimal digits, and reads it back. For `#[serde(with = "hex_hash")]`.
 pub mod hex_hash {
     use serde::{Deserialize, Deserializer, Serializer, de};
 
@@ -98,7 +98,7 @@ pub mod hex_hash {
     }
 }
 
-/// A text from outside in an error: quoted, at most 60 characters, without control characters.
+/// Quotes a text from outside for an error message: at most 60 characters, with control characters escaped.
 pub fn quoted(text: &str) -> String {
     format!("{:?}", text.chars().take(60).collect::<String>())
 }

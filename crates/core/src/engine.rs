@@ -1,20 +1,20 @@
-//! The engine that computes the bits of a run: its version, and the processors on which it computes the same ones.
+//! The engine that computes the bits of a run: its version, and the classes of processors on which it computes equal bits.
 
 use std::fmt;
 
 use crate::check::Invalid;
 use crate::schema::choices;
 
-/// Version of everything that determines the bits of a run: physics, controllers, random streams,
-/// strategies. Raised by hand whenever a change alters the bits on purpose; saves record it.
+/// Version of everything that determines the bits of a run: physics, controllers, random streams, strategies. It is raised by hand whenever
+/// a change alters the bits on purpose. Saves record it.
 pub const ENGINE_VERSION: u32 = 3;
 
 choices! {
-    /// Processors on which an engine computes the same bits. The vector mathematics below the physics engine adds the
-    /// four products of a quaternion in another order on each of them.
+    /// Classes of processors within which an engine computes the same bits. The classes differ because the vector mathematics below the
+    /// physics engine adds the four products of a quaternion in a different order on each.
     #[derive(Default)]
     pub enum Processors {
-        /// WebAssembly belongs to them if it has SIMD, which it then uses in the same order.
+        /// WebAssembly with SIMD belongs to this class, because it adds in the same order as x86-64.
         #[default]
         X86_64 = "x86-64", "x86-64", "Intel and AMD, and WebAssembly with SIMD.";
         Arm64 = "arm64", "arm64", "64-bit ARM, such as Apple's.";
@@ -22,23 +22,23 @@ choices! {
     }
 }
 
-/// An engine: runs of equal engines have equal bits.
+/// Version and processors of an engine. Two runs with equal settings, seed and engine have equal bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Engine {
-    /// Its version.
+    /// Version of the engine: an `ENGINE_VERSION`.
     pub version: u32,
-    /// The processors.
+    /// Class of the processors on which the engine runs.
     pub processors: Processors,
 }
 
 impl Engine {
-    /// The engine of this program on this machine.
+    /// Engine of this build of the program.
     pub const THIS: Self = Self { version: ENGINE_VERSION, processors: Processors::THIS };
 
-    /// Checks that results of this engine can be continued here.
+    /// Checks that this build of the program can continue results of the engine.
     ///
     /// # Errors
-    /// It is another one than that of this program on this machine.
+    /// Fails if the engine differs from `Engine::THIS`.
     pub fn check_this(self) -> Result<(), Invalid> {
         if self == Self::THIS {
             return Ok(());
@@ -48,7 +48,7 @@ impl Engine {
 }
 
 impl Processors {
-    /// The processors of this machine.
+    /// Class of the processors for which the program is built.
     pub const THIS: Self = if cfg!(any(
         all(target_arch = "x86_64", target_feature = "sse2"),
         all(target_arch = "wasm32", target_feature = "simd128")
@@ -61,7 +61,7 @@ impl Processors {
     };
 }
 
-/// The version, and the processors if they are not the most frequent ones: "3", "3 (arm64)".
+/// Writes the version, and the processors if they are not x86-64: "3", "3 (arm64)".
 impl fmt::Display for Engine {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         use crate::schema::Choices;

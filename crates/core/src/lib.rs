@@ -38,25 +38,25 @@
 pub mod check;
 pub mod rng;
 
-/// Learners that improve from the outcome of actions within a run, away from any snake.
+/// Learners that improve from the outcome of actions: classifier systems, Q-learning and NEAT, independent of the snake.
 pub mod learn;
 
-/// Rows that describe each setting, and the walk through them.
+/// The settings schema: a row that describes each setting, and the walk through all rows.
 pub mod schema;
 
-/// Stairs, surfaces, the snake's body, and one `Simulation` that steps them, by rapier3d or by an engine of its own.
+/// Stairs, surfaces, the snake's body, and a `Simulation` that steps them with rapier3d or with the engine *lanes*.
 pub mod world;
 
 /// Genomes: the controllers and body properties that evolve.
 pub mod genome;
 
-/// Controllers at work: from genes and sensed joint angles to torques.
+/// Controllers, which compute torques from genes and sensed joint angles.
 pub mod control;
 
 /// Scoring: a `Trial`, a `Rollout` of one genome in it, and its `Evaluation`.
 pub mod score;
 
-/// Search strategies with an ask-and-tell interface.
+/// Search strategies. The caller asks a strategy for individuals and tells it their evaluations.
 pub mod evolve;
 
 /// File formats and folders: runs, champions, presets.

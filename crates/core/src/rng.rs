@@ -7,8 +7,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Purpose of a random stream. The discriminants are part of the determinism promise: new ones may be
-/// added, existing ones never change.
+/// Purpose of a random stream. New purposes may be added, but the discriminant of a purpose never changes, because it is part of the
+/// stream's key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Purpose {
@@ -16,7 +16,7 @@ pub enum Purpose {
     Birth = 1,
     /// Varying a parent into a child.
     Mutation = 2,
-    /// Drawing the points of `snakes verify`. The search for the settings of `report` once used it as well.
+    /// Drawing the points of `snakes verify`.
     Calibration = 3,
     /// Perturbing a trial to measure the robustness of a champion.
     Perturbation = 4,
@@ -30,13 +30,13 @@ pub enum Purpose {
     Archive = 8,
     /// Drawing the shoves of an exam.
     Shove = 9,
-    /// Drawing the trials that a generation has in common.
+    /// Drawing the trials that all individuals of a generation have in common.
     Stairs = 10,
     /// Exploring actions in an episode.
     Explore = 11,
     /// Learning from the episodes of a generation.
     Learn = 12,
-    /// Choosing what a study or a tuning changes in a genome.
+    /// Choosing the genes that a study or a tuning changes.
     Study = 13,
     /// Drawing the irregularities of a staircase.
     StairNoise = 14,
@@ -44,15 +44,15 @@ pub enum Purpose {
     HeldOutStairs = 15,
     /// Drawing mutants of stairs.
     StairsMutation = 16,
-    /// Drawing the seed of a pair's search.
+    /// Drawing the seed of a search within a strategy that evolves stairs.
     Pair = 17,
-    /// Drawing the staircase that belongs to a seed in the editor.
+    /// Drawing a staircase from a seed in the editor.
     StairsDice = 18,
 }
 
-/// The stream of random numbers for one purpose of one individual of one generation.
+/// Returns the stream of random numbers for one purpose of one individual of one generation.
 ///
-/// The four numbers are the ChaCha8 key itself, so two streams are equal only if all four are.
+/// The four numbers form the ChaCha8 key itself, so two streams are equal only if all four numbers are equal.
 pub fn stream(run_seed: u64, generation: u32, individual: u32, purpose: Purpose) -> ChaCha8Rng {
     let mut key = [0; 32];
     key[0..8].copy_from_slice(&run_seed.to_le_bytes());
@@ -62,19 +62,19 @@ pub fn stream(run_seed: u64, generation: u32, individual: u32, purpose: Purpose)
     ChaCha8Rng::from_seed(key)
 }
 
-/// A uniformly distributed number from 0 to less than 1.
+/// Draws a uniformly distributed number from 0 to less than 1.
 pub fn uniform(rng: &mut ChaCha8Rng) -> f64 {
     rng.random_range(0.0..1.0)
 }
 
-/// One of a list that is not empty, all equally likely.
+/// Draws an element of a list that is not empty, all equally likely.
 pub fn drawn<T: Copy>(all: &[T], rng: &mut ChaCha8Rng) -> T {
     all[rng.random_range(0..all.len())]
 }
 
-/// A normally distributed number of mean 0 and variance 1, by the method of Box and Muller (1958).
+/// Draws a normally distributed number of mean 0 and variance 1, by the method of Box and Muller (1958).
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    // From (0, 1], where the logarithm is finite.
+    // The difference lies in (0, 1], where the logarithm is finite.
     let first = 1.0 - uniform(rng);
     let second = uniform(rng);
     (-2.0 * libm::log(first)).sqrt() * libm::cos(std::f64::consts::TAU * second)

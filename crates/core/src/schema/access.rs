@@ -1,10 +1,10 @@
-//! Settings by name: listing, checking, finding, setting.
+//! Access to settings by name: listing, checking, finding, setting.
 
 use super::value::{SettingField, SettingValue};
 use super::walk::{ListedSetting, SettingGroup, SettingVisitor, walk};
 use crate::check::Invalid;
 
-/// All settings with their rows and values, in the order of their structs.
+/// Lists all settings with their rows and values, in the order of the walk.
 pub fn list(group: &(impl SettingGroup + Clone)) -> Vec<ListedSetting> {
     struct Listing(Vec<ListedSetting>);
     impl SettingVisitor for Listing {
@@ -17,10 +17,10 @@ pub fn list(group: &(impl SettingGroup + Clone)) -> Vec<ListedSetting> {
     listing.0
 }
 
-/// Checks every setting against its range, and those that depend on each other together.
+/// Checks every setting against its range, and settings that depend on each other together.
 ///
 /// # Errors
-/// The first that is not allowed: its dotted name, its value, and what is allowed.
+/// Names the first value that is not allowed: its dotted name, its value, and the allowed values.
 pub fn check(group: &(impl SettingGroup + Clone)) -> Result<(), Invalid> {
     struct Checking(Result<(), Invalid>);
     impl SettingVisitor for Checking {
@@ -43,10 +43,10 @@ pub fn check(group: &(impl SettingGroup + Clone)) -> Result<(), Invalid> {
     checking.0
 }
 
-/// Sets one setting, by its full dotted name, to the value that a text says, which is not checked against its range.
+/// Sets the setting with the full dotted name `path` to the value in `text`. Does not check the value against the range.
 ///
 /// # Errors
-/// There is no such setting, or the text is no value for it.
+/// Fails if no setting has the name, or if the text is not a value of the setting's type.
 pub fn set_text(group: &mut dyn SettingGroup, path: &str, text: &str) -> Result<(), Invalid> {
     visit(group, path, &mut |listed, field| {
         let value = listed.setting.parse(text);
@@ -55,10 +55,10 @@ pub fn set_text(group: &mut dyn SettingGroup, path: &str, text: &str) -> Result<
     })
 }
 
-/// Sets one setting, by its full dotted name, to a value, which is not checked against its range.
+/// Sets the setting with the full dotted name `path` to `value`. Does not check the value against the range.
 ///
 /// # Errors
-/// There is no such setting, or its values are of another type.
+/// Fails if no setting has the name, or if the setting's values are of another type.
 pub fn set_value(
     group: &mut dyn SettingGroup,
     path: &str,
@@ -74,7 +74,7 @@ fn refused(listed: &ListedSetting, value: String) -> Invalid {
     Invalid::new(&listed.path, value, listed.setting.allowed())
 }
 
-/// Visits the one setting with this full dotted name.
+/// Calls `act` with the setting that has the full dotted name `path`, and with its field.
 fn visit(
     group: &mut dyn SettingGroup,
     path: &str,
@@ -98,10 +98,10 @@ fn visit(
     visit.done.unwrap_or_else(|| Err(unknown()))
 }
 
-/// The full dotted name of the one setting that ends like `path`.
+/// Returns the full dotted name of the only setting whose name is `path` or ends with its words.
 ///
 /// # Errors
-/// No setting ends like that (the nearest names are listed), or several do.
+/// Fails if no setting matches (the error lists the four most similar names), or if several do (the error lists them).
 pub fn find(group: &(impl SettingGroup + Clone), path: &str) -> Result<String, Invalid> {
     let mut known: Vec<String> = list(group).into_iter().map(|listed| listed.path).collect();
     known.sort();
@@ -127,7 +127,7 @@ pub fn find(group: &(impl SettingGroup + Clone), path: &str) -> Result<String, I
     }
 }
 
-/// How similar the last `words` words of a known path are to what was typed, and its last word to the last typed one.
+/// Returns the similarity (Jaro-Winkler) of the last `words` words of a known path to the typed path, plus that of their last words.
 fn likeness(known: &str, typed: &str, words: usize) -> f64 {
     let parts: Vec<&str> = known.split('.').collect();
     let tail = parts[parts.len().saturating_sub(words)..].join(".");

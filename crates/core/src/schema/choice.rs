@@ -1,42 +1,42 @@
-//! Settings that are one of some names.
+//! Settings whose value is one of a list of names.
 
 use crate::check::Invalid;
 
-/// One of the names that a setting may have.
+/// A name that a setting may have as its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
-    /// The name in files and flags.
+    /// Name in files and flags.
     pub name: &'static str,
-    /// The name in panels.
+    /// Name in panels.
     pub title: &'static str,
-    /// A sentence about it.
+    /// Sentence that describes the choice.
     pub sentence: String,
 }
 
 impl Choice {
-    /// A choice with its sentence.
+    /// Makes a choice from its name, title and sentence.
     pub fn new(name: &'static str, title: &'static str, sentence: impl Into<String>) -> Self {
         Self { name, title, sentence: sentence.into() }
     }
 }
 
-/// A type whose values all have names.
+/// A type whose values all have a name, a title and a sentence.
 pub trait Choices: Copy + 'static {
-    /// Its values, in the order of lists.
+    /// All values of the type, in the order of lists.
     const OPTIONS: &'static [Self];
 
-    /// The name of a value, its title and its sentence.
+    /// Returns the name, title and sentence of a value.
     fn choice(self) -> Choice;
 
-    /// All names.
+    /// Returns the names of all values.
     fn names() -> Vec<&'static str> {
         Self::OPTIONS.iter().map(|option| option.choice().name).collect()
     }
 
-    /// The value with this name; - and _ are the same in it.
+    /// Returns the value with the name `text`, in which - and _ mean the same.
     ///
     /// # Errors
-    /// There is none; `field` is what the error calls the value.
+    /// Fails if no value has the name; the error calls the value `field`.
     fn named(field: &str, text: &str) -> Result<Self, Invalid> {
         let plain = |name: &str| name.replace('-', "_");
         let named = Self::OPTIONS.iter().find(|option| plain(option.choice().name) == plain(text));
@@ -44,7 +44,7 @@ pub trait Choices: Copy + 'static {
         named.copied().ok_or_else(unknown)
     }
 
-    /// All names with their titles and sentences.
+    /// Returns the name, title and sentence of all values.
     fn choices() -> Vec<Choice> {
         Self::OPTIONS.iter().map(|option| option.choice()).collect()
     }

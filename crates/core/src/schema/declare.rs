@@ -1,9 +1,9 @@
-//! Macros that declare settings: each with its documentation, its default and its row in one place.
+//! Macros that declare settings: the documentation, the default and the row of a setting stand in one place.
 
-/// Declares a struct of settings, in the order of files, with their defaults.
+/// Declares a struct of settings in the order in which files have them, with their defaults.
 ///
-/// If each default is followed by a row, the struct is a [`SettingGroup`](super::SettingGroup) whose walk has the same
-/// order. `in "title": "about"` makes its section; other methods of the group may follow the fields.
+/// If each default is followed by a row, the struct is a [`SettingGroup`](super::SettingGroup) whose walk has the order of the fields.
+/// `in "title": "about"` makes a section of the group; other methods of `SettingGroup` may follow the fields.
 ///
 /// ```text
 /// setting_group! {
@@ -46,7 +46,7 @@ macro_rules! setting_group {
         }
 
         $(impl $group {
-            /// The section of these settings.
+            /// Section of these settings.
             pub const SECTION: $crate::schema::Section =
                 $crate::schema::Section { title: $title, about: $about };
         })?
@@ -63,15 +63,15 @@ macro_rules! setting_group {
     };
 }
 
-/// Visits fields of a group under their rows, with the names of the fields: `settings! { walk, width_m: number(..); }`.
+/// Visits fields of a group under their rows, with the fields' names: `settings! { walk, width_m: number(..); }`.
 macro_rules! settings {
     ($walk:ident, $($field:ident: $row:expr;)*) => {
         $($walk.setting(stringify!($field), $row, $field);)*
     };
 }
 
-/// Declares an enum whose values have names, titles and sentences, with [`Choices`](super::Choices) in the same order:
-/// `pub enum Tyre { Soft = "soft", "Soft", "It gives way."; }`. The sentence is the documentation, too.
+/// Declares an enum whose values have names, titles and sentences, with [`Choices`](super::Choices) in the order of the values:
+/// `pub enum Tyre { Soft = "soft", "Soft", "It gives way."; }`. The sentence is also the documentation of the value.
 #[macro_export]
 macro_rules! choices {
     (
@@ -116,13 +116,13 @@ macro_rules! listed_values {
         pub enum $listed { $($(#[$more])* $value,)* }
 
         impl $listed {
-            /// All values, in their order.
+            /// All values, in the order of their declaration.
             pub const ALL: [Self; [$(stringify!($value)),*].len()] = [$(Self::$value),*];
         }
     };
 }
 
-/// Declares an enum with the list `ALL` of its values, and with their names: `pub enum Side { Left = "left side"; }`.
+/// Declares an enum with a list `ALL` and a `name` for each value: `pub enum Side { Left = "left side"; }`.
 macro_rules! named_values {
     (
         $(#[$meta:meta])*
@@ -142,7 +142,7 @@ macro_rules! named_values {
         }
 
         impl $named {
-            /// The name, in lower case.
+            /// Returns the name in lower case.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$value => $name,)* }
             }
@@ -150,22 +150,22 @@ macro_rules! named_values {
     };
 }
 
-/// Gives a kind with a row of facts, `info()`, the names in that row: as methods, as its text, and as
-/// [`Choices`](super::Choices) in the order of `ALL`.
+/// Implements the names of a type whose method `info()` returns a row of facts with a name, a title and a description: as methods, as the
+/// displayed text, and as [`Choices`](super::Choices) in the order of `ALL`.
 macro_rules! named_by_info {
     ($kind:ident) => {
         impl $kind {
-            /// The name in files; flags may write - for _.
+            /// Returns the name in files; flags may write - for _.
             pub fn name(self) -> &'static str {
                 self.info().name
             }
 
-            /// The name at the head of a list or a chart.
+            /// Returns the name at the head of a list or a chart.
             pub fn title(self) -> &'static str {
                 self.info().title
             }
 
-            /// A sentence about it.
+            /// Returns a sentence that describes the value.
             pub fn words(self) -> &'static str {
                 self.info().words
             }

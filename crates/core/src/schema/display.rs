@@ -1,4 +1,4 @@
-//! Units in which panels show settings, where files have another unit: angles are stored in radians and read in degrees.
+//! Units of panels that differ from the units of files: angles are stored in radians and shown in degrees.
 
 use super::setting::{NumberRange, Setting};
 use super::value::SettingValue;
@@ -6,40 +6,40 @@ use super::value::SettingValue;
 /// A unit of panels, and its relation to the unit of files.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DisplayUnit {
-    /// The unit as panels write it.
+    /// Symbol of the unit, as panels write it.
     pub unit: &'static str,
-    /// The shown number for a stored 1.
+    /// Number that panels show for a stored 1.
     pub factor: f64,
 }
 
-/// Decimals that panels show of a number that nobody typed in their unit, such as 0.6 rad.
+/// Decimals that panels show of a number that was not typed in the unit of panels, such as 0.6 rad.
 const ROUNDED_DECIMALS: usize = 2;
-/// Decimals up to which a typed number is shown again digit by digit. More of them could belong to a number that was
-/// not typed, and would look arbitrary.
+/// Greatest number of decimals with which a typed number is shown digit by digit. A number that needs more decimals was probably not typed,
+/// and is rounded.
 const TYPED_DECIMALS: usize = 4;
 
 impl DisplayUnit {
     /// Degrees, for angles in radians.
     pub const DEGREES: Self = Self { unit: "°", factor: 180.0 / std::f64::consts::PI };
 
-    /// The unit in which panels show numbers with this unit of files; none if they show the same.
+    /// Returns the unit in which panels show numbers with this unit of files. None: panels use the unit of files.
     pub fn of_unit(unit: &str) -> Option<Self> {
         (unit == "rad").then_some(Self::DEGREES)
     }
 
-    /// The stored number that is nearest to a shown one.
+    /// Returns the stored number that is nearest to a shown number.
     #[expect(clippy::cast_possible_truncation, reason = "a setting is a 32-bit float")]
     pub fn stored(self, shown: f64) -> f32 {
         (shown / self.factor) as f32
     }
 
-    /// The shown number of a stored one.
+    /// Returns the number that panels show for a stored number.
     pub fn shown(self, stored: f32) -> f64 {
         f64::from(stored) * self.factor
     }
 
-    /// The text of a stored number. A number that was typed in this unit, with up to four decimals, has the digits that
-    /// were typed; any other is rounded.
+    /// Returns the text that panels show for a stored number. A number that was typed in this unit with up to four decimals has the typed
+    /// digits; any other is rounded.
     pub fn text(self, stored: f32) -> String {
         let shown = self.shown(stored);
         let typed = (0..=TYPED_DECIMALS).map(|decimals| format!("{shown:.decimals$}"));
@@ -48,7 +48,7 @@ impl DisplayUnit {
         exact.unwrap_or_else(|| trimmed(format!("{shown:.ROUNDED_DECIMALS$}")))
     }
 
-    /// A bound that lies inside a range of stored numbers, rounded towards its inside.
+    /// Converts a bound of a range to the unit of panels, rounded to hundredths towards the inside of the range.
     fn bound(self, stored: f32, is_upper: bool) -> f32 {
         let hundredths = self.shown(stored) * 100.0;
         let inside = if is_upper { hundredths.floor() } else { hundredths.ceil() };
@@ -58,7 +58,7 @@ impl DisplayUnit {
     }
 }
 
-/// Without zeros at the end of the decimals.
+/// Returns a number's text without zeros at the end of its decimals.
 fn trimmed(text: String) -> String {
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -68,17 +68,17 @@ fn trimmed(text: String) -> String {
 }
 
 impl Setting {
-    /// The unit in which panels show it; empty if it has none.
+    /// Returns the unit in which panels show the setting; empty if the setting has no unit.
     pub fn shown_unit(&self) -> &'static str {
         self.display.map_or(self.unit, |display| display.unit)
     }
 
-    /// A number as panels show it, without its unit.
+    /// Returns the text of a number as panels show it, without its unit.
     pub fn shown_number(&self, stored: f32) -> String {
         self.display.map_or_else(|| stored.to_string(), |display| display.text(stored))
     }
 
-    /// A value as panels show it, without its unit.
+    /// Returns the text of a value as panels show it, without its unit.
     pub fn shown_value(&self, value: &SettingValue) -> String {
         match (self.display, value) {
             (Some(_), SettingValue::Number(number)) => self.shown_number(*number),
@@ -91,7 +91,7 @@ impl Setting {
         }
     }
 
-    /// The text of a value, as files and flags have it, in the form that panels show.
+    /// Converts the text of a value from the form of files and flags to the form of panels.
     pub fn shown_text(&self, text: &str) -> String {
         match self.display.and(self.parse(text)) {
             Some(value) => self.shown_value(&value),
@@ -99,7 +99,7 @@ impl Setting {
         }
     }
 
-    /// A value within a sentence: with its unit, where panels show another than files do.
+    /// Returns the text of a value within a sentence. The unit follows only where panels show another unit than files.
     pub fn value_in_words(&self, value: &SettingValue) -> String {
         let unit = match value {
             SettingValue::Switch(true) => return "on".to_owned(),
@@ -110,14 +110,14 @@ impl Setting {
         format!("{}{unit}", self.shown_value(value))
     }
 
-    /// The text for files and flags of a number that a person typed. None if it is no number.
+    /// Converts a number that a person typed in the unit of panels to the text for files and flags. None if it is not a number.
     pub fn stored_text(&self, typed: &str) -> Option<String> {
         let Some(display) = self.display else { return Some(typed.to_owned()) };
         let shown: f64 = typed.parse().ok()?;
         shown.is_finite().then(|| display.stored(shown).to_string())
     }
 
-    /// A range in the unit of panels.
+    /// Converts a range to the unit of panels.
     pub fn shown_range(&self, range: &NumberRange) -> NumberRange {
         let Some(display) = self.display else { return *range };
         let (least, most) = (display.bound(range.least, false), display.bound(range.most, true));
@@ -127,7 +127,7 @@ impl Setting {
         NumberRange { least, most, slider, logarithmic_from, ..*range }
     }
 
-    /// The texts that a person may type for one number or for the list, in words and in the unit of panels.
+    /// Describes in words, in the unit of panels, the range of the setting's number or numbers.
     pub fn shown_range_in_words(&self) -> String {
         let Some(display) = self.display else { return self.range_in_words() };
         let ends = |range: &NumberRange| {

@@ -1,14 +1,14 @@
-//! The settings schema: one row for each setting, beside the field that it describes.
+//! The settings schema: a row for each setting, beside the field that the row describes.
 //!
-//! A struct of settings implements [`SettingGroup`]: its `walk` pairs each field with a row that has the setting's
-//! name, unit, range or choices, label, hint, and whether it may change during a run. Everything else reads these
-//! rows: the checks, the list of all settings, `--set`, live changes, the panels and `docs/settings.md`.
+//! A struct of settings implements [`SettingGroup`]: its `walk` pairs each field with a row that has the setting's name, unit, range or
+//! choices, label, hint, and whether it may change during a run. The checks, the list of all settings, `--set`, live changes, the panels
+//! and `docs/settings.md` read these rows.
 //!
-//! Values are stored, written and checked in the unit of the row. Panels show some of them in another one, such as
-//! angles in degrees; `display` alone converts between the two.
+//! Values are stored, written and checked in the unit of the row. Panels show some values in another unit, such as angles in degrees; only
+//! the module `display` converts between the two.
 //!
-//! To add a setting, add a field with its default and its row to the `setting_group!` of its struct, which does not
-//! compile without the row. Where the walk has another order than the files, the row stands in `walk`.
+//! To add a setting, add a field with its default and its row to the `setting_group!` of its struct, which does not compile without the
+//! row. If the walk has another order than the files, write the row in `walk` instead.
 
 mod access;
 mod choice;
@@ -36,11 +36,11 @@ pub use table::markdown;
 pub use value::{SettingField, SettingValue};
 pub use walk::{ListedSetting, Section, SettingGroup, SettingVisitor, Walk, walk};
 
-/// Whether a value is the default of its type.
+/// Returns whether a value is the default of its type.
 ///
-/// For a setting that a released format does not have. It bears `#[serde(default, skip_serializing_if =
-/// "is_default")]`, and its default acts as the program did before: files without it keep their meaning, and runs
-/// that do not use it keep their names.
+/// Use it for a setting that an earlier released format does not have, with `#[serde(default, skip_serializing_if = "is_default")]`. The
+/// default must act as the program did before the setting existed: then files without the setting keep their meaning, and runs that do not
+/// use it keep their names.
 pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }

@@ -1,20 +1,20 @@
-//! Parts of the snake and the stairs that may have a value each.
+//! Parts of the snake and the stairs for which a setting may have separate values.
 
-/// The parts of the snake or the stairs that may have a value each, and their number.
+/// The kind and number of parts for which a setting may have separate values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parts {
-    /// No parts: there is one value.
+    /// No parts: the setting has a single value.
     One,
-    /// The limbs.
+    /// One value for each limb of the snake; the number of limbs.
     Limbs(usize),
-    /// The joints.
+    /// One value for each joint of the snake; the number of joints.
     Joints(usize),
-    /// The steps of the stairs.
+    /// One value for each step of the stairs; the number of steps.
     Steps(usize),
 }
 
 impl Parts {
-    /// The number of parts.
+    /// Returns the number of parts; 1 for a single value.
     pub fn count(self) -> usize {
         match self {
             Self::One => 1,
@@ -22,7 +22,7 @@ impl Parts {
         }
     }
 
-    /// One of them, in a word.
+    /// Returns the word for one part.
     pub fn word(self) -> &'static str {
         match self {
             Self::One => "value",
@@ -32,7 +32,7 @@ impl Parts {
         }
     }
 
-    /// The name of one of them; the first index is 0.
+    /// Returns the title of the part with an index from 0, such as "Limb 1, the head"; empty for a single value.
     pub fn name(self, index: usize) -> String {
         let (word, first) = match self {
             Self::One => return String::new(),

@@ -5,17 +5,17 @@ use std::fmt;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A setting of the limbs or joints, head first, or of the steps, lowest first. In a file it is a number or a list of numbers.
+/// Values of a setting of the limbs or joints, head first, or of the steps, lowest first. In a file they are a number or a list of numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PerPart {
     /// One value for all parts.
     All(f32),
-    /// One value for each part, from the head or from the ground.
+    /// One value for each part, in order from the head or from the lowest step.
     Each(Vec<f32>),
 }
 
 impl PerPart {
-    /// The value of part number `index`; the first is 0. Beyond the end of a list its last value applies.
+    /// Returns the value of the part with an index from 0. Beyond the end of a list its last value applies; an empty list gives 0.
     pub fn at(&self, index: usize) -> f32 {
         match self {
             Self::All(value) => *value,
@@ -23,7 +23,7 @@ impl PerPart {
         }
     }
 
-    /// The setting with another value in place of each.
+    /// Returns the setting with `of` applied to each value.
     pub fn map(&self, of: impl Fn(f32) -> f32) -> Self {
         match self {
             Self::All(value) => Self::All(of(*value)),
@@ -55,7 +55,7 @@ impl<'de> Deserialize<'de> for PerPart {
 
 struct PerPartVisitor;
 
-/// Maximum length of a list. A longer one is refused while it is read, before it fills the memory.
+/// Greatest length of a list in a file. A longer list is refused while it is read, before it fills the memory.
 const MAX_PARTS: usize = 100;
 
 #[expect(clippy::cast_possible_truncation, reason = "a setting is a 32-bit float")]

@@ -1,4 +1,4 @@
-//! Rows of the schema: name, label, unit, hint, range or choices, rule for changes.
+//! Rows of the schema: name, label, unit, hint, range or choices, and whether the setting may change during a run.
 
 use std::marker::PhantomData;
 use std::ops::RangeInclusive;
@@ -9,35 +9,35 @@ use super::value::SettingValue;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
 
-/// A setting: everything the program knows of it, apart from its value.
+/// Row of the schema: everything that the program knows about a setting apart from its value.
 #[derive(Debug, Clone, Copy)]
 pub struct Setting {
-    /// The name of its field.
+    /// Name of the setting's field.
     pub name: &'static str,
-    /// The name in panels.
+    /// Name of the setting in panels.
     pub label: &'static str,
-    /// Its unit in files and flags; empty if it has none.
+    /// Unit in files and flags; empty if the setting has none.
     pub unit: &'static str,
-    /// The unit in which panels show it, if that is another.
+    /// Unit in which panels show the setting. None: the unit of files.
     pub display: Option<DisplayUnit>,
     /// Whether a panel shows it only among the advanced settings of its section.
     pub is_advanced: bool,
-    /// Its effect on the snake or on the search.
+    /// Effect of the setting on the snake or on the search, as a sentence without its full stop.
     pub hint: &'static str,
-    /// The type and range of its values.
+    /// Type and range of the setting's values.
     pub kind: SettingKind,
-    /// Reason why it may not change during a run, as a sentence; none if it may.
+    /// Reason why the setting may not change during a run, as a sentence. None: it may.
     pub(super) fixed: Option<&'static str>,
 }
 
-/// The type and range of the values of a setting.
+/// Type and range of the values of a setting.
 #[derive(Debug, Clone, Copy)]
 pub enum SettingKind {
-    /// A number; if the range allows it, also one for each part, or no value.
+    /// A number; if the range allows it, also a number for each part, or no value.
     Number(NumberRange),
-    /// Several numbers.
+    /// A list of numbers.
     List(NumberRange),
-    /// One of some names.
+    /// A name from the list that the function returns.
     Choice(fn() -> Vec<Choice>),
     /// On or off.
     Switch,
@@ -45,31 +45,31 @@ pub enum SettingKind {
     Absent(&'static str),
 }
 
-/// The numbers that a setting may have.
+/// Range of the numbers that a setting may have, and its slider.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberRange {
-    /// The least.
+    /// Least allowed number.
     pub least: f32,
-    /// The greatest.
+    /// Greatest allowed number.
     pub most: f32,
     /// Whether only whole numbers are allowed.
     pub is_whole: bool,
-    /// The ends of its slider; none: it has no slider.
+    /// Numbers at the ends of the slider. None: the setting has no slider.
     pub slider: Option<[f32; 2]>,
-    /// From this value up the slider is logarithmic; none: it is linear.
+    /// Number from which the slider is logarithmic. None: the slider is linear.
     pub logarithmic_from: Option<f32>,
-    /// The parts of the snake or the stairs that may have a value each.
+    /// Parts of the snake or the stairs for which the setting may have separate values.
     pub parts: Parts,
-    /// The value with which an optional setting begins; none: the setting is not optional.
+    /// Number with which a panel switches an optional setting on. None: the setting is not optional.
     pub begins_with: Option<f32>,
 }
 
-/// Something of a run without which some settings have no effect, such as soft limbs; the text says what. A row names what
-/// its setting needs, and a group that knows the run says whether it has that ([`Walk::meet`](super::Walk::meet)).
+/// A property of a run, such as soft limbs, without which some settings have no effect; the text names it. A row states what its setting
+/// needs, and a group that knows the run states which needs are met ([`Walk::meet`](super::Walk::meet)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Need(pub &'static str);
 
-/// The row of a setting whose field is a `T`.
+/// Row of a setting whose field is a `T`, while it is built.
 #[derive(Debug, Clone, Copy)]
 pub struct SettingRow<T> {
     pub(super) setting: Setting,
@@ -108,18 +108,18 @@ fn numbers_in(range: RangeInclusive<f32>) -> NumberRange {
     numbers(*range.start(), *range.end())
 }
 
-/// A number.
+/// Makes the row of a number.
 pub fn number(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<f32> {
     row(label, SettingKind::Number(numbers_in(range)))
 }
 
-/// A whole number. Its greatest value is at most 2^24, up to which a slider's numbers are exact.
+/// Makes the row of a whole number. Its greatest value is at most 2^24, up to which a slider's numbers are exact.
 pub fn whole(label: &'static str, range: RangeInclusive<u32>) -> SettingRow<u32> {
     let range = numbers(*range.start() as f32, *range.end() as f32);
     row(label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
 }
 
-/// A number for all parts, or one for each.
+/// Makes the row of a number for all parts together or of a number for each part.
 pub fn per_part(
     label: &'static str,
     range: RangeInclusive<f32>,
@@ -128,7 +128,8 @@ pub fn per_part(
     row(label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
 }
 
-/// A number for all parts, one for each, or no value: then each genome has its own. A panel begins with `begins_with`.
+/// Makes the row of a number for all parts together, of a number for each part, or of no value: each genome then has its own. Panels switch
+/// the setting on with `begins_with`.
 pub fn optional_per_part(
     label: &'static str,
     range: RangeInclusive<f32>,
@@ -140,31 +141,31 @@ pub fn optional_per_part(
     row(label, SettingKind::Number(range))
 }
 
-/// A list of 1 to [`LONGEST_LIST`] numbers.
+/// Makes the row of a list of 1 to [`LONGEST_LIST`] numbers.
 pub fn list_of_numbers(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<Vec<f32>> {
     row(label, SettingKind::List(numbers_in(range)))
 }
 
-/// The most numbers in a list.
+/// Greatest length of a list of numbers.
 const LONGEST_LIST: usize = 100;
 
-/// One of some names.
+/// Makes the row of a setting whose value is a name of `T`.
 pub fn choice<T: Choices>(label: &'static str) -> SettingRow<T> {
     row(label, SettingKind::Choice(T::choices))
 }
 
-/// On or off.
+/// Makes the row of a setting that is on or off.
 pub fn switch(label: &'static str) -> SettingRow<bool> {
     row(label, SettingKind::Switch)
 }
 
-/// An optional group of settings that is absent; `how` says how to add it.
+/// Makes the row of an optional group of settings that is absent; `how` says how to add the group.
 pub fn absent(label: &'static str, how: &'static str) -> SettingRow<()> {
     row(label, SettingKind::Absent(how))
 }
 
 impl<T> SettingRow<T> {
-    /// Gives the setting the unit of files and flags. Panels show angles in degrees: see [`DisplayUnit::of_unit`].
+    /// Sets the unit in files and flags. Panels show angles in degrees: see [`DisplayUnit::of_unit`].
     pub fn unit(mut self, unit: &'static str) -> Self {
         self.setting.unit = unit;
         self.setting.display = DisplayUnit::of_unit(unit);
@@ -177,13 +178,13 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// Gives the setting a sentence, without its full stop, about its effect on the snake or on the search.
+    /// Sets the sentence, without its full stop, about the setting's effect on the snake or on the search.
     pub fn hint(mut self, hint: &'static str) -> Self {
         self.setting.hint = hint;
         self
     }
 
-    /// Gives the setting a slider between these values.
+    /// Gives the setting a slider from `least` to `most`.
     pub fn slider(mut self, least: f32, most: f32) -> Self {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.slider = Some([least, most]);
@@ -191,7 +192,7 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// Makes the setting's slider logarithmic from a value up.
+    /// Makes the slider logarithmic from `value` up.
     pub fn logarithmic_from(mut self, value: f32) -> Self {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.logarithmic_from = Some(value);
@@ -199,13 +200,13 @@ impl<T> SettingRow<T> {
         self
     }
 
-    /// Restricts the effect of the setting to runs that meet a need.
+    /// Limits the setting's effect to runs that meet `need`.
     pub fn needs(mut self, need: Need) -> Self {
         self.need = Some(need);
         self
     }
 
-    /// Sets whether it has an effect, given the other settings of its group.
+    /// Sets whether the setting has an effect, given the other settings of its group.
     pub fn used_if(mut self, is_used: bool) -> Self {
         self.is_used = is_used;
         self
@@ -219,7 +220,7 @@ impl<T> SettingRow<T> {
 }
 
 impl Setting {
-    /// Its label with the unit of panels.
+    /// Returns the label with the unit of panels.
     pub fn title(&self) -> String {
         match self.shown_unit() {
             "" => self.label.to_owned(),
@@ -227,21 +228,21 @@ impl Setting {
         }
     }
 
-    /// Its name in words, without the unit at its end: `rise_m` is "rise".
+    /// Returns the name in words, without the unit at its end: `rise_m` is "rise".
     pub fn short_name(&self) -> String {
         let name = self.name;
         let short = UNITS_IN_NAMES.iter().find_map(|unit| name.strip_suffix(unit));
         short.unwrap_or(name).replace('_', " ")
     }
 
-    /// The texts for one number or for the list, in words and in the unit of files; empty for a choice and a switch.
+    /// Describes the range of the number or of the list in words, in the unit of files; empty for other kinds of setting.
     pub fn range_in_words(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         let ends = |range: &NumberRange| (range.least.to_string(), range.most.to_string());
         self.range_with(&unit, ends)
     }
 
-    /// The range in words, with the ends as `ends` writes them.
+    /// Describes the range in words, with the ends as `ends` writes them.
     pub(super) fn range_with(
         &self,
         unit: &str,
@@ -261,7 +262,7 @@ impl Setting {
         }
     }
 
-    /// Every text that [`Self::parse`] accepts, in words.
+    /// Describes every text that [`Self::parse`] accepts, with the allowed range.
     pub fn allowed(&self) -> String {
         match &self.kind {
             SettingKind::Number(range) => {
@@ -279,7 +280,7 @@ impl Setting {
         }
     }
 
-    /// Reads a value from a text. It may still be out of range: see [`Self::check`].
+    /// Reads a value of the setting's type from a text. The value may be out of range: see [`Self::check`].
     pub fn parse(&self, text: &str) -> Option<SettingValue> {
         match &self.kind {
             SettingKind::Number(range) if range.is_whole => {
@@ -304,10 +305,10 @@ impl Setting {
         }
     }
 
-    /// Checks a value against the range; `path` is what errors call it.
+    /// Checks a value against the range; errors call it `path`.
     ///
     /// # Errors
-    /// It is out of range, or a list of the wrong length.
+    /// Fails if the value is out of range, or is a list of the wrong length.
     pub fn check(&self, path: &str, value: &SettingValue) -> Result<(), Invalid> {
         match (&self.kind, value) {
             (SettingKind::Number(range), SettingValue::Number(number)) => {
@@ -343,7 +344,7 @@ impl Setting {
         }
     }
 
-    /// Whether each of these words occurs in its label, name, hint or choices.
+    /// Returns whether each word of `words` occurs in the label, name, hint or choices, in any case.
     pub fn is_about(&self, words: &str) -> bool {
         let mut text = format!("{} {} {}", self.title(), self.name.replace('_', " "), self.hint);
         if let SettingKind::Choice(choices) = self.kind {
@@ -360,13 +361,13 @@ fn names(choices: fn() -> Vec<Choice>) -> Vec<&'static str> {
     choices().iter().map(|choice| choice.name).collect()
 }
 
-/// A finite number. It is read as a 64-bit float first, as the settings of older runs were.
+/// Reads a finite number. The text is read as a 64-bit float and then rounded to 32 bits, as in the first files of settings.
 #[expect(clippy::cast_possible_truncation, reason = "a setting is a 32-bit float")]
 fn parse_number(text: &str) -> Option<f32> {
     text.parse::<f64>().ok().map(|number| number as f32).filter(|number| number.is_finite())
 }
 
-/// The numbers of a text such as `[1, 2]`.
+/// Reads the numbers of a text such as `[1, 2]`.
 fn parse_list(text: &str) -> Option<Vec<f32>> {
     let inside = text.trim().strip_prefix('[')?.strip_suffix(']')?.trim();
     if inside.is_empty() {
@@ -375,6 +376,6 @@ fn parse_list(text: &str) -> Option<Vec<f32>> {
     inside.split(',').map(|number| parse_number(number.trim())).collect()
 }
 
-/// The units with which names of settings end, the longer ones first.
+/// Units with which names of settings end, the longer ones first.
 const UNITS_IN_NAMES: [&str; 10] =
     ["_nms_per_rad", "_m_s_per_n", "_kg_m3", "_per_s", "_m_s2", "_m_s", "_rad", "_nm", "_m", "_s"];

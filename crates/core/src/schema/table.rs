@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::walk::SettingGroup;
 use super::{ListedSetting, Section, SettingKind, list};
 
-/// All settings of a group, a table for each section, with their values as defaults.
+/// Writes all settings of a group, with a table for each section. The column "value" has the group's present values.
 pub fn markdown(group: &(impl SettingGroup + Clone)) -> String {
     let all = list(group);
     let mut sections: Vec<Section> = Vec::new();

@@ -4,7 +4,7 @@ use super::*;
 use crate::check::{Invalid, within};
 
 setting_group! {
-    /// Three wheels.
+    /// Number and radius of the wheels.
     pub struct Wheels {
         count: u32 = 3;
         radius_m: f32 = 0.5;
@@ -56,7 +56,7 @@ impl SettingGroup for Wheels {
     }
 }
 
-/// The wheels after a change of one setting, as far as it is allowed.
+/// Returns the default wheels after the change of a setting, or the message of the error that refuses it.
 fn changed(path: &str, text: &str) -> Result<Wheels, String> {
     let mut changed = Wheels::default();
     let result = find(&changed, path)

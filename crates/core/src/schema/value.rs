@@ -1,10 +1,10 @@
-//! The value of any setting, and how it is read from and written to its field.
+//! Values of settings, and how they are read from and written to fields.
 
 use std::fmt;
 
 use super::{Choices, PerPart};
 
-/// The value of a setting.
+/// A value of a setting.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SettingValue {
     /// A number, in the setting's unit.
@@ -15,14 +15,14 @@ pub enum SettingValue {
     Switch(bool),
     /// The name of a choice, as files spell it.
     Name(&'static str),
-    /// Several numbers, in the setting's unit.
+    /// A list of numbers, in the setting's unit.
     List(Vec<f32>),
-    /// No value.
+    /// No value: an optional setting is absent.
     None,
 }
 
 impl fmt::Display for SettingValue {
-    /// Writes it as a person types it: `0.5`, `true`, `ipop`, `[1, 2]`, `none`.
+    /// Writes the value as a person types it: `0.5`, `true`, `ipop`, `[1, 2]`, `none`.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(number) => write!(formatter, "{number}"),
@@ -38,16 +38,16 @@ impl fmt::Display for SettingValue {
     }
 }
 
-/// A field that holds the value of a setting.
+/// A field that stores the value of a setting.
 pub trait SettingField {
-    /// Its value.
+    /// Returns the field's value.
     fn value(&self) -> SettingValue;
 
-    /// Takes a value. Returns false, and keeps its own, if that is of another type.
+    /// Sets the field. Returns false, and keeps the old value, if `value` is of another type.
     fn set(&mut self, value: SettingValue) -> bool;
 }
 
-/// Implements [`SettingField`] for a type whose values are of one variant.
+/// Implements [`SettingField`] for a type that corresponds to one variant of `SettingValue`.
 macro_rules! field_of {
     ($type:ty, $variant:ident) => {
         impl SettingField for $type {
@@ -106,7 +106,7 @@ impl SettingField for Option<PerPart> {
     }
 }
 
-/// Stands in for an absent group of settings.
+/// Field of an absent group of settings, whose only value is none.
 impl SettingField for () {
     fn value(&self) -> SettingValue {
         SettingValue::None

@@ -1,27 +1,27 @@
-//! The way through all settings: groups, sections, and one visit for each field.
+//! The walk through all settings: groups, sections, and a visit to each field.
 
 use super::setting::{Need, Setting, SettingRow};
 use super::value::{SettingField, SettingValue};
 use crate::check::Invalid;
 
-/// Settings that are shown together, under a title.
+/// A group of settings that is shown under a title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Section {
-    /// The title; no other section has it.
+    /// Title of the section; no other section has it.
     pub title: &'static str,
-    /// A sentence about these settings.
+    /// Sentence about the settings of the section.
     pub about: &'static str,
 }
 
 /// A struct of settings.
 pub trait SettingGroup {
-    /// Takes the walk to every field. Destructure `self` without `..`: a field without a row then does not compile.
+    /// Visits every field with `walk`. Destructure `self` without `..`: a field without a row then does not compile.
     fn walk(&mut self, walk: &mut Walk<'_>);
 
-    /// Checks values that depend on each other, which ranges of single settings cannot do.
+    /// Checks values that depend on each other, which the range of a single setting cannot express.
     ///
     /// # Errors
-    /// The field, its value, and the values that are allowed together with the others.
+    /// Names the field, its value, and the values that are allowed together with the other settings.
     fn check_together(&self) -> Result<(), Invalid> {
         Ok(())
     }
@@ -30,54 +30,54 @@ pub trait SettingGroup {
 /// A setting with its value, and whether it is used and may change.
 #[derive(Debug, Clone)]
 pub struct ListedSetting {
-    /// The full dotted name, from the struct at which the walk began.
+    /// Full dotted name, from the struct at which the walk began.
     pub path: String,
-    /// The section that shows it.
+    /// Section that contains the setting.
     pub section: Section,
-    /// Its row.
+    /// Row of the setting.
     pub setting: Setting,
-    /// Its value.
+    /// Present value of the setting.
     pub value: SettingValue,
-    /// Whether the chosen strategy, or the chosen controller, uses it.
+    /// Whether the setting has an effect with the other settings, such as the chosen strategy or controller.
     pub is_used: bool,
-    /// Reason why it may not change during any run, as a sentence; none if it may in a run that uses it.
+    /// Reason why the setting may not change during any run, as a sentence. None: it may change in a run that uses it.
     pub fixed: Option<&'static str>,
-    /// Whether it may change during this run; if not, the reason as a sentence.
+    /// Whether the setting may change during this run; if not, the reason as a sentence.
     pub live: Result<(), &'static str>,
 }
 
-/// Visits settings one after the other.
+/// Visitor of settings, one after the other.
 pub trait SettingVisitor {
     /// Visits a setting and its field.
     fn setting(&mut self, listed: ListedSetting, field: &mut dyn SettingField);
 
-    /// Leaves a group whose dotted name is `path`, after all its settings.
+    /// Follows the visits to all settings of `group`, whose dotted name is `path`.
     fn leave(&mut self, _path: &str, _group: &dyn SettingGroup) {}
 }
 
-/// A walk through the settings: it knows the path, the section and the rule of the settings that come next.
+/// State of a walk through the settings: the visitor, the path, and the properties of the settings that come next.
 pub struct Walk<'a> {
     visitor: &'a mut dyn SettingVisitor,
     path: String,
     state: State,
 }
 
-/// State of a walk; it applies to the settings that come next, until the end of their group.
+/// Properties of the settings that come next, until the end of their group.
 #[derive(Clone)]
 struct State {
     section: Section,
     is_used: bool,
-    /// Names of settings without effect, below the path with this length.
+    /// Length of a group's path, and the names below it of settings without effect.
     without_effect: (usize, Vec<&'static str>),
-    /// The needs that the run does not meet.
+    /// Needs that the run does not meet.
     unmet: Vec<Need>,
     fixed: Option<&'static str>,
 }
 
-/// Reason why a setting that the run does not use cannot change.
+/// Reason why a setting that the run does not use cannot change during the run.
 const UNUSED: &str = "Takes effect with the next run, because the current run does not use it.";
 
-/// Takes a visitor to every setting of a group.
+/// Visits every setting of a group with a visitor.
 pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
     let section = Section { title: "Settings", about: "All settings." };
     let without_effect = (0, Vec::new());
@@ -93,29 +93,29 @@ impl Walk<'_> {
         self.state.section = section;
     }
 
-    /// Sets whether the next settings of this group have an effect, given the choices made elsewhere.
+    /// Sets whether the next settings of this group have an effect, given settings outside the group.
     pub fn used_if(&mut self, is_used: bool) {
         self.state.is_used = is_used;
     }
 
-    /// Names the settings of this group that have no effect, given the choices made elsewhere, by their paths below it.
+    /// Sets the paths, below this group, of settings that have no effect, given settings outside the group.
     pub fn without_effect(&mut self, names: Vec<&'static str>) {
         self.state.without_effect = (self.path.len(), names);
     }
 
-    /// Sets whether the run meets a need of the next settings of this group. It meets all others.
+    /// Records whether the run meets a need of the next settings of this group. A need that is not recorded is met.
     pub fn meet(&mut self, need: Need, is_met: bool) {
         if !is_met {
             self.state.unmet.push(need);
         }
     }
 
-    /// Whether the run meets a need.
+    /// Returns whether the run meets a need.
     pub fn meets(&self, need: Need) -> bool {
         !self.state.unmet.contains(&need)
     }
 
-    /// Sets the reason, as a sentence, why the next settings of this group may not change during a run.
+    /// Forbids changes of the next settings of this group during a run, for a reason that is a sentence.
     pub fn fixed(&mut self, reason: &'static str) {
         self.state.fixed = Some(reason);
     }
@@ -146,7 +146,7 @@ impl Walk<'_> {
         self.path.truncate(length);
     }
 
-    /// Visits a group of settings below this one.
+    /// Visits a group of settings that is the field `name` of this group.
     pub fn group(&mut self, name: &str, group: &mut dyn SettingGroup) {
         let state = self.state.clone();
         let length = self.enter(name);
@@ -156,14 +156,14 @@ impl Walk<'_> {
         self.state = state;
     }
 
-    /// Whether the setting at the present path is not among those without effect.
+    /// Returns whether the setting at the present path is not among the settings without effect.
     fn has_effect(&self) -> bool {
         let (below, names) = &self.state.without_effect;
         let name = self.path.get(*below..).unwrap_or_default();
         !names.contains(&name.strip_prefix('.').unwrap_or(name))
     }
 
-    /// Goes one name down. Returns the length of the path before.
+    /// Appends a name to the path. Returns the length of the path before.
     fn enter(&mut self, name: &str) -> usize {
         let length = self.path.len();
         if length > 0 {
