@@ -1,4 +1,4 @@
-//! A genome that a strategy proposes, and everything that the strategy says about it.
+//! Candidates: genomes that a strategy proposes, with what the strategy states about each.
 
 use std::sync::Arc;
 
@@ -7,37 +7,37 @@ use crate::genome::Genome;
 use crate::score::Trial;
 use crate::world::Stairs;
 
-/// A genome to be evaluated.
+/// A genome that a strategy proposes for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidate {
-    /// The genome.
+    /// Genome to be evaluated.
     pub genome: Genome,
-    /// Its parents.
+    /// Parents of the genome.
     pub parents: Parents,
-    /// The stairs on which it is evaluated; none for those of its run.
+    /// Stairs on which the genome is evaluated. None: the stairs of the run.
     pub stairs: Option<OwnStairs>,
-    /// The number of its species; none if its strategy has no species. Numbers ascend in the order of appearance.
+    /// Number of the candidate's species, ascending in the order of appearance. None if the strategy has no species.
     pub species: Option<u32>,
-    /// Whether it may become a champion.
+    /// Whether the candidate may become a champion.
     pub may_be_champion: bool,
-    /// Properties that its strategy needs again when it learns the result.
+    /// Properties that the strategy needs again when it learns the evaluation.
     pub(super) heritage: Heritage,
 }
 
-/// Properties of a candidate that descendants take over, but that its genome does not tell. Each is 0 or empty for
-/// strategies that do not use it.
+/// Properties of a candidate that its descendants inherit, but that do not follow from its genome. Each is 0 or empty for strategies that
+/// do not use it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Heritage {
-    /// Coordinates of the unit cube, or around it, from which the genome was made.
+    /// Coordinates, in or around the unit cube, from which the genome was made.
     pub point: Vec<f64>,
-    /// Step of mutation, as a share of each gene's range.
+    /// Size of a mutation step, as a share of each gene's range.
     pub step: f64,
-    /// Generations since the last change of the structure of its body.
+    /// Generations since the structure of the candidate's body last changed.
     pub age: u32,
 }
 
 impl Candidate {
-    /// A candidate that is evaluated in the trial of its run, without species.
+    /// Makes a candidate without species that is evaluated in the trial of the run.
     pub fn new(genome: Genome, parents: Parents) -> Self {
         Self {
             genome,
@@ -49,30 +49,30 @@ impl Candidate {
         }
     }
 
-    /// A candidate with this number of generations since the last change of the structure of its body.
+    /// Makes a candidate whose body last changed its structure `age` generations ago.
     pub(super) fn aged(age: u32, genome: Genome, parents: Parents) -> Self {
         let heritage = Heritage { age, ..Heritage::default() };
         Self { heritage, ..Self::new(genome, parents) }
     }
 
-    /// A candidate whose genome was made from a point.
+    /// Makes a candidate whose genome was made from `point`.
     pub(super) fn at(point: Vec<f64>, genome: Genome, parents: Parents) -> Self {
         let heritage = Heritage { point, ..Heritage::default() };
         Self { heritage, ..Self::new(genome, parents) }
     }
 }
 
-/// The stairs on which a candidate is evaluated, if they are not those of its run.
+/// Stairs on which a candidate is evaluated instead of the stairs of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnStairs {
-    /// The stairs.
+    /// Shape of the stairs.
     pub stairs: Arc<Stairs>,
-    /// Number of perturbed trials beside those of the run.
+    /// Number of perturbed trials in addition to those of the run.
     pub perturbed: u32,
 }
 
 impl OwnStairs {
-    /// A trial on these stairs.
+    /// Returns `trial` on these stairs, with their additional perturbed trials.
     pub fn on(&self, trial: &Trial) -> Trial {
         let mut trial = trial.on_stairs((*self.stairs).clone());
         trial.repeats.trials += self.perturbed;

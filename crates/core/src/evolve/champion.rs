@@ -1,4 +1,4 @@
-//! An individual worth keeping, with its origin.
+//! Champions: individuals worth keeping, with their origin.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,52 +6,52 @@ use crate::genome::Genome;
 use crate::score::{Evaluation, Fitness, Trial};
 use crate::world::BodyPlan;
 
-/// An individual worth keeping, with everything that a replay needs.
+/// An individual worth keeping, with everything that its replay needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Champion {
-    /// The individual.
+    /// Genome of the individual.
     pub genome: Genome,
-    /// The conditions under which it was scored.
+    /// Conditions under which the individual was scored.
     pub trial: Trial,
-    /// Its evaluation.
+    /// Evaluation of the individual in its trial.
     pub evaluation: Evaluation,
-    /// Its fitness over the varied trials on which its run chose it; none if its run chose by the evaluation alone.
+    /// Fitness over the varied trials on which the run chose the champion. None if the run chose it by the evaluation alone.
     pub chosen_by: Option<f32>,
-    /// The run that found it, and its place there.
+    /// Run that found the champion, with its generation and index.
     pub origin: Origin,
 }
 
 impl Champion {
-    /// Way of its middle towards the stairs, in m.
+    /// Returns the displacement of the body's middle towards the stairs during the trial, in m.
     pub fn way_m(&self) -> f32 {
         self.evaluation.centre_y_m - self.trial.middle_start_y_m(&self.genome)
     }
 
-    /// Steps that its middle limb had climbed at the end.
+    /// Returns the number of steps that the middle limb had climbed at the end; 0 if it was not measured.
     pub fn steps_climbed(&self) -> u32 {
         self.evaluation.behaviour.map_or(0, |behaviour| behaviour.steps_climbed)
     }
 
-    /// The body that it has in its trial.
+    /// Returns the body of the champion in its trial.
     pub fn body(&self) -> BodyPlan {
         self.trial.agent.body_plan(&self.genome)
     }
 
-    /// The numbers by which a run compares its champions: the greater are the better one. Higher stairs, to which a ladder
-    /// leads, come before greater fitness.
+    /// Returns the numbers by which a run ranks its champions, the more important first; greater is better. Higher stairs, to which a
+    /// ladder leads, come before greater fitness.
     pub fn rank(&self) -> [f32; 2] {
         [self.trial.stairs.highest_m(), self.chosen_by.unwrap_or(self.evaluation.fitness)]
     }
 
-    /// The numbers of [`Self::rank`] in a run whose stairs evolve: higher stairs come first only once a snake covers this share
-    /// of their way.
+    /// Returns the rank in a run whose stairs evolve. The height of the stairs counts only if the champion was not disqualified and its
+    /// fitness is at least `solved`; otherwise it is 0.
     pub fn rank_of_climbed(&self, solved: f32) -> [f32; 2] {
         let [highest_m, fitness] = self.rank();
         let is_climbed = self.evaluation.disqualified.is_none() && fitness >= solved;
         [if is_climbed { highest_m } else { 0.0 }, fitness]
     }
 
-    /// A short description of its result: fitness, and where it ended.
+    /// Describes the result in a few words: the fitness and, unless that tells it, where the champion ended.
     pub fn reached(&self) -> String {
         let score = self.score();
         match self.trial.fitness {
@@ -60,13 +60,13 @@ impl Champion {
         }
     }
 
-    /// Its fitness with the unit.
+    /// Returns the fitness with its unit.
     pub fn score(&self) -> String {
         self.trial.fitness.text(self.evaluation.fitness)
     }
 }
 
-/// The run that found an individual, and its generation and index there.
+/// Run that found an individual, with the individual's generation and index.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
@@ -74,7 +74,7 @@ pub struct Origin {
     pub preset: String,
     /// Seed of the run.
     pub seed: u64,
-    /// Generation; the first is 1.
+    /// Generation of the individual; the first is 1.
     pub generation: u32,
     /// Index within the generation; the first is 0.
     pub individual: u32,

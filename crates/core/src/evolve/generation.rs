@@ -1,4 +1,4 @@
-//! Results of a generation in numbers, as the log of its run has them.
+//! Records of generations: the numbers that the log of a run has of each generation.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
@@ -8,46 +8,46 @@ use super::stairs_tree::StairsCount;
 use crate::check::{Invalid, hex_hash, within};
 use crate::score::{FITNESS_RANGE, Trial};
 
-/// The numbers of a finished generation.
+/// Record of a finished generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GenerationRecord {
-    /// Its number; the first is 1.
+    /// Number of the generation; the first is 1.
     pub generation: u32,
     /// Number of individuals that were evaluated.
     pub evaluations: u32,
-    /// Number of these that were disqualified, for any reason.
+    /// Number of evaluated individuals that were disqualified, for any reason.
     pub disqualified: u32,
-    /// Number of these whose simulation panicked.
+    /// Number of evaluated individuals whose simulation panicked.
     pub crashed: u32,
-    /// Number of healthy individuals that ended on the landing; on a ladder, of the stairs to which it leads, and where stairs
-    /// evolve, of their own.
+    /// Number of healthy individuals that ended on the landing: of the stairs of their rung on a ladder, of their own stairs where stairs
+    /// evolve.
     pub on_landing: u32,
-    /// The index of the first of them.
+    /// Index of the first individual on the landing. None if there is none.
     pub first_on_landing: Option<u32>,
-    /// Fitness statistics of the healthy individuals; none if all were disqualified.
+    /// Statistics of the fitness of the healthy individuals. None if all individuals were disqualified.
     pub statistics: Option<Statistics>,
-    /// The champion's fitness over the varied trials on which the run chose it; none if it chose by the trial alone.
+    /// Fitness of the champion over the varied trials on which the run chose it. None if the run chose by the trial alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen_by: Option<f64>,
-    /// The largest species, [`MOST_SPECIES_RECORDED`] at most, in ascending order of their numbers; of evolving bodies the
-    /// numbers of blocks. Empty for a strategy without both, and in logs of earlier versions of the program.
+    /// The largest species, at most [`MOST_SPECIES_RECORDED`], in ascending order of their numbers. Where bodies evolve, species are
+    /// numbers of blocks. Empty for other strategies, and in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<SpeciesCount>,
-    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    /// Rung of the ladder on which the generation was evaluated. None without a ladder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rung: Option<Rung>,
-    /// Numbers of the stairs after it; none unless stairs evolve.
+    /// Numbers of stairs after the generation. None unless stairs evolve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stairs: Option<StairsCount>,
     /// Hash over the bits of every evaluation, in the order of the individuals. Files have its 16 hexadecimal digits.
     #[serde(with = "hex_hash")]
     pub hash: u64,
-    /// Wall-clock time since the generation began or the program was started, in seconds. Not part of any hash.
+    /// Wall-clock time since the generation began or the program was started, in seconds. No hash includes it.
     pub elapsed_s: f64,
 }
 
-/// Statistics over the fitness of the healthy individuals of one generation.
+/// Statistics of the fitness of the healthy individuals of one generation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statistics {
@@ -55,45 +55,45 @@ pub struct Statistics {
     pub mean: f64,
     /// Greatest fitness.
     pub best: f64,
-    /// Median; of an even number, the mean of the two middle ones.
+    /// Median; of an even number of individuals, the mean of the two middle values.
     pub median: f64,
     /// Standard deviation of the whole population (divided by n).
     pub std: f64,
     /// Least fitness.
     pub worst: f64,
-    /// Mean final y of the centre, in m, independent of what is rewarded.
+    /// Mean final y of the individuals' centres, in m, whatever the fitness measures.
     pub mean_centre_y_m: f64,
-    /// Lower quartile; none in logs of earlier versions of the program.
+    /// Lower quartile. None in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_quartile: Option<f64>,
-    /// Upper quartile; none in logs of earlier versions of the program.
+    /// Upper quartile. None in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_quartile: Option<f64>,
 }
 
-/// A rung of a ladder of stairs, and the success of a generation on it. The ladder's next rung follows from these of all
-/// generations.
+/// A rung of a ladder of stairs, and the successes of a generation on it. The rung of the next generation follows from the records of all
+/// earlier generations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rung {
-    /// Rise of the stairs, in m.
+    /// Rise of a step of the stairs, in m.
     pub rise_m: f32,
-    /// Number of individuals that succeeded.
+    /// Number of individuals that succeeded on the rung.
     pub successes: u32,
 }
 
-/// Maximum number of species that the log has of a generation, so that the log of the longest run can be read again.
+/// Maximum number of species in the record of a generation. It limits the size of a log, so that the log of the longest run can be read.
 pub const MOST_SPECIES_RECORDED: usize = 24;
 
-/// A species in a generation. Files have it as a list: number, size, best fitness.
+/// A species in a generation. Files have it as a list of number, size and best fitness.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(into = "(u32, u32, Option<f32>)", from = "(u32, u32, Option<f32>)")]
 pub struct SpeciesCount {
-    /// Number of the species; ascending in the order of appearance.
+    /// Number of the species, ascending in the order of appearance.
     pub id: u32,
-    /// Number of its individuals, at least 1.
+    /// Number of individuals of the species, at least 1.
     pub size: u32,
-    /// The best fitness of its healthy individuals; none if all were disqualified.
+    /// Best fitness of the species' healthy individuals. None if all of them were disqualified.
     pub best: Option<f32>,
 }
 
@@ -110,21 +110,21 @@ impl From<(u32, u32, Option<f32>)> for SpeciesCount {
 }
 
 impl Statistics {
-    /// Lower and upper quartile; none in logs of earlier versions of the program.
+    /// Returns the lower and the upper quartile. None in logs of earlier versions of the program.
     pub fn quartiles(&self) -> Option<(f64, f64)> {
         self.lower_quartile.zip(self.upper_quartile)
     }
 }
 
 impl Rung {
-    /// A trial on the stairs of this rung.
+    /// Returns `trial` with the stairs of this rung.
     pub fn on(&self, mut trial: Trial) -> Trial {
         trial.stairs.rise_m = self.rise_m.into();
         trial
     }
 }
 
-/// Hash over the hashes of all generations: that of a run.
+/// Returns the hash of a run: the hash over the hashes of all its generations.
 pub fn run_hash(records: &[GenerationRecord]) -> u64 {
     let mut hash = Xxh3Default::new();
     records.iter().for_each(|record| hash.update(&record.hash.to_le_bytes()));
@@ -132,10 +132,10 @@ pub fn run_hash(records: &[GenerationRecord]) -> u64 {
 }
 
 impl GenerationRecord {
-    /// Checks that it can be generation number `generation` of a run; `plan` is that of the run after all its changes.
+    /// Checks that the record can be number `generation` of a run. `plan` is the plan of the run after all its changes.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// Names the first value that is not allowed.
     pub fn check(&self, generation: u32, plan: &RunPlan) -> Result<(), Invalid> {
         let most = u32::try_from(plan.budget()).unwrap_or(u32::MAX);
         within("generation", self.generation, generation..=generation)?;
@@ -166,7 +166,7 @@ impl GenerationRecord {
         self.stairs.map_or(Ok(()), StairsCount::check)
     }
 
-    /// Checks the species: each individual belongs to one at most.
+    /// Checks that the species ascend in number and together have at most as many members as the generation has individuals.
     fn check_species(&self) -> Result<(), Invalid> {
         let evaluations = u64::from(self.evaluations);
         within("number of species", self.species.len(), 0..=MOST_SPECIES_RECORDED)?;
@@ -184,7 +184,7 @@ impl GenerationRecord {
         Ok(())
     }
 
-    /// A generation of this number of healthy individuals, of which nothing else is known; for tests.
+    /// Makes a record of healthy individuals without statistics, for tests.
     pub fn of_test(generation: u32, evaluations: u32) -> Self {
         Self {
             generation,

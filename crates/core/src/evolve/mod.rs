@@ -1,6 +1,6 @@
 //! Evolution: the settings and the plan of a run, and the strategies that search.
 //!
-//! A strategy is asked for candidates and told their evaluations. It sees neither the world, nor a thread, nor a clock.
+//! A strategy proposes candidates and learns from their evaluations. It has no access to the world, a thread or a clock.
 
 mod archives;
 mod candidate;

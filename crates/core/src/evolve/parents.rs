@@ -1,31 +1,31 @@
-//! Parents of individuals, as far as a strategy knows them. Nothing of a run depends on this.
+//! Parents of individuals, as far as a strategy knows them. They are only recorded: the results of a run do not depend on them.
 
-/// An individual of a run, by its generation and index.
+/// Position of an individual in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct IndividualId {
-    /// Generation; the first is 1.
+    /// Generation of the individual; the first is 1.
     pub generation: u32,
     /// Index within the generation; the first is 0.
     pub individual: u32,
 }
 
-/// The parents of an individual.
+/// Parents of an individual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parents {
     /// No parents: the genome was drawn at random.
     None,
-    /// One, of which it is a copy, varied or not.
+    /// One parent: the genome is a copy of the parent's, varied or not.
     One(IndividualId),
-    /// Two. The first is the one that it resembles more, if there is a difference.
+    /// Two parents. If the child resembles one of them more, that parent is the first.
     Two(IndividualId, IndividualId),
-    /// No single individual: it was drawn from a distribution that all earlier generations have shaped.
+    /// No individual: the genome was drawn from a distribution that all earlier generations have shaped.
     Distribution,
-    /// Not recorded, because an earlier session finished the generation of its parents.
+    /// The parents are not recorded, because the run was continued after their generation had finished.
     Unknown,
 }
 
 impl Parents {
-    /// The ids of the parents, the first first.
+    /// Returns the ids of the known parents, in order.
     pub fn ids(self) -> impl Iterator<Item = IndividualId> {
         let (first, second) = match self {
             Self::One(first) => (Some(first), None),

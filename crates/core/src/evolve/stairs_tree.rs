@@ -1,4 +1,4 @@
-//! Stairs that evolved in a run, each with the snake that climbs it best: a tree by descent.
+//! The tree of the stairs that evolved in a run, each with the snake that climbs it best.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,12 +8,12 @@ use crate::genome::{Genome, StairsGenome};
 use crate::schema::check;
 use crate::score::Trial;
 
-/// The stairs of a run, in the order in which they came; the first is the root.
+/// All stairs of a run in the order in which they were created; the first is the root.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StairsTree {
-    /// Number of finished rounds.
+    /// Number of finished rounds of the run.
     pub rounds: u32,
-    /// All stairs so far.
+    /// All stairs so far, archived ones included.
     pub nodes: Vec<StairsNode>,
     /// The latest transfers of snakes between stairs, the earliest first.
     pub transfers: Vec<Transfer>,
@@ -23,64 +23,64 @@ pub struct StairsTree {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StairsNode {
-    /// The staircase.
+    /// Genes of the staircase.
     pub stairs: StairsGenome,
-    /// Index of the staircase of which it is a mutant; none for the root.
+    /// Index of the staircase of which this one is a mutant. None for the root.
     pub parent: Option<u32>,
-    /// The round at whose end it came; 0 for the root.
+    /// Round at whose end the staircase was created; 0 for the root.
     pub born: u32,
-    /// The round at whose end it was archived, after which its agent no longer learns; none while it is active.
+    /// Round at whose end the staircase was archived, after which its agent does not learn. None while the staircase is active.
     pub archived: Option<u32>,
-    /// The round in which its agent first solved it.
+    /// Round in which the agent first solved the staircase. None if it has not.
     pub solved: Option<u32>,
-    /// Whether it was neither too easy nor too hard, when it came, for the best of the active agents and of a copy of each
-    /// earlier one as it was when its stairs came.
+    /// Whether the staircase, when it was created, was neither too easy nor too hard for the best of the active agents and of the copies of
+    /// earlier agents. A copy was made when the stairs of its agent were created.
     pub is_new_challenge: bool,
-    /// Its agent; none before the root's first measurement.
+    /// The snake that climbs the staircase best. None before the first measurement of the root.
     pub agent: Option<Agent>,
-    /// The agent's mean share of the way over the nominal and the perturbed trials, when it was last measured; a mutant
-    /// begins with the share of the nominal trial. 0 without an agent.
+    /// Mean share of the way that the agent covered over the nominal and the perturbed trials, when last measured. A new mutant has the
+    /// share of the nominal trial. 0 without an agent.
     pub score: f32,
-    /// Trials simulated on it.
+    /// Number of trials simulated on the staircase.
     pub trials: u64,
 }
 
-/// A snake that was found in a run, and the place where it was first evaluated.
+/// A snake that was found in a run, with the position at which it was first evaluated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Agent {
-    /// Its genes.
+    /// Genome of the snake.
     pub genome: Genome,
-    /// The generation; 0 for the founder of the run.
+    /// Generation of the first evaluation; 0 for the founder of the run.
     pub generation: u32,
-    /// The index within the generation.
+    /// Index within the generation.
     pub individual: u32,
 }
 
-/// The transfer of an agent to other stairs, whose agent it replaced.
+/// The transfer of an agent to other stairs, where it replaced the agent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Transfer {
-    /// The round.
+    /// Round of the transfer.
     pub round: u32,
-    /// Index of the stairs from which the agent came.
+    /// Index of the stairs from which the agent was copied.
     pub from: u32,
-    /// Index of the stairs to which it went.
+    /// Index of the stairs whose agent was replaced.
     pub to: u32,
 }
 
 impl Agent {
-    /// Checks that a run with this plan can have found it.
+    /// Checks that a run with this plan can have found the agent.
     ///
     /// # Errors
-    /// Its genes do not fit.
+    /// Fails if the agent's genome does not fit the plan.
     pub fn check(&self, plan: &RunPlan) -> Result<(), Invalid> {
         plan.check_genome(&self.genome)
     }
 }
 
 impl StairsNode {
-    /// The first stairs of a run, without an agent.
+    /// Makes the first staircase of a run, without an agent.
     pub(super) fn root(stairs: StairsGenome) -> Self {
         Self {
             stairs,
@@ -95,14 +95,14 @@ impl StairsNode {
         }
     }
 
-    /// Checks that these stairs can be number `index`, from 0, of a run that has come to this round.
+    /// Checks that the staircase can have the index `index` in a run that has reached round `round`.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// Names the first value that is not allowed.
     pub fn check(&self, index: usize, round: u32, plan: &RunPlan) -> Result<(), Invalid> {
         check(&self.stairs)?;
         check_score("score", self.score)?;
-        // The parent comes before its child; the root has none.
+        // A parent has a lower index than its child; only the root has no parent.
         if self.parent.is_none_or(|parent| parent as usize >= index) != (index == 0) {
             let found = self.parent.map_or("none".to_owned(), |parent| parent.to_string());
             return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
@@ -111,48 +111,48 @@ impl StairsNode {
         self.agent.as_ref().map_or(Ok(()), |agent| agent.check(plan))
     }
 
-    /// A trial of the run on these stairs.
+    /// Returns a trial of the run on this staircase.
     pub fn trial(&self, trial: &Trial) -> Trial {
         trial.on_stairs(self.stairs.stairs())
     }
 }
 
 impl StairsTree {
-    /// Number of accumulated novel environments created and solved (ANNECS, Wang et al., "Enhanced POET", 2020): stairs that
-    /// were neither too easy nor too hard for any agent of the run so far and that were solved later.
+    /// Counts the accumulated novel environments created and solved (ANNECS, Wang et al., "Enhanced POET", 2020): stairs that were neither
+    /// too easy nor too hard for any agent of the run when they were created, and that were solved later.
     pub fn solved_challenges(&self) -> usize {
         self.nodes.iter().filter(|node| node.is_new_challenge && node.solved.is_some()).count()
     }
 
-    /// Number of stairs that were solved.
+    /// Counts the stairs that were solved.
     pub fn solved(&self) -> usize {
         self.nodes.iter().filter(|node| node.solved.is_some()).count()
     }
 
-    /// Number of stairs whose agents still learn.
+    /// Counts the active stairs, whose agents still learn.
     pub fn active(&self) -> usize {
         self.nodes.iter().filter(|node| node.archived.is_none()).count()
     }
 }
 
-/// Numbers of the stairs of a run whose stairs evolve.
+/// Counts of stairs in a run whose stairs evolve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StairsCount {
-    /// Finished rounds.
+    /// Number of finished rounds.
     pub rounds: u32,
-    /// All stairs so far.
+    /// Number of all stairs so far.
     pub all: u32,
-    /// Stairs whose snakes still learn.
+    /// Number of active stairs, whose agents still learn.
     pub active: u32,
-    /// Stairs that were solved.
+    /// Number of stairs that were solved.
     pub solved: u32,
-    /// Solved stairs that were neither too easy nor too hard for any snake when they came (ANNECS).
+    /// Number of solved stairs that were neither too easy nor too hard for any agent when they were created (ANNECS).
     pub challenges: u32,
 }
 
 impl StairsCount {
-    /// The numbers of a tree.
+    /// Counts the stairs of a tree.
     pub fn of(tree: &StairsTree) -> Self {
         Self {
             rounds: tree.rounds,
@@ -163,22 +163,22 @@ impl StairsCount {
         }
     }
 
-    /// The numbers of rounds, stairs and challenges in words.
+    /// Describes the counts in words, beginning with the number of the round in progress.
     pub fn words(self) -> String {
         let Self { rounds, all, active, solved, challenges } = self;
         let round = rounds.saturating_add(1);
         let words = format!("round {round}, {all} stairs, {active} active, {solved} solved");
         match challenges {
-            // Not every strategy knows new challenges.
+            // The strategies that do not determine new challenges always count 0.
             0 => words,
             _ => format!("{words}, {challenges} new challenges"),
         }
     }
 
-    /// Checks that these numbers go together.
+    /// Checks that the counts are consistent with each other.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Names the first count that is not allowed.
     pub fn check(self) -> Result<(), Invalid> {
         within("stairs.active", self.active, 0..=self.all)?;
         within("stairs.solved", self.solved, 0..=self.all)?;
@@ -186,13 +186,13 @@ impl StairsCount {
     }
 }
 
-/// Greatest score in a file. A share is at most 1.1.
+/// Greatest score that a file may have. A share of the way is at most 1.1.
 const MOST_SCORE: f32 = 10.0;
 
-/// Checks a share of the way in a file.
+/// Checks a share of the way that was read from a file.
 ///
 /// # Errors
-/// It is negative, or greater than any share.
+/// Fails if `score` is negative or greater than `MOST_SCORE`.
 pub fn check_score(field: &str, score: f32) -> Result<(), Invalid> {
     within(field, score, 0.0..=MOST_SCORE)
 }

@@ -1,4 +1,4 @@
-//! The interface of all strategies, and how a generation is ranked.
+//! The interface of all strategies, and the ranking of a generation.
 
 use ron::ser::{PrettyConfig, to_string_pretty};
 use ron::value::RawValue;
@@ -14,97 +14,97 @@ use crate::check::Invalid;
 use crate::learn::Episode;
 use crate::score::Evaluation;
 
-/// A way to search, one generation at a time.
+/// A search strategy, which works generation by generation.
 ///
-/// A strategy sees genomes and evaluations, never the world, a thread or a clock. All its random numbers come from
-/// streams named after the individual they are for.
+/// A strategy receives genomes and evaluations; it has no access to the world, a thread or a clock. The stream of each random number is
+/// identified by the individual for which the number is drawn.
 pub trait Strategy: Send {
-    /// The search at the beginning of a run.
+    /// Begins the search of a new run.
     fn begin(plan: &RunPlan) -> Self
     where
         Self: Sized;
 
-    /// The search after the first `finished` generations of a run.
+    /// Restores the search after the first `finished` generations of a run.
     ///
     /// # Errors
-    /// The state is not one of this strategy and this plan. A state that is accepted bounds memory and time as the
-    /// settings do, wherever it comes from.
+    /// Fails if the state is not a state of this strategy with this plan. An accepted state, even from an unknown file, needs no more
+    /// memory and time than the settings allow.
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid>
     where
         Self: Sized;
 
-    /// The candidates of the next generation, in the order of their indices. Asking twice gives the same.
+    /// Returns the candidates of the next generation, in the order of their indices. A second call returns equal candidates.
     fn ask(&self) -> Vec<Candidate>;
 
-    /// Number of candidates in the next generation.
+    /// Returns the number of candidates in the next generation.
     fn population(&self) -> usize;
 
-    /// Learns from the candidates that the last `ask` returned and their evaluations, in the same order.
+    /// Learns from the candidates that the last call of `ask` returned and from their evaluations, in equal order.
     fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]);
 
-    /// Forgets the values of all generations so far. A ladder may put later generations on other stairs, whose values do
-    /// not compare with earlier ones; a search that ends when its values no longer change would end too early.
+    /// Forgets the values of all generations so far. A ladder may put later generations on other stairs, where values are not comparable
+    /// with earlier values; a search that ends when its values stagnate would end too early.
     fn forget_values(&mut self) {}
 
-    /// Whether it learns from the experience of episodes, beside their evaluations.
+    /// Returns whether the strategy also learns from the experience of episodes, not only from evaluations.
     fn learns_from_episodes(&self) -> bool {
         false
     }
 
-    /// Learns from the episodes of the candidates that the last `ask` returned, in the same order, before it is told their
-    /// evaluations. An evaluation that failed has none.
+    /// Learns from the episodes of the candidates that the last call of `ask` returned, in equal order; the call of `tell` follows. An
+    /// evaluation that failed has no episode.
     fn learn(&mut self, _episodes: Vec<Option<Episode>>) {}
 
-    /// The state of the strategy: everything that it has learned. Together with settings, seed and the number of finished
-    /// generations, it is enough to continue bit for bit.
+    /// Returns the state of the strategy: everything that it has learned. With the settings, the seed and the number of finished
+    /// generations, the state is enough to continue the run bit for bit.
     fn state(&self) -> StrategyState;
 
-    /// Adopts the settings of a plan in which some have changed that
-    /// [`may_change_during_run`](super::may_change_during_run) allows. They apply from the next generation on.
+    /// Adopts a plan in which settings have changed that [`may_change_during_run`](super::may_change_during_run) allows. The new values
+    /// apply from the next generation on.
     fn apply_settings(&mut self, plan: &RunPlan);
 
-    /// The individuals that may become parents from now on, in an order of the strategy's own.
+    /// Returns the individuals that may become parents from now on, in an order of the strategy's own.
     fn parent_pool(&self) -> Vec<IndividualId> {
         Vec::new()
     }
 
-    /// Restores, after [`Self::resume`], the ids of parents, for a strategy whose state has only their genes. `_pool` has
-    /// those that [`Self::parent_pool`] returned before and that belong to the last generation, so a strategy with older
-    /// parents keeps ids in its state. Ids that do not fit the state are ignored, and stay unknown.
+    /// Restores the ids of parents after [`Self::resume`], for a strategy whose state has only the parents' genes. `_pool` has the ids of
+    /// [`Self::parent_pool`] that belong to the last generation; a strategy with older parents keeps ids in its state. Ids that do not fit
+    /// the state are ignored, and those parents stay unknown.
     fn restore_parents(&mut self, _pool: &[IndividualId]) {}
 
-    /// A copy of the archive of elites, if it keeps one.
+    /// Returns a copy of the archive of elites. None if the strategy keeps none.
     fn archive(&self) -> Option<Archive> {
         None
     }
 
-    /// A copy of the tree of stairs, if stairs evolve.
+    /// Returns a copy of the tree of stairs. None unless stairs evolve.
     fn stairs_tree(&self) -> Option<StairsTree> {
         None
     }
 }
 
-/// The state of a strategy, as a value of RON that only the strategy itself can read. Numbers keep every bit.
+/// State of a strategy, as a value of RON that only the strategy itself can read. Its numbers keep every bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StrategyState {
     ron: String,
 }
 
 impl StrategyState {
-    /// Maximum length of a parser's message, in characters.
+    /// Maximum length of the parser's message in an error, in characters.
     const LONGEST_PROBLEM: usize = 200;
 
-    /// Writes down plain data.
+    /// Writes plain data as a state.
     pub fn of(data: &impl Serialize) -> Self {
         let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
-        // Plain data can always be written. If not, storing the empty state reports it.
+        // Plain data can always be written. If it could not, the state is empty, and storing the empty state reports the error.
         Self { ron: to_string_pretty(data, layout).unwrap_or_default() }
     }
 
-    /// Reads the data again.
+    /// Reads the data of the state.
     ///
     /// # Errors
-    /// It is damaged, or another strategy has written it.
+    /// Fails if the state is damaged, or if another strategy wrote it.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, Invalid> {
         ron::from_str(&self.ron).map_err(|error| {
             let problem = error.code.to_string();
@@ -128,8 +128,8 @@ impl<'de> Deserialize<'de> for StrategyState {
     }
 }
 
-/// The indices of the individuals that may become parents, best first. Disqualified ones may not; of equals the one
-/// with the lower index is first.
+/// Returns the indices of the individuals that are not disqualified, best first. Of individuals with equal fitness, the lower index comes
+/// first.
 pub fn ranking(evaluations: &[Evaluation]) -> Vec<usize> {
     let mut ranked: Vec<usize> =
         (0..evaluations.len()).filter(|&i| evaluations[i].disqualified.is_none()).collect();
@@ -137,8 +137,8 @@ pub fn ranking(evaluations: &[Evaluation]) -> Vec<usize> {
     ranked
 }
 
-/// The indices of all individuals, best first: those of [`ranking`], then the disqualified, the longer they lasted
-/// the better, so that a strategy that needs all ranks learns to avoid disqualification.
+/// Returns the indices of all individuals, best first: those of [`ranking`], then the disqualified, of which longer simulated ones come
+/// first, so that a strategy that uses all ranks learns to avoid disqualification.
 pub fn full_ranking(evaluations: &[Evaluation]) -> Vec<usize> {
     let mut ranked = ranking(evaluations);
     let mut others: Vec<usize> =

@@ -5,29 +5,29 @@ use super::descriptor::Descriptor;
 /// How the values of an axis are divided into cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AxisScale {
-    /// Cells of equal width.
+    /// The cells have equal width.
     Linear,
-    /// Cells of equal ratio.
+    /// The cells have an equal ratio between their ends.
     Logarithmic,
-    /// A cell for each whole number.
+    /// Each whole number has a cell.
     Whole,
 }
 
-/// An axis of an archive: a number that distinguishes kinds of snakes, in cells.
+/// An axis of an archive: a number that distinguishes kinds of snakes, divided into cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArchiveAxis {
-    /// Its label, with the unit.
+    /// Label of the axis, with the unit.
     pub label: &'static str,
-    /// The values at both ends. Values beyond belong to the outermost cells.
+    /// Values at the two ends of the axis. Values beyond the ends belong to the outermost cells.
     pub range: [f64; 2],
-    /// How they are divided.
+    /// How the range is divided into cells.
     pub scale: AxisScale,
     /// Number of cells.
     pub cells: u32,
 }
 
 impl ArchiveAxis {
-    /// The axis of a descriptor.
+    /// Makes the axis of a descriptor.
     pub fn of(descriptor: Descriptor, cells: u32) -> Self {
         let (least, most) = descriptor.range();
         let scale =
@@ -35,19 +35,19 @@ impl ArchiveAxis {
         Self { label: descriptor.label(), range: [least, most], scale, cells }
     }
 
-    /// The axis of a whole number, with a cell for each.
+    /// Makes the axis of a whole number, with a cell for each number.
     pub fn of_numbers(label: &'static str, numbers: std::ops::RangeInclusive<u32>) -> Self {
         let range = [f64::from(*numbers.start()), f64::from(*numbers.end())];
         let cells = numbers.end().saturating_sub(*numbers.start()) + 1;
         Self { label, range, scale: AxisScale::Whole, cells }
     }
 
-    /// The cell of a value.
+    /// Returns the index of the cell that contains a value, from 0.
     pub fn place(&self, value: f64) -> u32 {
         ((self.share(value) * f64::from(self.cells)) as u32).min(self.cells - 1)
     }
 
-    /// The values between which a cell lies: of a whole number that number itself.
+    /// Returns the values at the two ends of a cell; for a whole number, the number twice.
     pub fn ends(&self, place: u32) -> [f64; 2] {
         if self.scale == AxisScale::Whole {
             return [self.range[0] + f64::from(place); 2];
@@ -55,13 +55,13 @@ impl ArchiveAxis {
         [place, place + 1].map(|end| self.at_share(f64::from(end) / f64::from(self.cells)))
     }
 
-    /// The edges of a cell in a drawing: half a number to either side of a whole one.
+    /// Returns the edges of a cell in a drawing. The cell of a whole number extends by 0.5 to either side.
     pub fn edges(&self, place: u32) -> [f64; 2] {
         let [from, to] = self.ends(place);
         if self.scale == AxisScale::Whole { [from - 0.5, to + 0.5] } else { [from, to] }
     }
 
-    /// The position of a value: 0 at the beginning, 1 at the end.
+    /// Returns the position of a value along the axis: 0 at the beginning, 1 at the end and beyond.
     pub(super) fn share(&self, value: f64) -> f64 {
         let [least, most] = self.range;
         let share = match self.scale {
@@ -75,7 +75,7 @@ impl ArchiveAxis {
         share.clamp(0.0, 1.0)
     }
 
-    /// The value at a position.
+    /// Returns the value at a position from 0 to 1 along the axis.
     fn at_share(&self, share: f64) -> f64 {
         let [least, most] = self.range;
         if self.scale == AxisScale::Logarithmic {

@@ -20,12 +20,12 @@ choices! {
 }
 
 impl Descriptor {
-    /// The label of its axis, with the unit.
+    /// Returns the label of the descriptor's axis, with the unit.
     pub fn label(self) -> &'static str {
         self.choice().title
     }
 
-    /// The values at both ends of its axis. Values beyond belong to the outermost cells.
+    /// Returns the values at the two ends of the descriptor's axis. Values beyond the ends belong to the outermost cells.
     pub fn range(self) -> (f64, f64) {
         match self {
             Self::BodyHeight => (0.3, 2.3),
@@ -38,13 +38,13 @@ impl Descriptor {
         }
     }
 
-    /// Whether its axis is logarithmic.
+    /// Returns whether the descriptor's axis is logarithmic.
     pub fn is_logarithmic(self) -> bool {
         matches!(self, Self::EnergyPerMetre | Self::CostOfTransport)
     }
 
-    /// Its value for an agent that started at `start_y_m`, in the unit of [`Self::label`]. None if it was not
-    /// observed. Without progress the energy per metre and the cost of transport are infinite.
+    /// Returns the descriptor of an agent that started at `start_y_m`, in the unit of [`Self::label`]. None if the agent was not observed.
+    /// Without progress, the energy per metre and the cost of transport are infinite.
     pub fn value(self, evaluation: &Evaluation, start_y_m: f32) -> Option<f64> {
         let behaviour = evaluation.behaviour?;
         Some(match self {
@@ -65,7 +65,7 @@ impl Descriptor {
         })
     }
 
-    /// The position of a value on the axis: 0 at its beginning, 1 at its end.
+    /// Returns the position of a value along the descriptor's axis: 0 at the beginning, 1 at the end.
     pub fn share(self, value: f64) -> f64 {
         ArchiveAxis::of(self, 1).share(value)
     }

@@ -9,17 +9,17 @@ use crate::evolve::parents::IndividualId;
 use crate::genome::{Genome, GenomeShape, GenomeSpace};
 use crate::score::FITNESS_RANGE;
 
-/// The genes of an elite, as a strategy keeps them.
+/// Genes of an elite, in the form in which a strategy keeps them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EliteGenes {
-    /// Coordinates of the unit cube.
+    /// Coordinates of the unit cube, from which the genome is made.
     Point(Vec<f64>),
-    /// A genome.
+    /// The genome itself.
     Genome(Box<Genome>),
 }
 
 impl EliteGenes {
-    /// The genome, in the space of its run.
+    /// Returns the genome, in the space of its run.
     pub fn genome(&self, space: &GenomeSpace, shape: GenomeShape) -> Genome {
         match self {
             Self::Point(point) => space.genome_at(point, shape),
@@ -32,58 +32,58 @@ impl EliteGenes {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Elite<G = EliteGenes> {
-    /// Its fitness.
+    /// Fitness of the elite.
     pub fitness: f32,
-    /// The generation that found it; the first is 1.
+    /// Generation that found the elite; the first is 1.
     pub generation: u32,
-    /// Its index in that generation.
+    /// Index of the elite in its generation.
     pub individual: u32,
-    /// Its genes: coordinates of the unit cube, or a genome. The first version of the file had points only.
+    /// Genes of the elite: coordinates of the unit cube, or a genome. The first version of the file format had coordinates only.
     #[serde(rename = "point", alias = "genes")]
     pub genes: G,
 }
 
 impl<G> Elite<G> {
-    /// Its place in the run.
+    /// Returns the generation and index of the elite.
     pub fn id(&self) -> IndividualId {
         IndividualId { generation: self.generation, individual: self.individual }
     }
 }
 
-/// A grid of elites, with their genes as its strategy keeps them.
+/// A grid of elites whose genes have the type `G`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Archive<G = EliteGenes> {
-    /// The axis of the columns.
+    /// Axis of the columns.
     pub x: ArchiveAxis,
-    /// The axis of the rows.
+    /// Axis of the rows.
     pub y: ArchiveAxis,
-    /// The fitness of an agent that does not move, which counts as zero in [`Self::qd_score`].
+    /// Fitness of an agent that does not move, which counts as zero in [`Self::qd_score`].
     pub floor: f32,
-    /// Elites by the number of their cell: row · columns + column.
+    /// Elites by the number of their cell, which is row · columns + column.
     elites: BTreeMap<u32, Elite<G>>,
 }
 
-/// The effect of an individual on an archive.
+/// Effect of adding an individual to an archive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Addition {
-    /// It filled an empty cell.
+    /// The individual filled an empty cell.
     New,
-    /// It replaced an elite; its fitness is higher by this amount.
+    /// The individual replaced an elite; its fitness is higher by this amount.
     Better(f32),
-    /// It did not beat the elite of its cell.
+    /// The individual was not added, because it did not beat the elite of its cell.
     None,
 }
 
 impl<G> Archive<G> {
-    /// An empty archive.
+    /// Makes an empty archive.
     pub fn new(x: ArchiveAxis, y: ArchiveAxis, floor: f32) -> Self {
         Self { x, y, floor, elites: BTreeMap::new() }
     }
 
-    /// Restores elites from a file.
+    /// Adds elites from a file, with their cells.
     ///
     /// # Errors
-    /// A cell does not exist, or a fitness is out of range.
+    /// Fails if a cell does not exist, or a fitness is out of range.
     pub fn restore(&mut self, elites: Vec<(u32, Elite<G>)>) -> Result<(), Invalid> {
         for (cell, elite) in elites {
             within("cell", cell, 0..=self.cells().saturating_sub(1))?;
@@ -93,22 +93,22 @@ impl<G> Archive<G> {
         Ok(())
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn cells(&self) -> u32 {
         self.x.cells * self.y.cells
     }
 
-    /// The cell of the values of both axes.
+    /// Returns the cell that contains the values of the two axes.
     pub fn cell(&self, [x, y]: [f64; 2]) -> u32 {
         self.y.place(y) * self.x.cells + self.x.place(x)
     }
 
-    /// The column and the row of a cell.
+    /// Returns the column and the row of a cell.
     pub fn place(&self, cell: u32) -> [u32; 2] {
         [cell % self.x.cells, cell / self.x.cells]
     }
 
-    /// A copy that does not depend on how the strategy keeps genes.
+    /// Returns a copy in which `genes` has converted the genes of each elite.
     pub fn copy_with(&self, genes: impl Fn(&G) -> EliteGenes) -> Archive {
         let copy = |(cell, elite): (&u32, &Elite<G>)| {
             let &Elite { fitness, generation, individual, genes: ref own } = elite;
@@ -131,23 +131,23 @@ impl<G> Archive<G> {
         addition
     }
 
-    /// All elites with their cells, in the order of the cells.
+    /// Returns all elites with their cells, in ascending order of the cells.
     pub fn elites(&self) -> impl ExactSizeIterator<Item = (u32, &Elite<G>)> {
         self.elites.iter().map(|(cell, elite)| (*cell, elite))
     }
 
-    /// The elite of a cell.
+    /// Returns the elite of a cell. None if the cell is empty.
     pub fn elite(&self, cell: u32) -> Option<&Elite<G>> {
         self.elites.get(&cell)
     }
 
-    /// Share of the cells that have an elite.
+    /// Returns the share of the cells that have an elite.
     pub fn coverage(&self) -> f64 {
         self.elites.len() as f64 / f64::from(self.cells())
     }
 
-    /// Quality and diversity in one number: the sum of the elites' fitness above [`Self::floor`] (Pugh and others,
-    /// Frontiers in Robotics and AI 3 (2016)).
+    /// Returns quality and diversity in one number: the sum of the elites' fitness above [`Self::floor`] (Pugh and others, Frontiers in
+    /// Robotics and AI 3 (2016)).
     pub fn qd_score(&self) -> f64 {
         self.elites.values().map(|elite| f64::from(elite.fitness - self.floor).max(0.0)).sum()
     }

@@ -1,7 +1,7 @@
-//! The Pareto front of distance and energy: individuals that no other beats in both.
+//! The Pareto front of distance and energy: individuals that no other individual beats in both.
 //!
-//! The front is kept at a resolution of [`BOX_M`] (the ε-dominance of Laumanns and others, Evolutionary
-//! Computation 10 (2002)), so that it stays small however long a run lasts.
+//! The front keeps at most one member for each [`BOX_M`] of distance (the ε-dominance of Laumanns and others, Evolutionary Computation 10
+//! (2002)), so that it stays small however long a run lasts.
 
 use std::collections::BTreeMap;
 
@@ -10,35 +10,34 @@ use serde::{Deserialize, Serialize};
 use crate::genome::Genome;
 use crate::score::Evaluation;
 
-/// A member of the front.
+/// A member of the Pareto front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrontMember {
-    /// The generation that found it; the first is 1.
+    /// Generation that found the member; the first is 1.
     pub generation: u32,
-    /// Its index in that generation.
+    /// Index of the member in its generation.
     pub individual: u32,
-    /// Its evaluation.
+    /// Evaluation of the member.
     #[serde(rename = "recorded")]
     pub evaluation: Evaluation,
-    /// The individual.
+    /// Genome of the member.
     pub genome: Genome,
 }
 
-/// The front: for each [`BOX_M`] of distance the member that spent the least energy, unless one that got further
-/// spent less.
+/// The Pareto front: for each [`BOX_M`] of distance the member that spent the least energy, unless a member that got further spent no more.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Front {
-    /// Members by the number of their box.
+    /// Members by the number of their box, which is their final y divided by `BOX_M` and rounded down.
     members: BTreeMap<i32, FrontMember>,
 }
 
-/// Width of a box, in metres.
+/// Width of a box along y, in metres.
 pub const BOX_M: f32 = 0.5;
-/// Genomes with more genes are not kept: a front of them would make too large a checkpoint.
+/// Greatest number of genes of a member. Genomes with more genes would make too large a checkpoint.
 const LARGEST_MEMBER_GENES: usize = 5000;
 
-/// Energy that an agent spent, in J; infinite if it was not measured.
+/// Returns the energy that an agent spent, in J; infinite if it was not measured.
 fn energy_j(evaluation: &Evaluation) -> f32 {
     evaluation.effort.map_or(f32::INFINITY, |effort| effort.energy_j)
 }
@@ -48,8 +47,8 @@ fn box_number(evaluation: &Evaluation) -> i32 {
 }
 
 impl Front {
-    /// Whether [`Self::add`] would accept an individual: it is not disqualified, ended ahead of `start_y_m`, its energy
-    /// was measured, and no member beats it.
+    /// Returns whether [`Self::add`] would accept an individual: it is not disqualified, ended ahead of `start_y_m`, has a measured energy
+    /// and not too many genes, and no member beats it.
     pub fn accepts(&self, genome: &Genome, evaluation: &Evaluation, start_y_m: f32) -> bool {
         let mut rivals = self.members.range(box_number(evaluation)..);
         evaluation.disqualified.is_none()
@@ -59,7 +58,7 @@ impl Front {
             && genome.gene_count() <= LARGEST_MEMBER_GENES
     }
 
-    /// Adds an individual if the front [`Self::accepts`] it, and removes the members that it beats.
+    /// Adds an individual if [`Self::accepts`] allows it, and removes the members that the individual beats.
     pub fn add(&mut self, member: FrontMember, start_y_m: f32) {
         if !self.accepts(&member.genome, &member.evaluation, start_y_m) {
             return;
@@ -71,7 +70,7 @@ impl Front {
         self.members.insert(number, member);
     }
 
-    /// Its members, the shortest distance first.
+    /// Returns the members, the shortest distance first.
     pub fn members(&self) -> impl ExactSizeIterator<Item = &FrontMember> {
         self.members.values()
     }

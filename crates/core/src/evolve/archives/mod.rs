@@ -12,6 +12,6 @@ pub use descriptor::Descriptor;
 pub use elites::{Addition, Archive, Elite, EliteGenes};
 pub use front::{Front, FrontMember};
 
-/// Why a run keeps the axes of its archive.
+/// Reason why the axes of an archive cannot change during a run.
 pub const FIXED_LAYOUT: &str =
     "Takes effect with the next run, because it determines the layout of the archive.";

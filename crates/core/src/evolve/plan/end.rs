@@ -1,21 +1,20 @@
 //! The limits of a run, and whether it has ended.
 //!
-//! A run has two limits: its number of generations, and as many evaluations as that many generations of its population
-//! have ([`RunPlan::budget`]). Generations of some strategies are larger than the population, as the first one of CMA-ES
-//! is. Such a run ends when its evaluations are spent, after fewer generations.
+//! A run has two limits: its number of generations, and the number of evaluations of that many generations with the planned population
+//! ([`RunPlan::budget`]). Some strategies have generations larger than the population, such as the first generation of CMA-ES. Their runs
+//! end when the evaluations are spent, after fewer generations.
 
 use super::RunPlan;
 use crate::evolve::generation::GenerationRecord;
 use crate::evolve::settings::StrategyKind;
 
 impl RunPlan {
-    /// Whether a run ends after so many finished generations with so many evaluations, if the next generation has `next`
-    /// individuals.
+    /// Returns whether a run ends after `finished` generations with `evaluated` evaluations, if the next generation has `next` individuals.
     pub fn is_over(&self, finished: u32, evaluated: u64, next: u64) -> bool {
         finished >= self.settings.evolution.generations || evaluated + next > self.budget()
     }
 
-    /// Whether a run has ended with the finished generations of its log.
+    /// Returns whether a run has ended after the generations of its log.
     pub fn has_ended<'a>(&self, log: impl IntoIterator<Item = &'a GenerationRecord>) -> bool {
         let (mut finished, mut evaluated, mut next) = (0, 0, 0);
         for record in log {
@@ -26,29 +25,28 @@ impl RunPlan {
         self.is_over(finished, evaluated, next)
     }
 
-    /// The least number of individuals in the generation after one of `last` individuals.
+    /// Returns a lower bound for the size of the generation that follows a generation of `last` individuals.
     fn least_after(&self, last: u64) -> u64 {
         let evolution = &self.settings.evolution;
         match evolution.strategy {
-            // Generations of islands shrink, to two islands in the end.
+            // With the strategy of islands, generations shrink, down to two islands.
             StrategyKind::Islands => last.min(2 * u64::from(evolution.islands.candidates)),
-            // Generations of strategies that evolve stairs vary in size; only the state of the strategy tells the next
-            // one.
+            // With strategies that evolve stairs, generations vary in size; only the strategy's state determines the next size.
             kind if kind.info().evolves_stairs => 1,
             kind if kind.info().is_budget_driven => last,
             _ => 0,
         }
     }
 
-    /// The number of generations in words: "40", or "at most 40" if larger generations may make it smaller.
+    /// Returns the planned number of generations in words: "40", or "at most 40" if large generations may lead to fewer.
     pub fn most_generations_in_words(&self) -> String {
         let evolution = &self.settings.evolution;
         let at_most = if evolution.strategy.info().is_budget_driven { "at most " } else { "" };
         format!("{at_most}{}", evolution.generations)
     }
 
-    /// The finished generations of a run in words: "37 of at most 40 generations". Once it has ended, "40 of 40 generations",
-    /// or "37 generations" if these spent its evaluations.
+    /// Describes the progress of a run in words: "37 of at most 40 generations". After the end: "40 of 40 generations", or "37 generations"
+    /// if those spent all evaluations.
     pub fn generations_in_words(&self, finished: u32, has_ended: bool) -> String {
         match (has_ended, self.settings.evolution.generations) {
             (true, planned) if finished < planned => format!("{finished} generations"),
@@ -73,7 +71,7 @@ mod tests {
     #[test]
     fn r1_a_run_whose_evaluations_are_spent_has_ended() {
         let plan = plan(StrategyKind::CmaEs);
-        // A first generation of 800 and 36 of 200 spend the 8,000 evaluations of forty generations of 200.
+        // A first generation of 800 and 36 generations of 200 spend the 8,000 evaluations of forty generations of 200.
         let mut records = vec![GenerationRecord::of_test(1, 800)];
         records.extend((2..=36).map(|generation| GenerationRecord::of_test(generation, 200)));
         assert!(!plan.has_ended(&records));

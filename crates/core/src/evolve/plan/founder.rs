@@ -5,24 +5,24 @@ use crate::genome::Genome;
 /// Maximum length of a founder's name, in characters.
 const LONGEST_NAME: usize = 40;
 
-/// An individual that a run starts from.
+/// An individual from which the first generation of a run descends.
 #[derive(Debug, Clone)]
 pub struct Founder {
-    /// A few plain characters for people. They decide nothing.
+    /// Name that is shown to people, at most `LONGEST_NAME` plain characters. It has no effect on a run.
     name: String,
-    /// Its genes.
+    /// Genome of the founder.
     pub(super) genome: Genome,
 }
 
 impl PartialEq for Founder {
-    /// Whether both start the same runs: the name decides nothing.
+    /// Compares the genomes only, because the name has no effect on a run.
     fn eq(&self, other: &Self) -> bool {
         self.genome == other.genome
     }
 }
 
 impl Founder {
-    /// A founder. Its name is reduced to characters that are safe in titles and files.
+    /// Makes a founder. Characters that are not safe in titles and files are removed from the name.
     pub fn new(name: &str, genome: Genome) -> Self {
         let plain = |c: &char| c.is_alphanumeric() || " -_.,".contains(*c);
         let name: String = name.chars().filter(plain).take(LONGEST_NAME).collect();
@@ -30,12 +30,12 @@ impl Founder {
         Self { name: if name.is_empty() { "a champion".to_owned() } else { name }, genome }
     }
 
-    /// The name for people.
+    /// Returns the name that is shown to people.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Its genes.
+    /// Returns the genome of the founder.
     pub fn genome(&self) -> &Genome {
         &self.genome
     }
@@ -62,19 +62,19 @@ mod tests {
         settings.genome.random_genome(settings.trial.genome_shape(), &mut rng)
     }
 
-    /// The genomes of the first generation.
+    /// Returns the genomes of the first generation.
     fn first_genomes(plan: &RunPlan) -> Vec<Genome> {
         begin(plan).ask().into_iter().map(|candidate| candidate.genome).collect()
     }
 
-    /// The largest difference between the coordinates of two genomes.
+    /// Returns the largest difference between the coordinates of two genomes.
     fn distance(settings: &Settings, a: &Genome, b: &Genome) -> f64 {
         let (a, b) = (settings.genome.point_of(a), settings.genome.point_of(b));
         let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
         off.map(|off| off.min(1.0 - off)).fold(0.0, f64::max)
     }
 
-    /// Whether a genome is a mutant of another. One with neurons in its limbs differs much in few genes.
+    /// Returns whether a genome is a mutant of another. A mutant with neurons in its limbs differs much in few genes.
     fn is_near(settings: &Settings, a: &Genome, b: &Genome) -> bool {
         if settings.genome.controller != ControllerKind::LimbNeurons {
             return distance(settings, a, b) < 0.45;
@@ -127,7 +127,7 @@ mod tests {
                     assert!(asked[0] == genome, "{what}");
                 }
                 if !strategy.info().only_controllers.is_empty() {
-                    // All learners have the founder's body; networks that grow have other bodies as well.
+                    // All learners have the founder's body; only the networks of NEAT may have other bodies.
                     let is_neat = strategy == StrategyKind::Neat;
                     let is_same = |other: &Genome| is_neat || other.body == genome.body;
                     assert!(asked.iter().all(is_same), "{what}");

@@ -1,7 +1,7 @@
 //! Changes of settings during a run.
 //!
-//! A change takes effect at the beginning of a generation. The plan at the start and the changes together determine
-//! the bits of the run.
+//! A change takes effect at the beginning of a generation. The plan at the start of a run and its changes together determine the bits of
+//! the run.
 
 use super::RunPlan;
 use crate::check::{Invalid, within};
@@ -11,31 +11,31 @@ use crate::schema::{Setting, SettingValue, list};
 /// A change of one setting of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettingChange {
-    /// The first generation that it applies to; the first of a run is 1.
+    /// First generation to which the change applies; the first generation of a run is 1.
     pub generation: u32,
-    /// The full dotted name of the setting, such as `evolution.population`.
+    /// Full dotted name of the setting, such as `evolution.population`.
     pub field: String,
-    /// Its new value.
+    /// New value of the setting.
     pub value: SettingValue,
 }
 
-/// The changes since a run began, and the earlier values that still matter.
+/// Changes since a run began, and the earlier values that still have an effect.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SettingChanges {
-    /// The earliest first.
+    /// Changes made so far, the earliest first.
     made: Vec<SettingChange>,
     range: Option<MutationRangeChange>,
-    /// The latest change of the population: its generation, and the evaluations planned for all earlier ones.
+    /// Generation of the latest change of the population, and the evaluations planned for all earlier generations. None: never changed.
     population: Option<(u32, u64)>,
 }
 
-/// The latest change of the mutation range of the report's method, or of its decay.
+/// Latest change of the mutation range of the report's method, or of the decay of that range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct MutationRangeChange {
     generation: u32,
-    /// The range of that generation, in N·m. It decays afterwards.
+    /// Mutation range of the change's generation, in N·m. It decays in later generations.
     range_nm: f32,
-    /// The range of the generation before, in N·m; none if the range was set rather than its decay.
+    /// Mutation range of the generation before the change, in N·m. None if the range was set rather than its decay.
     before_nm: Option<f32>,
 }
 
@@ -46,43 +46,42 @@ const LONGEST_VALUE: usize = 60;
 
 const UNKNOWN: &str = "There is no such setting.";
 
-/// Whether a setting, by its full dotted name, may change while a run of these settings goes on. The error is a
-/// sentence for a person.
+/// Checks whether the setting with the full dotted name `field` may change during a run with these settings.
 ///
 /// # Errors
-/// It may not; why.
+/// Gives the reason why the setting may not change, as a sentence for a person.
 pub fn may_change_during_run(field: &str, settings: &Settings) -> Result<(), &'static str> {
     live_setting(field, settings).map(drop)
 }
 
-/// The row of a setting that may change while a run of these settings goes on.
+/// Returns the row of a setting that may change during a run with these settings.
 fn live_setting(field: &str, settings: &Settings) -> Result<Setting, &'static str> {
     let listed = list(settings).into_iter().find(|listed| listed.path == field).ok_or(UNKNOWN)?;
     listed.live.map(|()| listed.setting)
 }
 
 impl SettingChanges {
-    /// The changes, the earliest first.
+    /// Returns the changes, the earliest first.
     pub fn made(&self) -> &[SettingChange] {
         &self.made
     }
 }
 
 impl RunPlan {
-    /// This plan with a change; none if the setting has that value already.
+    /// Returns this plan with a change made. None if the change leaves all settings as they are.
     ///
     /// # Errors
-    /// As [`Self::change`].
+    /// Fails as [`Self::change`] does.
     pub fn changed(&self, change: &SettingChange) -> Result<Option<Self>, Invalid> {
         let mut plan = self.clone();
         plan.change(change)?;
         Ok((plan.settings != self.settings).then_some(plan))
     }
 
-    /// The change of a setting to the value that a text says, from a generation on. The plan stays as it is.
+    /// Returns the change of a setting, from `generation` on, to the value in `text`. Does not make the change.
     ///
     /// # Errors
-    /// The setting may not change during a run, or the text is no value for it.
+    /// Fails if the setting may not change during a run, or if the text is not a value of its type.
     pub fn change_of_text(
         &self,
         generation: u32,
@@ -95,25 +94,25 @@ impl RunPlan {
         Ok(SettingChange { generation, field: field.to_owned(), value })
     }
 
-    /// Makes a change: the plan is then that of the generation from which on the change applies.
+    /// Makes a change: the plan is then the plan of the generation from which on the change applies.
     ///
-    /// A new mutation range of the report's method applies to that generation, and decays afterwards. A new decay
-    /// already applies to the range of that generation.
+    /// A new mutation range of the report's method is the range of the change's generation, and decays afterwards. A new decay already
+    /// applies to the range of the change's generation.
     ///
     /// # Errors
-    /// The setting may not change during a run, its value is not allowed, or the generation is earlier than that of
-    /// the change before, or after the end. The plan is then as it was.
+    /// Fails if the setting may not change during a run, if its value is not allowed, or if the generation is before that of the previous
+    /// change or after the end of the run. The plan then stays unchanged.
     pub fn change(&mut self, change: &SettingChange) -> Result<(), Invalid> {
         let SettingChange { generation, field, value } = change;
         let latest = self.changes.made.last().map_or(1, |last| last.generation);
-        // A finished run may still be extended.
+        // A change of the length may come after the last generation, because a finished run can be extended.
         let is_length = field == "evolution.generations";
         let last = self.settings.evolution.generations + u32::from(is_length);
         within("generation", *generation, latest..=last.max(latest))?;
         within("changes", self.changes.made.len() + 1, 1..=MOST_CHANGES)?;
         allow(field, &value.to_string(), &self.settings)?;
         let settings = with_value(&self.settings, field, value)?;
-        // Finished generations and the next one cannot be dropped.
+        // The new length cannot drop finished generations or the next generation.
         within("evolution.generations", settings.evolution.generations, *generation..=10_000)?;
         let before = &self.settings.evolution;
         match field.as_str() {
@@ -123,7 +122,7 @@ impl RunPlan {
                 let spent = spent + u64::from(before.population) * generations;
                 self.changes.population = Some((*generation, spent));
             }
-            // Before the third generation nothing has decayed.
+            // In the first two generations the range has not decayed yet.
             "evolution.halving.mutation_range_nm" if *generation > 2 => {
                 let range_nm = settings.evolution.halving.mutation_range_nm;
                 let generation = *generation;
@@ -143,7 +142,7 @@ impl RunPlan {
 
     fn change_decay(&mut self, generation: u32, decay: f32) {
         let before_nm = match self.changes.range {
-            // The range was set for this generation: only later ones decay.
+            // The range was set for this generation, so only later generations have a decayed range.
             Some(MutationRangeChange { generation: of, before_nm: None, .. })
                 if of == generation =>
             {
@@ -158,7 +157,7 @@ impl RunPlan {
         self.changes.range = Some(MutationRangeChange { generation, range_nm, before_nm });
     }
 
-    /// The mutation range of the report's method in a generation after all changes so far, in N·m.
+    /// Returns the mutation range of the report's method in a generation, after all changes so far, in N·m.
     pub fn mutation_range_nm(&self, generation: u32) -> f32 {
         let HalvingSettings { mutation_range_nm, mutation_decay, .. } =
             self.settings.evolution.halving;
@@ -166,11 +165,11 @@ impl RunPlan {
             Some(change) => (change.generation, change.range_nm),
             None => (2, mutation_range_nm),
         };
-        // Repeated multiplication instead of a power: its bits are the same everywhere.
+        // The bits of a repeated multiplication, unlike those of a power, are the same on every system.
         (from..generation).fold(range_nm, |range, _| range * mutation_decay)
     }
 
-    /// Number of evaluations that the run may cost.
+    /// Returns the number of evaluations that the run may spend.
     pub fn budget(&self) -> u64 {
         let evolution = &self.settings.evolution;
         let (since, spent) = self.changes.population.unwrap_or((1, 0));
@@ -178,10 +177,10 @@ impl RunPlan {
         spent + u64::from(evolution.population) * generations
     }
 
-    /// The plan of a generation: this one with the changes that apply by then.
+    /// Returns this plan with those of `changes` made that apply up to a generation.
     ///
     /// # Errors
-    /// One of them is not allowed.
+    /// Fails if a change that is due is not allowed.
     pub fn in_generation(
         &self,
         generation: u32,
@@ -194,7 +193,7 @@ impl RunPlan {
     }
 }
 
-/// The row of a setting that may change to a value with this text.
+/// Returns the row of a setting that may change during a run. Fails if it may not, or if the text `value` is too long.
 fn allow(field: &str, value: &str, settings: &Settings) -> Result<Setting, Invalid> {
     let short = |text: &str| text.chars().take(LONGEST_VALUE).collect::<String>();
     if value.len() > LONGEST_VALUE {

@@ -18,41 +18,41 @@ use crate::score::Trial;
 /// Everything that determines the bits of a run, and its name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunPlan {
-    /// Name of the preset that the settings started from.
+    /// Name of the preset from which the settings started.
     pub preset: String,
-    /// Seed of all random numbers.
+    /// Seed of all random numbers of the run.
     pub seed: u64,
-    /// The settings, which must have passed their check. After changes during the run they are the latest.
+    /// Settings of the run, which must have passed their check. They include all changes made during the run.
     pub settings: Settings,
-    /// The founder that the first generation descends from; none if it is drawn at random.
+    /// Founder from which the first generation descends. None if the first generation is drawn at random.
     pub founder: Option<Arc<Founder>>,
-    /// The changes since the run began.
+    /// Changes of settings since the run began.
     pub changes: SettingChanges,
 }
 
 impl RunPlan {
-    /// A plan without a founder and changes.
+    /// Makes a plan without a founder and without changes.
     pub fn new(preset: &str, seed: u64, settings: Settings) -> Self {
         let (founder, changes) = (None, SettingChanges::default());
         Self { preset: preset.to_owned(), seed, settings, founder, changes }
     }
 
-    /// The origin of an individual of this run. The first generation is 1, the first individual 0.
+    /// Returns the origin of an individual of this run. Generations count from 1, individuals from 0.
     pub fn origin(&self, generation: u32, individual: usize) -> Origin {
         let individual = individual as u32;
         Origin { preset: self.preset.clone(), seed: self.seed, generation, individual }
     }
 
-    /// The trial of a generation: that of the settings, with the perturbations that the generation has in common.
+    /// Returns the trial of the settings, with the perturbations that all individuals of a generation have in common.
     pub fn trial_in(&self, generation: u32) -> Trial {
         let trial = &self.settings.trial;
         Trial { repeats: trial.repeats.in_generation(self.seed, generation), ..trial.clone() }
     }
 
-    /// This run, starting from a founder.
+    /// Returns this plan with a founder.
     ///
     /// # Errors
-    /// It does not fit the trial or the space of genomes; the message names the gene or setting.
+    /// Fails if the founder does not fit the trial or the space of genomes; the error names the gene or setting.
     pub fn starting_from(self, mut founder: Founder) -> Result<Self, Invalid> {
         founder.genome = self.settings.genome.with_all_genes(founder.genome);
         let plan = Self { founder: Some(Arc::new(founder)), ..self };
@@ -63,7 +63,7 @@ impl RunPlan {
     /// Checks that the founder, if there is one, fits the settings.
     ///
     /// # Errors
-    /// The first gene or setting that does not fit, inside `founder`.
+    /// Names the first gene or setting that does not fit, with the prefix `founder`.
     pub fn check_founder(&self) -> Result<(), Invalid> {
         let Some(founder) = &self.founder else { return Ok(()) };
         self.check_genome(&founder.genome).map_err(|error| error.inside("founder"))
@@ -72,7 +72,7 @@ impl RunPlan {
     /// Checks that a genome fits the settings.
     ///
     /// # Errors
-    /// The first gene or setting that does not fit.
+    /// Names the first gene or setting that does not fit.
     pub fn check_genome(&self, genome: &Genome) -> Result<(), Invalid> {
         let trial = &self.settings.trial;
         self.settings.genome.check_genome(genome, trial.genome_shape())?;

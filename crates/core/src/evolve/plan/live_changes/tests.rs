@@ -1,4 +1,4 @@
-//! Tests of changes during a run.
+//! Tests of changes of settings during a run.
 
 use super::*;
 use crate::evolve::{Strategy, StrategyKind, begin, fields, resume};
@@ -16,7 +16,7 @@ fn plan(strategy: StrategyKind) -> RunPlan {
     RunPlan::new("test", 1, settings)
 }
 
-/// Makes the change of a setting below `evolution` to the value that a text says.
+/// Changes a setting below `evolution` to the value in `text`.
 fn change(plan: &mut RunPlan, generation: u32, field: &str, text: &str) -> Result<(), Invalid> {
     let change = plan.change_of_text(generation, &format!("evolution.{field}"), text)?;
     plan.change(&change)
@@ -30,7 +30,7 @@ fn changed(plan: &RunPlan, changes: &[(u32, &str, &str)]) -> RunPlan {
     plan
 }
 
-/// Distinct evaluations without a world; some are disqualified.
+/// Returns distinct evaluations without a simulation; some are disqualified.
 fn evaluations(generation: u32, count: usize) -> Vec<Evaluation> {
     let evaluation = |index: usize| {
         let number = ((index * 37 + generation as usize * 11) % 101) as f32;
@@ -54,7 +54,7 @@ fn genomes(strategy: &dyn Strategy) -> Vec<Genome> {
     strategy.ask().into_iter().map(|candidate| candidate.genome).collect()
 }
 
-/// Allowed changes of each strategy.
+/// Settings of each strategy that may change, with a new value for each.
 const ALLOWED: [(StrategyKind, &[(&str, &str)]); 13] = [
     (
         StrategyKind::BodyMapElites,
@@ -167,7 +167,7 @@ fn applying_changed_settings_gives_the_same_bits_as_resuming_with_them() {
                 assert_eq!(told.population(), told.ask().len(), "{what}");
                 advance(&mut *told, generation);
                 advance(&mut *resumed, generation);
-                // Its new state can be read back from a checkpoint.
+                // The strategy's new state can be read back from a checkpoint.
                 let again = resume(&plan, generation, &told.state()).expect(&what);
                 assert_eq!(genomes(&*again), genomes(&*told), "{what}");
             }
@@ -253,10 +253,10 @@ fn a_new_mutation_range_decays_from_the_generation_of_its_change() {
     assert_eq!(ranges(&[(1, range, "80")], 2), [80.0, 40.0, 20.0]);
     assert_eq!(ranges(&[(2, range, "80"), (2, decay, "0.25")], 2), [80.0, 20.0, 5.0]);
     assert_eq!(ranges(&[(4, range, "80")], 4), [80.0, 40.0, 20.0]);
-    // The third had 50.
+    // The third generation had a range of 50.
     assert_eq!(ranges(&[(4, decay, "1")], 4), [50.0, 50.0, 50.0]);
     assert_eq!(ranges(&[(4, decay, "0.1"), (4, decay, "1")], 4), [50.0, 50.0, 50.0]);
-    // Together they mean the same in either order.
+    // Two changes for one generation have the same effect in either order.
     assert_eq!(ranges(&[(4, range, "80"), (4, decay, "0.25")], 4), [80.0, 20.0, 5.0]);
     assert_eq!(ranges(&[(4, decay, "0.25"), (4, range, "80")], 4), [80.0, 20.0, 5.0]);
     assert_eq!(ranges(&[(4, range, "80"), (6, decay, "1")], 5), [40.0, 40.0, 40.0]);
