@@ -1,4 +1,4 @@
-//! Checks of the settings of a run in which bodies evolve.
+//! Checks of settings that depend on whether bodies evolve.
 
 use super::{Settings, StrategyKind, are_limbs_soft};
 use crate::check::Invalid;
@@ -6,11 +6,11 @@ use crate::schema::Choices;
 use crate::score::{Fitness, Trial};
 use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
 
-/// Room on the landing beside the longest body, in metres.
+/// Length of the landing in addition to the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
 
 impl Settings {
-    /// Checks that strategy, controller and trial go with evolving bodies, if bodies evolve.
+    /// Checks that strategy, controller and trial are compatible with evolving bodies, or with a given body if bodies do not evolve.
     pub(super) fn check_bodies(&self) -> Result<(), Invalid> {
         let (strategy, varies) = (self.evolution.strategy, self.genome.bodies.vary);
         if strategy.info().varies_bodies != varies {
@@ -48,7 +48,7 @@ impl Settings {
                 return Err(Invalid::new(field, found, allowed));
             }
         }
-        // The longest body could not arrive as a whole on a shorter one.
+        // On a shorter landing the longest body could not arrive as a whole.
         let least_m = self.genome.bodies.longest_m + LANDING_ROOM_M;
         if self.trial.fitness == Fitness::Share && self.trial.stairs.landing_m < least_m {
             let (field, found) = ("trial.stairs.landing_m", self.trial.stairs.landing_m);
@@ -60,7 +60,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// Checks that the physics engine can simulate the snakes of a run.
+    /// Checks that the physics engine can simulate the bodies of a run: *lanes* simulates only rigid limbs in a row.
     pub(super) fn check_engine(&self) -> Result<(), Invalid> {
         let engine = self.trial.physics.engine;
         let are_soft = are_limbs_soft(&self.genome.bodies, &self.trial.agent);
@@ -76,7 +76,7 @@ impl Settings {
 }
 
 impl Settings {
-    /// Makes a strategy that varies bodies small enough for a test, and lets bodies evolve.
+    /// Lets bodies evolve if the strategy varies bodies, and makes the search small enough for a test.
     pub fn suit_to_strategy(&mut self) {
         self.genome.bodies.vary = self.evolution.strategy.info().varies_bodies;
         self.genome.bodies.limbs_max = 3;

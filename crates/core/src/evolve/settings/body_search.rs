@@ -10,7 +10,7 @@ setting_group! {
     pub struct BodyGaSettings in "Genetic algorithm of bodies":
         "Blocks come, go, divide and merge; parents are selected and crossed block by block."
     {
-        /// How bodies that have just changed are protected from those that have had time to learn to move.
+        /// Protection of bodies whose structure has just changed from bodies that have adapted their gaits.
         protection: BodyProtection = BodyProtection::Age,
             choice("Protection of new bodies")
                 .hint("A changed body moves by the gait of its parent, and would lose against bodies that have adapted theirs");
@@ -25,11 +25,11 @@ setting_group! {
         two_parents: f32 = 0.3,
             share_with_two_parents();
 
-        /// Standard deviation of a gene's mutation, as a share of its range.
+        /// Standard deviation of a gene's mutation, as a share of the gene's range.
         mutation_step: f32 = 0.08,
             step_of_mutation();
 
-        /// Number of the best that are copied unchanged.
+        /// Number of best individuals that are copied unchanged into the next generation.
         kept_best: u32 = 2,
             whole("Elites", 0..=LARGEST_POPULATION)
                 .hint("Number of best snakes copied unchanged into the next generation")
@@ -42,7 +42,7 @@ setting_group! {
     pub struct BodyMapElitesSettings in "MAP-Elites of bodies":
         "Keeps the best snake for each number of blocks and each length, and breeds from all of them."
     {
-        /// Number of rows of the archive: lengths from 4 m to the longest body.
+        /// Number of rows of the archive, from lengths of 4 m to the longest body.
         length_cells: u32 = 16,
             whole("Lengths", 2..=100)
                 .hint("Number of rows of the archive, from bodies of 4 m to the longest. Its columns are the numbers of blocks")
@@ -53,7 +53,7 @@ setting_group! {
         two_parents: f32 = 0.3,
             share_with_two_parents();
 
-        /// Standard deviation of a gene's mutation, as a share of its range.
+        /// Standard deviation of a gene's mutation, as a share of the gene's range.
         mutation_step: f32 = 0.08,
             step_of_mutation();
     }
@@ -73,7 +73,7 @@ impl BodyMapElitesSettings {
     }
 }
 
-/// The share of children whose blocks come from two parents.
+/// Makes the row of the share of children whose blocks come from two parents.
 fn share_with_two_parents() -> SettingRow<f32> {
     number("Share with two parents", 0.0..=1.0)
         .advanced()
@@ -81,7 +81,7 @@ fn share_with_two_parents() -> SettingRow<f32> {
         .slider(0.0, 1.0)
 }
 
-/// The step by which the genes of bodies of their own mutate, one in ten in a child.
+/// Makes the row of the mutation step of bodies that evolve. About one gene in ten mutates in a child.
 pub(super) fn step_of_mutation() -> SettingRow<f32> {
     number("Step of mutation", 1.0e-4..=0.5)
         .hint("As a share of each gene's range. About one gene in ten mutates in a child")
@@ -90,19 +90,19 @@ pub(super) fn step_of_mutation() -> SettingRow<f32> {
 }
 
 choices! {
-    /// How new bodies are protected.
+    /// Protection of bodies whose structure has just changed.
     pub enum BodyProtection {
         None = "none", "None", "Only the fitness counts.";
-        /// The Pareto front of fitness and the generations since the last change of the structure.
+        /// Parents come from the Pareto front of fitness and the generations since the structure last changed.
         Age = "age", "Age", "A younger body may be worse: a snake only loses against one that is better and no older.";
     }
 }
 
 impl IslandSettings {
-    /// Checks that a run of these settings has at least one generation.
+    /// Checks that the budget of a run suffices for at least one generation.
     ///
     /// # Errors
-    /// One generation of all islands is larger than the whole run.
+    /// Fails if one generation of all islands has more evaluations than the whole run.
     pub(super) fn check_size(
         &self,
         [population, generations]: [u32; 2],
@@ -123,18 +123,18 @@ impl IslandSettings {
 }
 
 setting_group! {
-    /// Settings of the islands.
+    /// Settings of the strategy of islands.
     pub struct IslandSettings in "Islands":
         "A CMA-ES for each number of blocks; those that learn fastest get the evaluations."
     {
-        /// Candidates of each island in a generation.
+        /// Number of candidates of each island in a generation.
         candidates: u32 = 12,
             whole("Candidates per island", 4..=1000)
                 .hint("Number of snakes of each number of blocks in a generation")
                 .slider(4.0, 60.0)
                 .fixed(super::cma_es::LEARNED);
 
-        /// First standard deviation of every gene, as a share of its range.
+        /// Standard deviation of every gene in the first generation, as a share of the gene's range.
         first_step: f32 = 0.15,
             number("First step", 0.001..=1.0)
                 .hint("Standard deviation of the first candidates around the best newborn, as a share of each gene's range")
@@ -142,8 +142,8 @@ setting_group! {
                 .logarithmic_from(0.01)
                 .fixed(super::cma_es::LEARNED);
 
-        /// First standard deviation of the genes of the body, as a share of that of the controller's genes. The gait has to be
-        /// learned for a body that is still nearly the same.
+        /// First standard deviation of the genes of the body, as a share of that of the controller's genes. It is small, because a gait has
+        /// to be learned for bodies that are nearly equal.
         body_share: f32 = 0.1,
             number("Share of the body", 0.001..=1.0).advanced()
                 .hint("First step of the genes of the body, as a share of the first step of the other genes")

@@ -1,11 +1,11 @@
-//! Any single setting by its dotted name, for flags, panels and logs: `surface.friction`.
+//! Access to the settings of an experiment by dotted names such as `surface.friction`, for flags, panels and logs.
 
 use super::Settings;
 use crate::check::Invalid;
 use crate::schema::{SettingValue, find, list, set_text, set_value};
 use crate::score::Trial;
 
-/// All settings with their values as text, in the order of their names: `trial.surface.friction`, `1`.
+/// Returns the names of all settings with their values as text, in the order of the names: `trial.surface.friction`, `1`.
 pub fn fields(settings: &Settings) -> Vec<(String, String)> {
     let listed = list(settings).into_iter();
     let mut fields: Vec<_> = listed.map(|listed| (listed.path, listed.value.to_string())).collect();
@@ -13,18 +13,18 @@ pub fn fields(settings: &Settings) -> Vec<(String, String)> {
     fields
 }
 
-/// The settings with one field changed, checked as a whole: see [`with_fields`].
+/// Returns the settings with one field changed, checked as a whole: see [`with_fields`].
 ///
 /// # Errors
-/// There is no such field (the nearest names are listed), or its value is not allowed.
+/// Fails if no field has the name (the error lists the most similar names), or if the value is not allowed.
 pub fn with_field(settings: &Settings, path: &str, text: &str) -> Result<Settings, Invalid> {
     with_fields(settings, [(path, text)])
 }
 
-/// The settings with one field, by its full dotted name, changed to a value, checked as a whole.
+/// Returns the settings with the field of a full dotted name changed, checked as a whole.
 ///
 /// # Errors
-/// There is no such field, or its value is not allowed.
+/// Fails if no field has the name, or if the value is not allowed.
 pub fn with_value(
     settings: &Settings,
     path: &str,
@@ -36,7 +36,7 @@ pub fn with_value(
     Ok(settings)
 }
 
-/// The fields of `after` whose values `before` does not have, in the order of their full dotted names.
+/// Returns the fields of `after` whose values differ from those of `before`, in the order of their full dotted names.
 pub fn changed_values(before: &Settings, after: &Settings) -> Vec<(String, SettingValue)> {
     let known = list(before);
     let is_known =
@@ -47,13 +47,13 @@ pub fn changed_values(before: &Settings, after: &Settings) -> Vec<(String, Setti
     changed
 }
 
-/// The settings with some fields changed, checked as a whole after the last.
+/// Returns the settings with some fields changed. The settings are checked as a whole after the last change.
 ///
-/// A path may leave out its beginning: `surface.friction` for `trial.surface.friction`, if no other field ends like
-/// that. A field of the ground that has no surface of its own gives it one: a copy of the stairs'.
+/// A path may lack its beginning: `surface.friction` means `trial.surface.friction`, if no other field ends with these words. Changing a
+/// field of the ground, when the ground has no surface of its own, first gives the ground a copy of the stairs' surface.
 ///
 /// # Errors
-/// There is no such field (the nearest names are listed), or a value is not allowed.
+/// Fails if no field has a name (the error lists the most similar names), or if a value is not allowed.
 pub fn with_fields<'a>(
     settings: &Settings,
     changes: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -75,11 +75,11 @@ pub fn with_fields<'a>(
     Ok(settings)
 }
 
-/// The settings with some fields changed as by [`with_fields`], and with the engine rapier where the present one cannot simulate the
+/// Returns the settings with some fields changed as by [`with_fields`]. The engine becomes rapier if the present engine cannot simulate the
 /// changed bodies.
 ///
 /// # Errors
-/// Those of [`with_fields`].
+/// Fails as [`with_fields`] does.
 pub fn with_fields_and_engine(
     settings: &Settings,
     changes: &[(&str, &str)],
@@ -89,11 +89,11 @@ pub fn with_fields_and_engine(
     with_fields(settings, changes.iter().copied().chain(engine))
 }
 
-/// Checks that each of these fields has an effect on a run with these settings. A path that is no field, such as that of a
-/// whole group, is not checked.
+/// Checks that each of the fields has an effect on a run with these settings. A path that is not the name of a field, such as the path of a
+/// group, is not checked.
 ///
 /// # Errors
-/// The first field that the strategy, the controller or the bodies of the run do not use.
+/// Names the first field that the strategy, the controller or the bodies of the run do not use.
 pub fn check_effects<'a>(
     settings: &Settings,
     paths: impl IntoIterator<Item = &'a str>,
@@ -214,7 +214,7 @@ mod tests {
         }
     }
 
-    /// The names of all fields, from the serialized settings instead of their rows.
+    /// Returns the names of all fields, read from the serialized settings instead of the rows.
     fn serialized(value: &serde_json::Value, path: &str) -> Vec<String> {
         let serde_json::Value::Object(fields) = value else { return vec![path.to_owned()] };
         let below = |(name, value)| serialized(value, &format!("{path}.{name}"));
@@ -228,8 +228,7 @@ mod tests {
             settings.trial.ground = ground;
             let value = serde_json::to_value(&settings).expect("serializable");
             let mut names = serialized(&value, "");
-            // A setting that was added later is not written at its default. Its name is that of a field if reading
-            // accepts the name.
+            // A setting added to the format later is not serialized at its default. Its name is valid if the reader accepts it.
             for (field, _) in fields(&settings) {
                 if !names.contains(&format!(".{field}")) {
                     let mut value = value.clone();

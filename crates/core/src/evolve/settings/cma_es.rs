@@ -15,22 +15,22 @@ setting_group! {
                 .logarithmic_from(0.01)
                 .fixed(LEARNED);
 
-        /// Whether bad individuals count too, by making their directions less likely.
+        /// Whether poor individuals also count: their directions become less likely.
         active: bool = true,
             switch("Also learn from poor snakes").advanced()
                 .hint("Directions that lead to poor snakes become less likely (active CMA-ES)")
                 .fixed(LEARNED);
 
-        /// The reaction when a search has ended.
+        /// Continuation of the search after it has converged.
         restarts: RestartKind = RestartKind::Bipop,
             choice("Restarts")
                 .hint("How the search continues after it has converged")
                 .fixed(LEARNED);
 
-        /// Number of random genomes in a first generation of their own, the best of which is the start of the search. 0:
-        /// the search starts in the middle of all ranges.
+        /// Number of random genomes in an additional first generation, the best of which is the start of the search. With 0 the search
+        /// starts in the middle of all ranges.
         newborns: u32 = 0,
-            // The random snakes are a generation of their own, beyond the budget.
+            // The generation of random snakes is additional to the budget.
             whole("Random snakes first", 0..=10_000)
                 .hint(
                     "The search starts at the best of this many random snakes; at 0, in the middle of all ranges",
@@ -48,18 +48,18 @@ impl CmaEsSettings {
     }
 }
 
-/// Why a run keeps what its CMA-ES began with.
+/// Reason why a setting on which the state of CMA-ES depends cannot change during a run.
 pub const LEARNED: &str =
     "Takes effect with the next run, because the state of CMA-ES depends on it.";
 
 choices! {
-    /// The reaction when a search has ended.
+    /// Continuation of CMA-ES after a search has converged.
     pub enum RestartKind {
         None = "none", "None", "The search continues where it is.";
-        /// At most 2⁹ times the first population.
+        /// The population grows up to 2⁹ times the first population.
         Ipop = "ipop", "Larger population", "A new search with twice the population (IPOP).";
-        /// The next is of the kind that has used fewer evaluations. As in Hansen's pycma 4.5, the first search counts
-        /// as small, and a small one ends after half of the evaluations that the large ones have used.
+        /// The next search is of the kind, large or small, that has used fewer evaluations. As in Hansen's pycma 4.5, the first search
+        /// counts as small, and a small search ends after half of the evaluations that the large searches have used.
         Bipop = "bipop", "Larger or smaller population",
             "New searches, some with twice the population, some with a small one (BIPOP).";
     }

@@ -14,58 +14,58 @@ use crate::schema::{
 setting_group! {
     /// The search: the strategy, its length, and the settings of all strategies.
     pub struct EvolutionSettings {
-        /// The strategy.
+        /// Strategy of the search.
         strategy: StrategyKind = StrategyKind::Halving;
-        /// Individuals per generation. The report simulated 500 to 1000. CMA-ES with restarts
-        /// begins with this size and has larger generations later.
+        /// Number of individuals per generation. The report simulated 500 to 1000. CMA-ES with restarts begins with this size and has
+        /// larger generations later.
         population: u32 = 500;
-        /// Generations in a run. The report has six. Population times generations is the
-        /// budget of evaluations; a strategy with larger generations has fewer of them.
+        /// Number of generations in a run. The report has six. Population times generations is the budget of evaluations, so a strategy
+        /// with larger generations has fewer of them.
         generations: u32 = 6;
-        /// The report's method.
+        /// Settings of the report's method.
         halving: HalvingSettings = HalvingSettings::default();
-        /// The genetic algorithm, which also makes the children of novelty search.
+        /// Settings of the genetic algorithm, which also makes the children of novelty search.
         ga: GaSettings = GaSettings::default();
-        /// CMA-ES.
+        /// Settings of CMA-ES.
         cma_es: CmaEsSettings = CmaEsSettings::default();
-        /// MAP-Elites.
+        /// Settings of MAP-Elites.
         map_elites: MapElitesSettings = MapElitesSettings::default();
-        /// Novelty search.
+        /// Settings of novelty search.
         novelty: NoveltySettings = NoveltySettings::default();
-        /// Q-learning.
+        /// Settings of Q-learning.
         #[serde(default, skip_serializing_if = "is_default")]
         q_learning: QLearningSettings = QLearningSettings::default();
-        /// XCS.
+        /// Settings of XCS.
         #[serde(default, skip_serializing_if = "is_default")]
         xcs: XcsRunSettings = XcsRunSettings::default();
-        /// ZCS.
+        /// Settings of ZCS.
         #[serde(default, skip_serializing_if = "is_default")]
         zcs: ZcsRunSettings = ZcsRunSettings::default();
-        /// NEAT.
+        /// Settings of NEAT.
         #[serde(default, skip_serializing_if = "is_default")]
         neat: NeatSettings = NeatSettings::default();
-        /// The genetic algorithm over bodies.
+        /// Settings of the genetic algorithm over bodies.
         #[serde(default, skip_serializing_if = "is_default")]
         body_ga: BodyGaSettings = BodyGaSettings::default();
-        /// MAP-Elites over bodies.
+        /// Settings of MAP-Elites over bodies.
         #[serde(default, skip_serializing_if = "is_default")]
         body_map_elites: BodyMapElitesSettings = BodyMapElitesSettings::default();
-        /// Islands.
+        /// Settings of the strategy of islands.
         #[serde(default, skip_serializing_if = "is_default")]
         islands: IslandSettings = IslandSettings::default();
-        /// The genetic algorithm over creatures.
+        /// Settings of the genetic algorithm over creatures.
         #[serde(default, skip_serializing_if = "is_default")]
         creature_ga: CreatureGaSettings = CreatureGaSettings::default();
-        /// POET.
+        /// Settings of POET.
         #[serde(default, skip_serializing_if = "is_default")]
         poet: PoetSettings = PoetSettings::default();
-        /// Minimal criterion coevolution.
+        /// Settings of minimal criterion coevolution.
         #[serde(default, skip_serializing_if = "is_default")]
         mcc: MccSettings = MccSettings::default();
-        /// The ladder of stairs.
+        /// Settings of the ladder of stairs.
         #[serde(default, skip_serializing_if = "is_default")]
         ladder: LadderSettings = LadderSettings::default();
-        /// Exploration of all learners.
+        /// Settings of exploration, common to all learners.
         #[serde(default, skip_serializing_if = "is_default")]
         exploration: ExplorationSettings = ExplorationSettings::default();
     }
@@ -139,15 +139,15 @@ impl SettingGroup for EvolutionSettings {
 }
 
 impl EvolutionSettings {
-    /// The section of a run's size and length.
+    /// Section of the size and the length of a run.
     pub const RUN: Section = Section { title: "Run", about: "Size and length of a run." };
-    /// The section of the method.
+    /// Section of the strategy.
     pub const STRATEGY: Section = Section {
         title: "Strategy",
         about: "How each generation is created from the previous one.",
     };
 
-    /// The share of the way from which on a snake has climbed its stairs, where stairs evolve.
+    /// Returns the least share of the way at which a snake counts as having climbed its stairs, where stairs evolve.
     pub fn climbed_from(&self) -> f32 {
         match self.strategy {
             StrategyKind::Mcc => self.mcc.criterion,
@@ -155,7 +155,7 @@ impl EvolutionSettings {
         }
     }
 
-    /// Number of evaluations that a run may cost.
+    /// Returns the number of evaluations that a run may spend.
     pub fn budget(&self) -> u64 {
         u64::from(self.population) * u64::from(self.generations)
     }

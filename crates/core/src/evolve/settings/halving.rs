@@ -9,7 +9,7 @@ setting_group! {
     pub struct HalvingSettings in "Halving (the report's)":
         "The best few become parents; children vary at random within a range that shrinks each generation."
     {
-        /// Number of the best that become parents. The report has four.
+        /// Number of best individuals that become parents. The report has four.
         parents: u32 = 4,
             whole("Parents", 1..=LARGEST_POPULATION)
                 .hint("Number of best snakes that become parents. Few converge quickly, many keep more variety")
@@ -22,7 +22,7 @@ setting_group! {
                 .hint("Maximum difference between parents and the children of the second generation")
                 .slider(0.0, 1000.0);
 
-        /// Factor of the range with each further generation. The report has 0.5.
+        /// Factor by which the mutation range changes with each further generation. The report has 0.5.
         mutation_decay: f32 = 0.5,
             number("Mutation decay", 0.0..=1.0)
                 .hint("Factor by which the range changes per generation: 0.5 halves it, 1 keeps it")
@@ -31,7 +31,7 @@ setting_group! {
 }
 
 impl HalvingSettings {
-    /// The report's run has six generations. The range halves with each, so that more would stand still.
+    /// Number of generations of the report's run. The mutation range halves with each, so that later generations would hardly differ.
     pub const REPORT_GENERATIONS: u32 = 6;
 
     /// Checks that a generation and its parents fit into memory.

@@ -4,10 +4,10 @@ use crate::check::Invalid;
 use crate::schema::{PerPart, number, setting_group, whole};
 
 setting_group! {
-    /// A ladder of stairs: a run begins on low ones, whose rise grows up to that of its trial as its snakes succeed.
+    /// Settings of a ladder of stairs: a run begins on low stairs, whose rise grows up to that of the trial as the snakes succeed.
     #[derive(Copy)]
     pub struct LadderSettings in "Ladder of stairs": "Begins with low stairs, and raises them as the snakes succeed." {
-        /// Rise of the first stairs, in m; 0: no ladder.
+        /// Rise of the first stairs, in m. With 0 there is no ladder.
         first_rise_m: f32 = 0.0,
             number("First rise", 0.0..=5.0)
                 .unit("m")
@@ -15,7 +15,7 @@ setting_group! {
                 .slider(0.0, 1.0)
                 .fixed(BEGUN);
 
-        /// How much higher the next rung is, in m.
+        /// Increase of the rise from one rung to the next, in m.
         step_m: f32 = 0.05,
             number("Rung", 0.001..=1.0).used_if(*first_rise_m > 0.0)
                 .unit("m")
@@ -23,7 +23,7 @@ setting_group! {
                 .slider(0.01, 0.2)
                 .fixed(BEGUN);
 
-        /// Share of a generation that has to succeed before the rise grows.
+        /// Share of a generation that has to succeed before the rise grows by a rung.
         share: f32 = 0.7,
             number("Success of a rung", 0.01..=1.0).used_if(*first_rise_m > 0.0)
                 .hint("Share of a generation that has to succeed before the rise grows")
@@ -50,13 +50,12 @@ const BEGUN: &str =
     "Takes effect with the next run, because this one has begun to climb its ladder.";
 
 impl LadderSettings {
-    /// Whether there is a ladder.
+    /// Returns whether there is a ladder.
     pub fn is_used(&self) -> bool {
         self.first_rise_m > 0.0
     }
 
-    /// Checks that the ladder, if there is one, leads up to stairs of these rises, and that the strategy, of this name, can
-    /// climb it.
+    /// Checks that the ladder, if there is one, leads up to stairs with `rises_m`, and that the strategy named `strategy` can use a ladder.
     pub(super) fn check_with(
         &self,
         strategy: &str,

@@ -16,13 +16,13 @@ setting_group! {
                 .hint("Behaviour that distinguishes the columns of the archive")
                 .fixed(FIXED_LAYOUT);
 
-        /// Descriptor of its rows.
+        /// Descriptor of the rows of the archive.
         y: Descriptor = Descriptor::EnergyPerMetre,
             choice("Archive rows")
                 .hint("Behaviour that distinguishes the rows of the archive")
                 .fixed(FIXED_LAYOUT);
 
-        /// Number of columns and of rows.
+        /// Number of columns of the archive, and also of its rows.
         cells: u32 = 16,
             whole("Columns and rows", 2..=100)
                 .hint(
@@ -37,19 +37,19 @@ setting_group! {
                 .hint("Spread of random steps from an elite, as a share of each gene's range")
                 .slider(0.0, 0.3);
 
-        /// Standard deviation of its steps along the line to another elite, as a share of that line.
+        /// Standard deviation of the Gaussian emitter's steps along the line to another elite, as a share of the length of the line.
         line: f32 = 0.2,
             number("Step towards another elite", 0.0..=2.0).advanced()
                 .hint("Spread of steps along the line between two elites, in lengths of that line")
                 .slider(0.0, 1.0);
 
-        /// Share of each generation that the CMA-ES emitter makes.
+        /// Share of each generation that the CMA-ES emitter creates.
         cma_share: f32 = 0.5,
             number("CMA-ES share", 0.0..=1.0).advanced()
                 .hint("Share of each generation that CMA-ES creates around an elite")
                 .slider(0.0, 1.0);
 
-        /// Step at which the CMA-ES emitter begins around an elite.
+        /// Initial step size of the CMA-ES emitter around an elite, as a share of each gene's range.
         cma_step: f32 = 0.1,
             number("CMA-ES initial step size", 1.0e-6..=1.0).advanced()
                 .hint("Initial spread of CMA-ES around an elite, as a share of each gene's range")

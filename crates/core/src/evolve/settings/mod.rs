@@ -51,24 +51,24 @@ use crate::world::Stairs;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// The conditions under which genomes are scored.
+    /// Conditions under which genomes are scored.
     pub trial: Trial,
-    /// The space of genomes.
+    /// Space of the genomes.
     pub genome: GenomeSpace,
-    /// The search.
+    /// Settings of the search.
     pub evolution: EvolutionSettings,
 }
 
-/// Whether the limbs of the snakes are soft.
+/// Returns whether the limbs of the snakes are soft.
 fn are_limbs_soft(bodies: &BodySpace, agent: &AgentSettings) -> bool {
     if bodies.vary { bodies.soft } else { agent.youngs_modulus_pa.is_some() }
 }
 
 impl Settings {
-    /// Checks every field against its range, and that a generation fits into memory.
+    /// Checks every field against its range, fields that depend on each other, and that a generation fits into memory.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Names the first field that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
         schema::check(self)
     }
@@ -97,7 +97,7 @@ impl SettingGroup for Settings {
         walk.group("trial", trial);
     }
 
-    /// Checks that a generation, and what the strategy keeps, fit into memory.
+    /// Checks settings that depend on each other, and that a generation and the strategy's state fit into memory.
     fn check_together(&self) -> Result<(), Invalid> {
         self.check_partners()?;
         self.check_bodies()?;
@@ -115,7 +115,7 @@ impl SettingGroup for Settings {
         }
         let mut shape = self.trial.genome_shape();
         if self.genome.bodies.vary {
-            // The largest genomes have the most blocks.
+            // The largest genomes are those of the bodies with the most blocks.
             shape.joints = self.genome.bodies.limbs_max as usize - 1;
         }
         let size = GenomeSize { space: &self.genome, shape, torque_points };

@@ -1,7 +1,7 @@
-//! Which strategies go with which controllers, and which with a ladder.
+//! Compatibility of strategies with controllers, evolving bodies, physics engines and ladders.
 //!
-//! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure
-//! needs genomes that grow: each of these goes with certain kinds of controllers, and these kinds with nothing else.
+//! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure needs genomes that
+//! grow: each works only with certain kinds of controllers, and these kinds work with no other strategies.
 
 use super::{Settings, StrategyKind};
 use crate::check::Invalid;
@@ -11,7 +11,7 @@ use crate::score::{Fitness, StairsVariation, Trial};
 use crate::world::PhysicsEngine;
 
 impl StrategyKind {
-    /// Whether the strategy can improve controllers of this kind.
+    /// Returns whether the strategy can improve controllers of the kind `controller`.
     pub fn improves(self, controller: ControllerKind) -> bool {
         let of_chains = self.info().varies_bodies && self.info().only_controllers.is_empty();
         if of_chains && !BODY_CONTROLLERS.contains(&controller) {
@@ -22,34 +22,34 @@ impl StrategyKind {
             || self.info().only_controllers.is_empty() && !Self::ALL.into_iter().any(is_partner)
     }
 
-    /// Whether it compares only snakes of one generation, which have the same stairs on a ladder.
+    /// Returns whether the strategy compares only snakes of one generation, which have equal stairs on a ladder.
     pub fn climbs_ladders(self) -> bool {
         matches!(self, Self::CmaEs | Self::Ga)
     }
 
-    /// The kinds of controllers that the strategy can improve.
+    /// Returns the kinds of controllers that the strategy can improve.
     pub fn controllers(self) -> impl Iterator<Item = ControllerKind> {
         ControllerKind::OPTIONS.iter().copied().filter(move |kind| self.improves(*kind))
     }
 }
 
-/// The controllers whose waves follow the blocks of a chain that changes.
+/// Controllers whose waves pass along a chain with any number of blocks.
 const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerKind::Gait];
 
 impl Settings {
-    /// The changes of strategy, controller, the evolution of bodies and the physics engine that a change of one of them, or of
-    /// the bodies, calls for, as fields and texts: without them they would not go together. Empty if they do.
+    /// Returns the further changes that keep the settings compatible after the change of `field` to `text`: of strategy, controller,
+    /// evolution of bodies, physics engine and repeated trials, as fields and texts. Empty if no further change is necessary.
     pub fn partner_changes(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
         let mut changes = self.partner_choices(field, text);
         let mut changed = self.clone();
         for (field, text) in std::iter::once((field, text)).chain(changes.iter().copied()) {
-            // Values that are not allowed are refused where they are applied.
+            // A value that is not allowed is refused later, when it is applied.
             let path = find(&changed, field);
             if path.and_then(|path| set_text(&mut changed, &path, text)).is_err() {
                 return changes;
             }
         }
-        // An engine that is chosen for bodies it cannot simulate is refused.
+        // A change of the engine itself adds no other engine: settings with an engine that cannot simulate the bodies are refused.
         if field != Trial::ENGINE_FIELD
             && self.check_engine().is_ok()
             && changed.check_engine().is_err()
@@ -96,8 +96,8 @@ impl Settings {
         changes
     }
 
-    /// Changes the strategy where it does not go with bodies as they evolve, or do not, after the space was widened for a
-    /// champion.
+    /// Changes the strategy if it is incompatible with the space of genomes, which may have been widened for a champion with another kind
+    /// of body.
     pub fn suit_strategy_to_bodies(&mut self) {
         let varies = self.genome.bodies.vary;
         if self.evolution.strategy.info().varies_bodies != varies {
@@ -131,7 +131,7 @@ impl Settings {
         }
     }
 
-    /// Checks that snakes can be compared between stairs, if these evolve: the strategy adds perturbed trials of its own.
+    /// Checks that snakes can be compared between stairs, if stairs evolve. The strategy adds perturbed trials itself.
     pub(super) fn check_trials_of_stairs(&self) -> Result<(), Invalid> {
         let (strategy, fitness) = (self.evolution.strategy, self.trial.fitness);
         if !strategy.info().evolves_stairs {

@@ -9,20 +9,20 @@ setting_group! {
     pub struct PoetSettings in "POET":
         "Pairs of stairs and snakes: the stairs mutate, the snakes learn, and a snake moves to stairs that it climbs better."
     {
-        /// Maximum number of active pairs of stairs and snake.
+        /// Maximum number of active pairs of a staircase and a snake.
         pairs: u32 = 10,
             whole("Pairs", 1..=100)
                 .hint("Maximum number of stairs whose snakes learn. When another one comes, the oldest is archived")
                 .slider(1.0, 40.0);
 
-        /// Candidates of each pair's search in a generation.
+        /// Number of candidates in a generation of each pair's search.
         pair_candidates: u32 = 12,
             whole("Candidates of a pair", 4..=1000)
                 .hint("Number of snakes that each pair tries in a generation")
                 .slider(4.0, 60.0)
                 .fixed(super::cma_es::LEARNED);
 
-        /// First standard deviation of each gene, as a share of its range.
+        /// Standard deviation of each gene in the first generation of a pair, as a share of the gene's range.
         pair_step: f32 = 0.15,
             number("First step of a pair", 0.001..=1.0).needs(PoetSettings::POINTS)
                 .hint("Spread of a pair's first candidates around its snake, as a share of each gene's range")
@@ -30,37 +30,37 @@ setting_group! {
                 .logarithmic_from(0.01)
                 .fixed(super::cma_es::LEARNED);
 
-        /// Generations of learning before snakes try other stairs.
+        /// Number of generations that each pair learns before snakes may be transferred to other stairs.
         learn_generations: u32 = 5,
             whole("Generations between transfers", 1..=1000)
                 .hint("How many generations each pair learns before snakes may move to other stairs")
                 .slider(1.0, 50.0);
 
-        /// Transfers before new stairs come.
+        /// Number of transfer phases in a round, after which new stairs are made.
         transfers: u32 = 4,
             whole("Transfers in a round", 1..=100)
                 .hint("How often snakes may move before new stairs are made; then a round ends")
                 .slider(1.0, 20.0);
 
-        /// Mutants of stairs that are tried at the end of a round.
+        /// Number of mutants of stairs that are tried at the end of a round.
         children: u32 = 8,
             whole("Mutants of stairs", 1..=100)
                 .hint("How many mutants of stairs are tried at the end of a round")
                 .slider(1.0, 40.0);
 
-        /// Mutants that become pairs.
+        /// Maximum number of mutants of stairs that become pairs at the end of a round.
         admitted: u32 = 1,
             whole("New stairs in a round", 1..=10).advanced()
                 .hint("How many of the mutants are kept at most: those that rank the snakes of the run in the newest order")
                 .slider(1.0, 10.0);
 
-        /// The score of a pair from which on its stairs may have mutants.
+        /// Least score of a pair whose stairs may have mutants. A score is a share of the way.
         reproduces_from: f32 = 0.55,
             number("Share to reproduce", 0.0..=1.1).advanced()
                 .hint("Stairs have mutants once their snake covers this share of the way")
                 .slider(0.0, 1.0);
 
-        /// The least score of the best snake on stairs that are not too hard.
+        /// Least score of the best snake on stairs that are not too hard.
         too_hard_below: f32 = 0.15,
             number("Too hard below", 0.0..=1.1).advanced()
                 .hint("Mutants on which the best snake covers a smaller share of the way are refused")
@@ -72,13 +72,13 @@ setting_group! {
                 .hint("Mutants on which a snake covers a greater share of the way are refused")
                 .slider(0.0, 1.0);
 
-        /// The score from which on stairs are solved.
+        /// Least score of the snake of a pair at which its stairs are solved.
         solved_from: f32 = 0.85,
             number("Solved from", 0.0..=1.1).advanced()
                 .hint("Share of the way that the snake of a pair has to cover to solve its stairs")
                 .slider(0.0, 1.0);
 
-        /// Perturbed trials, beside the nominal one, in which agents are measured and transferred.
+        /// Number of perturbed trials, in addition to the nominal trial, in which agents are measured and transferred.
         perturbed: u32 = 2,
             whole("Perturbed trials of a measurement", 0..=99).advanced()
                 .hint("Varied trials in which the snakes of pairs are compared, so that none moves by luck")
@@ -92,7 +92,7 @@ setting_group! {
                 .slider(0.1, 1.2)
                 .fixed("Takes effect with the next run, because this one has begun on its first stairs.");
 
-        /// Whether stairs may also get landings, missing steps, ramps and steps down.
+        /// Whether mutants of stairs may also have landings, missing steps, ramps and steps down.
         features: bool = true,
             switch("Landings, gaps, ramps")
                 .hint("Whether mutants may also have a landing, a missing step, ramps or steps down");
@@ -107,10 +107,10 @@ setting_group! {
 }
 
 impl PoetSettings {
-    /// A search among points, which pairs have unless their bodies evolve.
+    /// The need of a search among points. Pairs have such a search unless their bodies evolve.
     pub(super) const POINTS: Need = Need("a search among points");
 
-    /// Maximum number of stairs in a run, so that its state stays small; after that no more stairs come.
+    /// Maximum number of stairs in a run, which limits the size of its state. Beyond it no stairs are added.
     pub const MOST_STAIRS: usize = 1000;
 
     /// Checks that a generation, and the agents of all stairs, fit into memory.
@@ -118,11 +118,11 @@ impl PoetSettings {
         let at_once = self.pairs * self.pair_candidates.max(self.pairs);
         let field = "evolution.poet.pairs";
         size.check_count(field, at_once, size.genes(), LARGEST_SAMPLE)?;
-        // Mutants are compared on all agents, and on a copy of the first one of each staircase.
+        // Mutants are compared on all agents, and on a copy of the first agent of each staircase.
         let compared = self.children * (self.pairs + Self::MOST_STAIRS as u32);
         let children = "evolution.poet.children";
         size.check_count(children, compared, size.genes(), LARGEST_GENERATION_GENES)?;
-        // Each staircase has an agent and a copy of its first one.
+        // Each staircase keeps its agent and a copy of its first agent.
         let kept = 2 * Self::MOST_STAIRS as u32 + self.pairs * self.pair_candidates;
         size.check_count(field, kept, size.genes(), LARGEST_STATE_GENES)
     }

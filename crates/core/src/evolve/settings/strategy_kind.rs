@@ -1,4 +1,4 @@
-//! The list of strategies: the facts about each that need no search.
+//! The list of strategies, with the facts about each that are known without a search.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,43 +12,44 @@ use crate::check::Invalid;
 use crate::genome::ControllerKind;
 use crate::schema::named_by_info;
 
-/// The facts about a strategy that are the same for all its runs.
+/// Facts about a strategy that are the same for all its runs.
 #[derive(Debug, Clone, Copy)]
 pub struct StrategyInfo {
-    /// The name in files and flags; flags may write - for _.
+    /// Name in files and flags; flags may write - for _.
     pub name: &'static str,
-    /// The name at the head of a list or a chart.
+    /// Name at the head of a list or a chart.
     pub title: &'static str,
-    /// A sentence about how it searches.
+    /// Sentence about how the strategy searches.
     pub words: &'static str,
-    /// The colour of its curves: red, green and blue. The six colours of the first six strategies are those of
-    /// Okabe and Ito, which remain distinct for colour-blind people.
+    /// Colour of the strategy's curves: red, green and blue. The first five strategies have colours of Okabe and Ito, which remain distinct
+    /// for colour-blind people.
     pub color: [u8; 3],
-    /// The groups of settings below `evolution` that it uses, its own first.
+    /// Groups of settings below `evolution` that the strategy uses, its own group first.
     pub settings: &'static [&'static str],
-    /// Whether it chooses the size of each generation itself. The population is then the size of the first, or
-    /// only counts for the budget, and the run ends when the evaluations are spent that population and generations allow.
+    /// Whether the strategy chooses the size of each generation itself. The population is then the size of the first generation, or only
+    /// counts for the budget. The run ends when the budget of population times generations is spent.
     pub is_budget_driven: bool,
-    /// Whether its population stays the same during a run.
+    /// Whether the population must stay constant during a run.
     pub has_fixed_population: bool,
-    /// The only kinds of controllers that it improves, which no strategy of genes does; empty for all others.
+    /// Kinds of controllers that only this strategy, or another learner or search of structure, improves. Empty for strategies that evolve
+    /// genes of other kinds.
     pub only_controllers: &'static [ControllerKind],
-    /// Whether it keeps an archive of elites over two descriptors.
+    /// Whether the strategy keeps an archive of elites over two axes.
     pub has_archive: bool,
-    /// Whether it varies bodies, which no other strategy can.
+    /// Whether the strategy varies bodies.
     pub varies_bodies: bool,
-    /// Whether its individuals belong to species.
+    /// Whether the strategy's individuals belong to species.
     pub has_species: bool,
-    /// Whether its individuals have stairs of their own, which evolve.
+    /// Whether the strategy evolves stairs, so that individuals have stairs of their own.
     pub evolves_stairs: bool,
-    /// Number of generations in a comparison, where more would not continue the search; none for any number.
+    /// Number of generations in a comparison, if more generations would not continue the search. None: any number.
     pub compared_generations: Option<u32>,
-    /// Checks that its generations and its state fit into memory.
+    /// Checks that the strategy's generations and its state fit into memory.
     pub check_size: fn(&EvolutionSettings, &GenomeSize<'_>) -> Result<(), Invalid>,
 }
 
 impl StrategyInfo {
-    /// The row of a strategy of points that keeps no more than its generation.
+    /// Default row, of a strategy of points whose state is no larger than a generation.
     const PLAIN: Self = Self {
         name: "",
         title: "",
@@ -69,19 +70,19 @@ impl StrategyInfo {
     };
 }
 
-/// Makes [`StrategyKind`] from one row for each strategy, in the order of lists.
+/// Declares [`StrategyKind`] from one row for each strategy, in the order of lists.
 macro_rules! strategy_kinds {
     ($($(#[$meta:meta])* $kind:ident = $info:expr;)*) => {
-        /// The strategies. Files store the name.
+        /// The strategies. Files store their names.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum StrategyKind { $($(#[$meta])* $kind,)* }
 
         impl StrategyKind {
-            /// All of them, the report's first.
+            /// All strategies, the report's method first.
             pub const ALL: [Self; [$(Self::$kind),*].len()] = [$(Self::$kind),*];
 
-            /// Its row of the list.
+            /// Returns the facts about the strategy.
             pub fn info(self) -> &'static StrategyInfo {
                 match self { $(Self::$kind => const { &$info },)* }
             }
@@ -90,7 +91,7 @@ macro_rules! strategy_kinds {
 }
 
 strategy_kinds! {
-    /// The report's method: children of the best few, within a range that halves.
+    /// The report's method: children of the best few individuals, within a mutation range that halves with each generation.
     #[default]
     Halving = StrategyInfo {
         name: "halving",
@@ -125,7 +126,7 @@ strategy_kinds! {
         check_size: |evolution, size| CmaEsSettings::check_size(evolution.population, size),
         ..StrategyInfo::PLAIN
     };
-    /// An archive of the best of every kind of behaviour.
+    /// MAP-Elites: an archive of the best individual of each kind of behaviour.
     MapElites = StrategyInfo {
         name: "map_elites",
         title: "MAP-Elites",
@@ -136,7 +137,7 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.map_elites.check_size(evolution.population, size),
         ..StrategyInfo::PLAIN
     };
-    /// Novelty search. The genetic algorithm makes its children.
+    /// Novelty search, whose children the genetic algorithm makes.
     Novelty = StrategyInfo {
         name: "novelty",
         title: "Novelty search",
@@ -167,7 +168,7 @@ strategy_kinds! {
         check_size: |evolution, _| NeatSettings::check_size(evolution.population),
         ..StrategyInfo::PLAIN
     };
-    /// Tabular Q-learning, of one table that all episodes share.
+    /// Tabular Q-learning with one table, from which all episodes act and learn.
     QLearning = StrategyInfo {
         name: "q_learning",
         title: "Q-learning",
@@ -178,7 +179,7 @@ strategy_kinds! {
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
-    /// XCS, of one population of rules that all episodes share.
+    /// XCS with one population of rules, from which all episodes act and learn.
     Xcs = StrategyInfo {
         name: "xcs",
         title: "XCS",
@@ -189,7 +190,7 @@ strategy_kinds! {
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
-    /// ZCS, of one population of rules that all episodes share.
+    /// ZCS with one population of rules, from which all episodes act and learn.
     Zcs = StrategyInfo {
         name: "zcs",
         title: "ZCS",
@@ -213,7 +214,7 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
-    /// Novelty search over behaviours and bodies. The genetic algorithm over bodies makes its children.
+    /// Novelty search over behaviours and bodies, whose children the genetic algorithm over bodies makes.
     BodyNovelty = StrategyInfo {
         name: "body_novelty",
         title: "Novelty search of bodies",
@@ -253,7 +254,7 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
-    /// Pairs of stairs and snakes.
+    /// POET: pairs of stairs and snakes.
     Poet = StrategyInfo {
         name: "poet",
         title: "POET",
@@ -265,7 +266,7 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.poet.check_size(size),
         ..StrategyInfo::PLAIN
     };
-    /// Pairs of stairs and snakes whose bodies evolve.
+    /// POET with pairs of stairs and snakes whose bodies evolve.
     BodyPoet = StrategyInfo {
         name: "body_poet",
         title: "POET with bodies",
@@ -278,7 +279,7 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.poet.check_size(size),
         ..StrategyInfo::PLAIN
     };
-    /// Queues of snakes and of stairs with a minimal criterion.
+    /// Minimal criterion coevolution, with a queue of snakes and a queue of stairs.
     Mcc = StrategyInfo {
         name: "mcc",
         title: "Minimal criterion coevolution",

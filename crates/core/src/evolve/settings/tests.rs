@@ -1,4 +1,4 @@
-//! Settings that go together, and which of them have an effect.
+//! Tests of the compatibility of settings, and of which settings have an effect.
 
 use super::*;
 use crate::schema::{NumberRange, SettingKind};
@@ -87,7 +87,7 @@ fn the_defaults_are_allowed() {
     assert_eq!(Settings::default().check(), Ok(()));
 }
 
-/// Two texts with the numbers next to the ends of a range, outside it, and two with its ends.
+/// Returns texts of the two numbers just outside a range, and of the two numbers at its ends.
 fn around(range: &NumberRange) -> ([String; 2], [String; 2]) {
     let NumberRange { least, most, is_whole, .. } = *range;
     let beyond =
