@@ -1,4 +1,4 @@
-//! Candidates that are evaluated on stairs that evolve.
+//! Evaluations of candidates on stairs that evolve.
 
 use std::sync::Arc;
 
@@ -7,36 +7,36 @@ use crate::evolve::parents::Parents;
 use crate::genome::{Genome, StairsGenome};
 use crate::world::Stairs;
 
-/// A candidate on stairs, and its role, by which the strategy understands its result.
+/// A candidate on a staircase, with its role `R`, by which the strategy interprets the evaluation.
 #[derive(Debug, Clone)]
 pub struct Attempt<R> {
-    /// The candidate, without its stairs.
+    /// Candidate to be evaluated; its stairs are set by `Attempt::candidates`.
     pub candidate: Candidate,
-    /// The staircase on which it is evaluated.
+    /// Staircase on which the candidate is evaluated.
     pub stairs: StairsGenome,
-    /// Number of perturbed trials beside the nominal one.
+    /// Number of perturbed trials in addition to the nominal trial.
     pub perturbed: u32,
     pub role: R,
 }
 
 impl<R> Attempt<R> {
-    /// An attempt with a genome whose parents are not recorded, in the nominal trial alone.
+    /// Makes an attempt in the nominal trial only, with a genome whose parents are not recorded.
     pub fn new(genome: &Genome, stairs: StairsGenome, role: R) -> Self {
         let candidate = Candidate::new(genome.clone(), Parents::Unknown);
         Self { candidate, stairs, perturbed: 0, role }
     }
 
-    /// An attempt with a candidate that a search within the strategy has drawn.
+    /// Makes an attempt in the nominal trial only, with a candidate that a search within the strategy has drawn.
     pub fn sampled(candidate: Candidate, stairs: StairsGenome, role: R) -> Self {
         let candidate = Candidate { parents: Parents::Distribution, ..candidate };
         Self { candidate, stairs, perturbed: 0, role }
     }
 
-    /// The candidates of a batch, with their stairs. Equal staircases are built once.
+    /// Returns the candidates of a batch, with their stairs. Attempts on equal staircases share one object.
     pub fn candidates(batch: &[Self]) -> Vec<Candidate> {
         let mut built: Vec<(StairsGenome, Arc<Stairs>)> = Vec::new();
         let candidate = |attempt: &Self| {
-            // Attempts on equal staircases mostly follow one another.
+            // The list is searched from its end, because attempts on equal staircases mostly follow one another.
             let known = built.iter().rev().find(|(of, _)| *of == attempt.stairs);
             let stairs = known.map(|(_, stairs)| Arc::clone(stairs)).unwrap_or_else(|| {
                 let stairs = Arc::new(attempt.stairs.stairs());

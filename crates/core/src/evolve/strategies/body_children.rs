@@ -1,4 +1,4 @@
-//! Genomes with bodies of their own: those without parents, and children of others.
+//! Creation of genomes whose bodies evolve: first genomes and children.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -9,21 +9,21 @@ use crate::evolve::parents::Parents;
 use crate::genome::{BodyChange, Genome};
 use crate::rng::Purpose;
 
-/// Attempts to change a body within its limits, before its genes change instead.
+/// Number of attempts to change a body within its limits, after which its genes change instead.
 const ATTEMPTS: usize = 20;
 
-/// A genome that was made.
+/// A child genome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyChild {
-    /// Its genes.
+    /// Genome of the child.
     pub genome: Genome,
-    /// Whether the structure of its body differs from its parent's.
+    /// Whether the structure of the child's body differs from its parent's.
     pub is_restructured: bool,
 }
 
 impl Search {
-    /// An individual of the first generation: the founder, if there is one, every second one a child of it, the others drawn
-    /// at random.
+    /// Makes a genome of the first generation. With a founder, the first individual is the founder and every second one after it is a child
+    /// of the founder. All others are drawn at random.
     pub fn first_genome(
         &self,
         individual: usize,
@@ -36,14 +36,14 @@ impl Search {
         }
     }
 
-    /// An individual of the first generation, whose children differ from the founder by this step.
+    /// Makes a candidate of the first generation. Children of the founder mutate by `step`, as a share of each gene's range.
     pub fn founding(&self, individual: usize, step: f64) -> Candidate {
         let child = |founder: &Genome, rng: &mut ChaCha8Rng| self.varied(founder, step, rng).genome;
         Candidate::new(self.first_genome(individual, child), Parents::None)
     }
 
-    /// A child of a genome: with a change of its structure, or with small changes of its genes by this step, as a share of
-    /// their ranges.
+    /// Makes a child of a genome: with a change of the body's structure, or with small changes of the genes by `step`, as a share of their
+    /// ranges.
     pub fn varied(&self, parent: &Genome, step: f64, rng: &mut ChaCha8Rng) -> BodyChild {
         if let Some(change) = BodyChange::draw(rng) {
             let changed =
@@ -57,7 +57,7 @@ impl Search {
     }
 }
 
-/// Whether a child has two parents, for the share of those that have.
+/// Draws whether a child has two parents, with the probability `two_parents`.
 pub fn is_crossed(two_parents: f32, rng: &mut ChaCha8Rng) -> bool {
     rng.random_range(0.0..1.0) < f64::from(two_parents)
 }

@@ -1,9 +1,8 @@
-//! A genetic algorithm over genomes with bodies of their own: blocks come, go, divide and merge.
+//! A genetic algorithm over genomes whose bodies evolve: blocks are added, removed, divided and merged.
 //!
-//! A changed body is controlled by genes that fit its parent's, so it would lose against bodies that have adapted. It is
-//! protected by its age, after Schmidt and Lipson, "Age-Fitness Pareto Optimization" (2010), and Cheney and others,
-//! "Scalable co-optimization of morphology and control in embodied machines" (2018): the age counts the generations
-//! since the last change of the structure.
+//! A changed body is controlled by genes that fit its parent's body, so it would lose against bodies whose genes have adapted. Its age
+//! protects it, after Schmidt and Lipson, "Age-Fitness Pareto Optimization" (2010), and Cheney and others, "Scalable co-optimization of
+//! morphology and control in embodied machines" (2018). The age is the number of generations since the structure of the body last changed.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -27,18 +26,18 @@ use crate::score::Evaluation;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyMember {
-    /// Its genes.
+    /// Genome of the individual.
     genome: Genome,
-    /// Generations since the last change of the structure of its body.
+    /// Generations since the structure of the individual's body last changed.
     age: u32,
 }
 
-/// The genetic algorithm.
+/// The genetic algorithm over bodies.
 #[derive(Debug, Clone)]
 pub struct BodyGa {
     settings: BodyGaSettings,
     search: Search,
-    /// The last generation.
+    /// Individuals of the last generation, as possible parents.
     pool: ParentPool<BodyMember>,
 }
 
@@ -58,7 +57,7 @@ impl BodyGa {
         if count == 0 {
             return self.search.founding(individual, step);
         }
-        // At least one individual has to change.
+        // At least one individual of a generation is a new genome.
         if individual
             < (self.settings.kept_best as usize).min(self.search.population - 1).min(count)
         {
@@ -72,13 +71,13 @@ impl BodyGa {
         let mut rng = self.search.stream(individual, Purpose::Mutation);
         let mut parent = || {
             let drawn = (0..self.settings.tournament_size).map(|_| rng.random_range(0..count));
-            // Members are in order, so the best of those drawn has the lowest index.
+            // Members are in order, best first, so the best drawn member has the lowest index.
             drawn.fold(count - 1, usize::min)
         };
         let (first, second) = (parent(), parent());
         let is_crossed = is_crossed(self.settings.two_parents, &mut rng);
         let (parent, parents) = if is_crossed && second != first {
-            // The fitter one, which gives the structure, has the lower index.
+            // The fitter parent, from which the child inherits the structure, has the lower index.
             let [fitter, other] = [first.min(second), first.max(second)];
             let parents = self.pool.parents(fitter, Some(other));
             let [fitter, other] = [fitter, other].map(|index| &members[index]);
@@ -93,7 +92,7 @@ impl BodyGa {
         Candidate::aged(age, child.genome, parents)
     }
 
-    /// The order of a generation as parents: the elites by their rank alone, then by the protection of new bodies.
+    /// Returns the order of a generation as parents: first the elites by rank, then the others by the protection of new bodies.
     fn order(&self, ages: &[u32], ranked: &[usize]) -> Vec<usize> {
         match self.settings.protection {
             BodyProtection::None => ranked.to_vec(),
@@ -108,16 +107,16 @@ impl BodyGa {
     }
 }
 
-/// Orders indices, given best first, by Pareto fronts of rank and age: the first front are those of which none is both
-/// better and no older, the second those that only the first beats, and so on. Each front is in the order of ranks.
+/// Orders indices, given best first, by Pareto fronts of rank and age. An individual is in the first front if no other is both better and
+/// no older, in the second front if only individuals of the first front are, and so on. Each front is in the order of ranks.
 fn by_fronts(ranked: &[usize], ages: &[u32]) -> Vec<usize> {
-    // Of those ranked before, the youngest decides: an individual is in the front after the last in which one before it
-    // is no older.
+    // For each front, the least age of the individuals so far. An individual belongs to the front after the last front that has a better
+    // individual no older than it.
     let mut youngest: Vec<u32> = Vec::new();
     let mut fronts: Vec<Vec<usize>> = Vec::new();
     for &index in ranked {
         let age = ages.get(index).copied().unwrap_or(u32::MAX);
-        // The youngest of earlier fronts are younger than those of later ones.
+        // The least ages ascend from front to front.
         let front = youngest.partition_point(|&of_front| of_front <= age);
         if front == fronts.len() {
             fronts.push(Vec::new());
@@ -131,7 +130,7 @@ fn by_fronts(ranked: &[usize], ages: &[u32]) -> Vec<usize> {
 
 impl Breeder for BodyGa {
     type Member = BodyMember;
-    /// The behaviour, the number of blocks and the length.
+    /// Behaviour (three coordinates), number of blocks, and length of the body.
     type Point = [f64; 5];
 
     fn resume_with(
@@ -228,9 +227,9 @@ mod tests {
 
     #[test]
     fn a_younger_body_only_loses_against_one_that_is_better_and_no_older() {
-        // Best first: the second is older than the first, the third younger, the fourth younger still.
+        // The individuals are given best first: the second is older than the first, the third is younger, and the fourth is younger still.
         assert_eq!(by_fronts(&[3, 1, 0, 2], &[2, 9, 0, 5]), [3, 0, 2, 1]);
-        // Equal ages are ordered by fitness alone.
+        // Individuals of equal age are ordered by fitness alone.
         assert_eq!(by_fronts(&[1, 2, 0], &[4, 4, 4]), [1, 2, 0]);
         assert!(by_fronts(&[], &[]).is_empty());
     }
@@ -281,7 +280,7 @@ mod tests {
                 .order(&ages, &full_ranking(&evaluations))
         };
         assert_eq!(order(BodyProtection::None), [0, 1, 2, 3]);
-        // Behind the best, the second and the young one are the first front.
+        // After the best individual, the second and the young individual form the first front.
         assert_eq!(order(BodyProtection::Age), [0, 1, 2, 3]);
         let older =
             ga(|settings| settings.kept_best = 1).order(&[0, 5, 7, 2], &full_ranking(&evaluations));

@@ -1,6 +1,6 @@
-//! MAP-Elites over bodies (Mouret and Clune, arXiv:1504.04909): the best snake of each number of blocks and each length.
+//! MAP-Elites over bodies (Mouret and Clune, arXiv:1504.04909): an archive of the best snake for each number of blocks and each length.
 //!
-//! The cells protect new bodies: a changed body competes only with bodies of its own cell.
+//! The cells protect new bodies, because a changed body competes only with bodies in its cell.
 
 use rand::RngExt;
 
@@ -17,7 +17,7 @@ use crate::genome::Genome;
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
-/// The elites with the numbers of their cells.
+/// Elites with the numbers of their cells.
 type Elites = Vec<(u32, Elite<Genome>)>;
 
 /// MAP-Elites over bodies.
@@ -43,7 +43,7 @@ impl BodyMapElites {
             let child = self.search.varied(&first.genes, step, &mut rng);
             return Candidate::new(child.genome, Parents::One(first.id()));
         }
-        // A child takes the structure of the fitter one.
+        // A child inherits the structure of the fitter parent.
         let [fitter, other] =
             if second.fitness > first.fitness { [second, first] } else { [first, second] };
         let crossed = self.search.space.with_crossed_bodies(&fitter.genes, &other.genes, &mut rng);

@@ -1,4 +1,4 @@
-//! CMA-ES as a strategy: the points that [`super::cma`] samples, as genomes.
+//! CMA-ES as a strategy: it makes genomes from the points that [`super::cma`] samples.
 
 use super::cma::{CmaParameters, CovarianceShape, RankedCandidate, RestartedCma};
 use super::search::{Search, check_point};
@@ -11,19 +11,20 @@ use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
-/// In larger spaces the covariance is diagonal: there are too many dependences between genes to learn within a run.
+/// Largest dimension with a full covariance. In larger spaces the covariance is diagonal, because a run is too short to learn all
+/// dependences between genes.
 const LARGEST_FULL_DIMENSION: usize = 100;
 
-/// CMA-ES.
+/// CMA-ES as a strategy.
 #[derive(Debug, Clone)]
 pub struct CmaEs {
     settings: CmaEsSettings,
     search: Search,
-    /// The runs of CMA-ES; none while the generation of random genomes is pending that the first begins with.
+    /// State of CMA-ES with its restarts. None while the first generation, of random genomes, is pending.
     runs: Option<RestartedCma>,
 }
 
-/// The shape of the covariance in a space of this dimension.
+/// Returns the shape of the covariance in a space of the given dimension.
 pub fn covariance_shape(dimension: usize) -> CovarianceShape {
     if dimension <= LARGEST_FULL_DIMENSION {
         CovarianceShape::Full
@@ -32,10 +33,10 @@ pub fn covariance_shape(dimension: usize) -> CovarianceShape {
     }
 }
 
-/// Checks runs from a file, in a space of this dimension.
+/// Checks a state of CMA-ES from a file, in a space of the given dimension.
 ///
 /// # Errors
-/// They are not runs with these parameters.
+/// Fails if the state is damaged, or belongs to a search with other parameters.
 pub fn check_runs(
     runs: &RestartedCma,
     parameters: &CmaParameters,
@@ -49,17 +50,17 @@ pub fn check_runs(
     }
     let most = u64::from(parameters.population) << 9;
     within("population", u64::from(runs.population()), 2..=most)?;
-    // Longer steps lead far outside all ranges.
+    // Larger steps lead far outside the ranges of all genes.
     within("step", runs.current().step(), 0.0..=1.0e6)
 }
 
-/// The points of candidates in an order, best first, each with its value.
+/// Returns the points of candidates in an order, best first, each with its value.
 pub fn ranked_candidates<'a>(
     candidates: &'a [Candidate],
     evaluations: &[Evaluation],
     order: &[usize],
 ) -> Vec<RankedCandidate<'a>> {
-    // A disqualified agent has no fitness. Its value is the least of those ranked before it.
+    // A disqualified agent has no fitness. Its value is the least value of the agents ranked before it.
     let mut least = f64::INFINITY;
     let ranked = |&index: &usize| {
         let evaluation = &evaluations[index];
@@ -73,7 +74,7 @@ pub fn ranked_candidates<'a>(
 }
 
 impl CmaEs {
-    /// The settings of a run: random genomes take at most a quarter of its budget.
+    /// Returns the settings of a run, with random genomes limited to a quarter of its budget.
     fn settings(plan: &RunPlan) -> CmaEsSettings {
         let evolution = &plan.settings.evolution;
         let most = u32::try_from(evolution.budget() / 4).unwrap_or(u32::MAX);
@@ -92,15 +93,15 @@ impl CmaEs {
     }
 
     fn start(&mut self, mean: Vec<f64>) {
-        // The check of the settings excludes errors. Without runs all genomes would be random.
+        // The check of the settings excludes errors. If there were one, all genomes would be random.
         self.runs = RestartedCma::new(self.parameters(), mean).ok();
         debug_assert!(self.runs.is_some(), "the settings were checked");
     }
 }
 
 impl Strategy for CmaEs {
-    /// The mean begins at the founder, if there is one; otherwise at the best of the random genomes, or in the middle
-    /// of all ranges if the settings ask for none.
+    /// Begins at the founder, if there is one. Otherwise the mean begins at the best of the random genomes, or in the middle of all ranges
+    /// if the settings have no random genomes.
     fn begin(plan: &RunPlan) -> Self {
         let settings = Self::settings(plan);
         let mut search = Self { settings, search: Search::new(plan, 0), runs: None };
@@ -149,7 +150,7 @@ impl Strategy for CmaEs {
             Some(runs) => {
                 let ranked = ranked_candidates(candidates, evaluations, &order);
                 let mut rng = self.search.stream(0, Purpose::Restart);
-                // No candidate is missing. If one is not finite, there is nothing left to learn.
+                // The number of candidates is always right. If a coordinate is not finite, nothing more can be learned.
                 let _ = runs.update(&ranked, &mut rng);
             }
             None => {
@@ -165,7 +166,7 @@ impl Strategy for CmaEs {
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
-        // The runs depend on no setting that may change.
+        // CMA-ES depends on no setting that may change during a run.
         self.settings = Self::settings(plan);
     }
 }

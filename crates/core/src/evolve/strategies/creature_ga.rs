@@ -1,5 +1,5 @@
-//! A genetic algorithm over graphs that grow into creatures, after Karl Sims, "Evolving Virtual Creatures" (1994): a fifth
-//! survives, and offspring in proportion to the fitness fills the generation.
+//! A genetic algorithm over graphs that grow into creatures, after Karl Sims, "Evolving Virtual Creatures" (1994): a fifth of the
+//! generation survives, and the rest are offspring of survivors, in proportion to their fitness.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -16,27 +16,27 @@ use crate::genome::{CreatureChange, Genome};
 use crate::rng::{Purpose, uniform};
 use crate::score::Evaluation;
 
-/// Attempts to make a child that can be built, before it is a copy of its parent.
+/// Number of attempts to make a child that can be built, after which the child is a copy of its parent.
 const ATTEMPTS: usize = 20;
-/// Chance of the worst survivor to be a parent, relative to the best.
+/// Chance of the worst survivor to be a parent, relative to that of the best.
 const LEAST_CHANCE: f64 = 0.1;
 
 /// A survivor of the last generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Survivor {
-    /// Its genes.
+    /// Genome of the survivor.
     genome: Genome,
-    /// Chance to be a parent, relative to the others.
+    /// Chance to be a parent, relative to the other survivors.
     chance: f64,
 }
 
-/// The genetic algorithm.
+/// The genetic algorithm over creatures.
 #[derive(Debug, Clone)]
 pub struct CreatureGa {
     settings: CreatureGaSettings,
     search: Search,
-    /// The survivors of the last generation.
+    /// Survivors of the last generation.
     pool: ParentPool<Survivor>,
 }
 
@@ -49,7 +49,7 @@ impl CreatureGa {
         }
     }
 
-    /// Draws a survivor by its chance.
+    /// Draws the index of a survivor, with probabilities in proportion to the chances.
     fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
         let all: f64 = self.pool.members.iter().map(|survivor| survivor.chance).sum();
         let mut left = uniform(rng) * all;
@@ -68,7 +68,7 @@ impl CreatureGa {
             });
             return Candidate::new(genome, Parents::None);
         }
-        // At least one individual has to change.
+        // At least one individual of a generation is a new genome.
         if individual < survivors.len().min(self.search.population - 1) {
             let genome = survivors[individual].genome.clone();
             return Candidate::new(genome, self.pool.parents(individual, None));
@@ -83,7 +83,7 @@ impl CreatureGa {
         Candidate::new(self.child(mates, change, &mut rng), parents)
     }
 
-    /// A child that can be built; a copy of the first parent if none was found.
+    /// Makes a child that can be built; after too many attempts, a copy of the first parent.
     fn child(&self, parents: [&Genome; 2], change: CreatureChange, rng: &mut ChaCha8Rng) -> Genome {
         let step = self.settings.mutation_step.into();
         let mut attempt = || self.search.space.changed_creature(parents, change, step, rng);
@@ -92,8 +92,8 @@ impl CreatureGa {
     }
 }
 
-/// Chances of survivors to be parents, given their fitness, best first: in proportion to the fitness above that of the worst,
-/// which has a tenth of the chance of the best.
+/// Returns the chances of survivors to be parents, given their fitness, best first. The chance rises linearly from 0.1 at the worst fitness
+/// to 1 at the best.
 fn chances(fitness: &[f32]) -> Vec<f64> {
     let best = fitness.first().copied().unwrap_or_default();
     let worst = fitness.last().copied().unwrap_or_default();
@@ -133,7 +133,7 @@ impl Strategy for CreatureGa {
         let count = libm::round(share * candidates.len() as f64) as usize;
         let mut order = full_ranking(evaluations);
         order.truncate(count.max(1));
-        // A disqualified creature breeds only if there are too few others.
+        // A disqualified creature breeds only if all creatures in the selected share are disqualified.
         let healthy = |index: &usize| evaluations[*index].disqualified.is_none();
         if order.iter().any(healthy) {
             order.retain(healthy);

@@ -1,4 +1,4 @@
-//! A genetic algorithm over real numbers: selection, crossover, mutation with a step of its own, elites.
+//! A genetic algorithm over real numbers: selection, crossover, mutation with self-adapted steps, elites.
 //!
 //! The operators are those of Eiben and Smith, *Introduction to Evolutionary Computing*, 2nd edition (2015):
 //! tournament and linear ranking in section 5.2, crossover in 4.4, self-adapted steps in 4.4.2.
@@ -22,31 +22,31 @@ use crate::genome::{BodySpace, Genome};
 use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
-/// The range of self-adapted steps, as shares of a gene's range.
+/// Range of self-adapted steps, as shares of a gene's range.
 const STEPS: std::ops::RangeInclusive<f64> = 1.0e-4..=0.5;
-/// Learning rate of steps: a child's step is its parents' times exp(rate · normal number).
+/// Learning rate of steps: a child's step is the inherited step times exp(rate · normal number).
 const LEARNING_RATE: f64 = 0.2;
 
 /// An individual of the last generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaMember {
-    /// Step of mutation, as a share of each gene's range.
+    /// Mutation step, as a share of each gene's range.
     pub step: f64,
-    /// The genes, as coordinates of the unit cube.
+    /// Genes, as coordinates of the unit cube.
     pub point: Vec<f64>,
-    /// How often it chose each wave of its library, if it has one and that is to be known.
+    /// Number of times that the individual chose each wave of its library. None if it has no library, or if the numbers are not needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uses: Option<WaveUses>,
 }
 
-/// The genetic algorithm. Which individuals are the best may also be decided from outside: see [`Breeder::select`].
+/// The genetic algorithm. Novelty search may determine the ranking instead of the fitness: see [`Breeder::select`].
 #[derive(Debug, Clone)]
 pub struct Ga {
     settings: GaSettings,
-    /// The points of genomes, and random numbers.
+    /// Generation, population, founder, points of genomes, and random streams.
     pub search: Search,
-    /// The last generation.
+    /// Individuals of the last generation, as possible parents.
     pool: ParentPool<GaMember>,
     takeover: WaveTakeover,
 }
@@ -66,7 +66,7 @@ impl Ga {
         if members.is_empty() {
             return self.candidate(self.first(individual), Parents::None);
         }
-        // At least one individual has to change.
+        // At least one individual of a generation is a new genome.
         let elites = (self.settings.elites as usize).min(self.search.population - 1);
         if individual < elites.min(members.len()) {
             let parents = self.pool.parents(individual, None);
@@ -85,7 +85,7 @@ impl Ga {
             self.takeover.take_over(&mut child.point, &members[first], &members[other]);
         }
         self.mutate(&mut child, &mut rng);
-        // Of three parents, the one that has given a single wave is left out.
+        // Only two parents are recorded: with three, the donor of the wave is omitted.
         self.candidate(child, self.pool.parents(first, second.or(wave_of)))
     }
 
@@ -95,7 +95,7 @@ impl Ga {
         candidate
     }
 
-    /// An individual of the first generation.
+    /// Makes an individual of the first generation.
     fn first(&self, individual: usize) -> GaMember {
         let step = f64::from(self.settings.step).max(*STEPS.start());
         let point = self.search.unvaried_point(individual);
@@ -106,22 +106,22 @@ impl Ga {
         member
     }
 
-    /// Chooses a parent; returns its index.
+    /// Selects a parent. Returns its index.
     fn parent(&self, rng: &mut ChaCha8Rng) -> usize {
         let count = self.pool.members.len();
         match self.settings.selection {
-            // Members are in order, so the best of those drawn has the lowest index.
+            // Members are in order, best first, so the best drawn member has the lowest index.
             ParentSelection::Tournament => (0..self.settings.tournament)
                 .map(|_| rng.random_range(0..count))
                 .fold(count - 1, usize::min),
-            // Linear ranking with selection pressure 2: the lower of two random indices has its
-            // distribution, P(i) in proportion to n - i - 1/2.
+            // Linear ranking with selection pressure 2: the lower of two random indices has the distribution P(i) in proportion to n - i -
+            // 1/2.
             ParentSelection::Rank => rng.random_range(0..count).min(rng.random_range(0..count)),
         }
     }
 
     fn cross(&self, child: &mut GaMember, other: &GaMember, rng: &mut ChaCha8Rng) {
-        // The geometric mean of both steps.
+        // The child's step is the geometric mean of the parents' steps.
         child.step = (child.step * other.step).sqrt();
         match self.settings.crossover {
             Crossover::Uniform => {
@@ -252,7 +252,7 @@ mod tests {
         ga
     }
 
-    /// Number of times that each of the last generation is chosen in many draws.
+    /// Counts how often each member of the last generation is selected in many draws.
     fn chosen(ga: &Ga) -> Vec<u32> {
         let mut counts = vec![0; 200];
         let mut rng = ga.search.stream(0, Purpose::Mutation);
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn both_selections_choose_the_best_tenth_as_often_as_theory_predicts() {
-        // Expected shares of the best tenth: 1 - 0.9^3 of a tournament of three, 1 - 0.9^2 by rank.
+        // The best tenth has expected shares of 1 - 0.9^3 with a tournament of three, and 1 - 0.9^2 with selection by rank.
         let tournament = ga(|_| ());
         let rank = ga(|settings| settings.selection = ParentSelection::Rank);
         for (ga, share) in [(tournament, 0.271), (rank, 0.19)] {

@@ -1,5 +1,5 @@
-//! The report's method: the best few become parents, every child is one parent shifted at random, and
-//! the range of the shift halves with each generation.
+//! The report's method: the best few individuals become parents, every child is a parent shifted at random, and the range of the shift
+//! halves with each generation.
 
 use super::parent_pool::ParentPool;
 use super::search::Search;
@@ -12,12 +12,12 @@ use crate::genome::Genome;
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
-/// The report's method.
+/// The report's method as a strategy.
 #[derive(Debug, Clone)]
 pub struct Halving {
     plan: RunPlan,
     search: Search,
-    /// The parents of the next generation.
+    /// Parents of the next generation, best first.
     pool: ParentPool<Genome>,
 }
 
@@ -27,7 +27,7 @@ impl Halving {
         if count == 0 {
             return Candidate::new(self.search.random_genome(individual), Parents::None);
         }
-        // In turn, so that all parents have the same number of children.
+        // Parents take turns, so that all of them have nearly equal numbers of children.
         let parent = individual % count;
         let parents = self.pool.parents(parent, None);
         Candidate::new(self.child(&self.pool.members[parent], individual), parents)
@@ -35,7 +35,7 @@ impl Halving {
 
     fn child(&self, parent: &Genome, individual: usize) -> Genome {
         if self.search.generation == 1 && individual == 0 {
-            // The founder itself, which mutation could make worse.
+            // The first individual is the founder itself, because a mutation could make it worse.
             return parent.clone();
         }
         let mut rng = self.search.stream(individual, Purpose::Mutation);
@@ -45,7 +45,7 @@ impl Halving {
 }
 
 impl Strategy for Halving {
-    /// A founder is the only parent of the first generation.
+    /// Begins with a founder, if there is one, as the only parent of the first generation.
     fn begin(plan: &RunPlan) -> Self {
         let founder = plan.founder.iter().map(|founder| founder.genome().clone());
         Self {
@@ -63,7 +63,7 @@ impl Strategy for Halving {
         for (index, parent) in parents.iter().enumerate() {
             let field = format!("parents[{index}]");
             plan.settings.trial.check_genome(parent).map_err(|error| error.inside(&field))?;
-            // A child is as long as its parent, and there are many children.
+            // The layout limits the size of the parents, and so that of their many children.
             let layout = plan.settings.genome.check_layout(parent, shape);
             layout.map_err(|error| error.inside(&field))?;
         }
@@ -71,7 +71,7 @@ impl Strategy for Halving {
         Ok(Self { plan: plan.clone(), search, pool })
     }
 
-    /// Random genomes if there are no parents: in the first generation without a founder, and after one in which all
+    /// Returns random genomes if there are no parents: in the first generation without a founder, and after a generation in which all
     /// individuals were disqualified.
     fn ask(&self) -> Vec<Candidate> {
         (0..self.search.population).map(|individual| self.candidate(individual)).collect()
@@ -105,7 +105,7 @@ impl Strategy for Halving {
     }
 
     fn restore_parents(&mut self, pool: &[IndividualId]) {
-        // The best of the generation may be listed behind them.
+        // The list begins with the parents; the best of the generation may follow.
         self.pool.restore(pool);
     }
 }
@@ -125,7 +125,7 @@ mod tests {
         Halving::begin(&RunPlan::new("test", 1, settings))
     }
 
-    /// The largest difference between two genomes' torque points, in N·m.
+    /// Returns the largest difference between two genomes' torque points, in N·m.
     fn distance_nm(a: &Genome, b: &Genome) -> f32 {
         let (ControllerGenes::Signal(a), ControllerGenes::Signal(b)) =
             (&a.controller, &b.controller)

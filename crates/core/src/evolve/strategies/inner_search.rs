@@ -1,4 +1,4 @@
-//! Searches within a strategy: each as a run of its own, that is never over.
+//! Searches within a strategy. Each is a strategy with a plan of its own, whose run never ends.
 
 use std::sync::Arc;
 
@@ -10,25 +10,25 @@ use crate::evolve::settings::{RestartKind, StrategyKind};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::genome::Genome;
 
-/// Random genomes with which a search begins that is not around a genome; in a short run a quarter of its evaluations.
+/// Number of random genomes with which a search without a start genome begins, at most a quarter of the run's evaluations.
 const NEWBORNS: u32 = 100;
 
-/// A search by CMA-ES or, where bodies evolve, by the genetic algorithm over bodies.
+/// Parameters of a search by CMA-ES or, where bodies evolve, by the genetic algorithm over bodies.
 pub struct InnerSearch<'a> {
-    /// Candidates of a generation.
+    /// Number of candidates in a generation.
     pub population: u32,
     /// First step of CMA-ES, as a share of each gene's range.
     pub step: f32,
     pub seed: u64,
-    /// The genome around which it begins; none for random ones.
+    /// Genome around which the search begins. None: it begins with random genomes.
     pub around: Option<&'a Genome>,
 }
 
 impl InnerSearch<'_> {
-    /// Resumes a search with this plan after its first `finished` generations.
+    /// Restores a search with the given plan after its first `finished` generations.
     ///
     /// # Errors
-    /// The state does not fit the plan, or a generation would be too large.
+    /// Fails if the state does not fit the plan, or if a generation would be too large.
     pub fn resumed<S: Strategy>(
         plan: &RunPlan,
         finished: u32,
@@ -44,7 +44,7 @@ impl InnerSearch<'_> {
         Ok(search)
     }
 
-    /// Its plan, in the world and with the genomes of a run.
+    /// Returns the plan of the search, with the trial and the space of genomes of `run`.
     pub fn plan(&self, run: &RunPlan) -> RunPlan {
         let mut settings = run.settings.clone();
         let most = u32::try_from(run.settings.evolution.budget() / 4).unwrap_or(u32::MAX);
@@ -52,7 +52,7 @@ impl InnerSearch<'_> {
         evolution.strategy =
             if settings.genome.bodies.vary { StrategyKind::BodyGa } else { StrategyKind::CmaEs };
         evolution.population = self.population;
-        // It is never over.
+        // The search never ends, because no run has more generations.
         evolution.generations = 10_000;
         evolution.cma_es.step = self.step;
         evolution.cma_es.newborns = NEWBORNS.min(most);
@@ -62,7 +62,7 @@ impl InnerSearch<'_> {
     }
 }
 
-/// Writes a search into a file as its state.
+/// Serializes a search as its state.
 pub fn serialize_search<S: Strategy, T: Serializer>(search: &S, to: T) -> Result<T::Ok, T::Error> {
     search.state().serialize(to)
 }

@@ -1,7 +1,7 @@
-//! Islands: a CMA-ES for each number of blocks. Those that learn fastest get the evaluations, by successive halving
-//! (Jamieson and Talwalkar, "Non-stochastic Best Arm Identification and Hyperparameter Optimization", 2016).
+//! Islands: a CMA-ES for each number of blocks. Successive halving gives the evaluations to the best islands (Jamieson and Talwalkar,
+//! "Non-stochastic Best Arm Identification and Hyperparameter Optimization", 2016).
 //!
-//! A body with another number of blocks has other genes, so a covariance is learned within one number of blocks only.
+//! Bodies with different numbers of blocks have different genes, so each covariance is learned for one number of blocks.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -18,26 +18,26 @@ use crate::genome::{GenomeShape, GenomeSpace};
 use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 
-/// The stages: how many evaluations an island has had at the end of a stage, and how many islands go on.
+/// Stages of successive halving: the evaluations that each island has had at the end of a stage, and the number of islands that continue.
 const STAGES: [(u64, usize); 2] = [(120, 5), (480, 2)];
 
-/// An island: all about one number of blocks.
+/// An island: the search for one number of blocks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Island {
-    /// Number of blocks.
+    /// Number of blocks of the island's bodies.
     limbs: u32,
-    /// Whether it still gets evaluations.
+    /// Whether the island still gets evaluations.
     is_active: bool,
-    /// Evaluations so far.
+    /// Number of evaluations so far.
     evaluations: u64,
-    /// Its best fitness so far; none before the first that is not disqualified.
+    /// Best fitness so far. None before the first individual that is not disqualified.
     best: Option<f32>,
-    /// Its runs of CMA-ES; none while the generation of random genomes is pending that the first begins with.
+    /// State of CMA-ES. None while the first generation, of random genomes, is pending.
     runs: Option<RestartedCma>,
 }
 
-/// The islands.
+/// The strategy of islands.
 #[derive(Debug, Clone)]
 pub struct Islands {
     settings: IslandSettings,
@@ -74,9 +74,9 @@ impl Islands {
         }
     }
 
-    /// The run of an island around a point.
+    /// Begins CMA-ES on an island around the point `mean`.
     fn start(&self, island: &Island, mean: Vec<f64>) -> Option<RestartedCma> {
-        // The check of the settings excludes errors. Without a run, all genomes of the island would be random.
+        // The check of the settings excludes errors. If there were one, all genomes of the island would be random.
         let shape = self.shape(island);
         let body = self.space.body_dimension(shape);
         let scale = |index| if index < body { f64::from(self.settings.body_share) } else { 1.0 };
@@ -87,13 +87,13 @@ impl Islands {
         runs
     }
 
-    /// Number of candidates of an island in the next generation.
+    /// Returns the number of candidates of an island in the next generation; 0 if the island is inactive.
     fn size(&self, island: &Island) -> usize {
         let runs = island.runs.as_ref().map_or(self.settings.candidates, RestartedCma::population);
         if island.is_active { runs as usize } else { 0 }
     }
 
-    /// The candidates of an island, given the index of its first individual.
+    /// Returns the candidates of an island, whose first individual has the index `first`.
     fn candidates(&self, island: &Island, first: usize) -> Vec<Candidate> {
         if !island.is_active {
             return Vec::new();
@@ -120,7 +120,7 @@ impl Islands {
         points.into_iter().map(candidate).collect()
     }
 
-    /// Ends a stage once all active islands have had its evaluations.
+    /// Ends the present stage once each active island has had its evaluations: only the best islands stay active.
     fn end_stage(&mut self) {
         let active = || self.islands.iter().filter(|island| island.is_active);
         let (count, least) =
@@ -140,7 +140,7 @@ impl Islands {
 }
 
 impl Strategy for Islands {
-    /// The island of a founder begins at the founder, the others at the best of some random genomes.
+    /// Begins the island with the founder's number of blocks at the founder, and all others at the best of some random genomes.
     fn begin(plan: &RunPlan) -> Self {
         let limbs = plan.settings.genome.bodies.limbs();
         let island =
@@ -213,7 +213,7 @@ impl Strategy for Islands {
             if let Some(runs) = &mut next.runs {
                 let ranked = ranked_candidates(asked, own, &order);
                 let mut rng = stream(self.seed, self.generation, first as u32, Purpose::Restart);
-                // No candidate is missing. If one is not finite, there is nothing left to learn.
+                // The number of candidates is always right. If a coordinate is not finite, nothing more can be learned.
                 let _ = runs.update(&ranked, &mut rng);
             } else if let Some(&best) = order.first() {
                 next.runs = self.start(island, asked[best].heritage.point.clone());
@@ -230,7 +230,7 @@ impl Strategy for Islands {
     }
 
     fn apply_settings(&mut self, plan: &RunPlan) {
-        // The runs depend on no setting that may change.
+        // CMA-ES depends on no setting that may change during a run.
         self.settings = plan.settings.evolution.islands.clone();
     }
 }
@@ -250,7 +250,7 @@ mod tests {
         RunPlan::new("test", 1, settings)
     }
 
-    /// Takes generations in which seven blocks are the best, and the others the worse the more they differ.
+    /// Advances the search by generations in which seven blocks are best, and other numbers worse the more they differ from seven.
     fn advance(search: &mut Islands, generations: u32) {
         for _ in 0..generations {
             let asked = search.ask();

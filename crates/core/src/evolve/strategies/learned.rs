@@ -17,25 +17,25 @@ use crate::learn::Episode;
 use crate::learn::classifiers::{Xcs, Zcs};
 use crate::rng::{Purpose, stream};
 
-/// Something that is learned from episodes.
+/// Knowledge that is learned from episodes.
 pub trait Learned: Clone + Send + Sync + Serialize + DeserializeOwned {
-    /// The knowledge of a run at its beginning.
+    /// Returns the knowledge at the beginning of a run.
     fn first(plan: &RunPlan) -> Self;
 
-    /// The knowledge of a controller, if it is of this kind.
+    /// Returns the knowledge in a controller's genes. None if the controller is of another kind.
     fn of(genes: &ControllerGenes) -> Option<Self>;
 
-    /// Checks that it is what the run's strategy learns, about the run's snakes.
+    /// Checks that the knowledge is what the run's strategy learns, for the run's snakes.
     ///
     /// # Errors
-    /// The first difference.
+    /// Describes the first difference.
     fn check_fits(&self, plan: &RunPlan) -> Result<(), Invalid>;
 
-    /// Gives it to a controller, with a way to explore.
+    /// Puts the knowledge into a controller's genes, with a way to explore.
     fn give(&self, genes: &mut ControllerGenes, explorer: Option<Explorer>);
 
-    /// Learns from episodes in their order. Experience that does not fit, which no controller of the program makes, teaches
-    /// nothing.
+    /// Learns from episodes, in their order. Experience of another form than the knowledge, which no controller of the program produces, is
+    /// ignored.
     fn learn(
         &mut self,
         episodes: Vec<Episode>,
@@ -43,7 +43,7 @@ pub trait Learned: Clone + Send + Sync + Serialize + DeserializeOwned {
         rng: &mut ChaCha8Rng,
     );
 
-    /// Adopts changed settings.
+    /// Adopts changed settings of the strategy.
     fn apply(&mut self, evolution: &EvolutionSettings);
 }
 
@@ -51,7 +51,7 @@ impl Learned for Policy {
     fn first(plan: &RunPlan) -> Self {
         let evolution = &plan.settings.evolution;
         let (bits, actions) = (SITUATION_BITS.len(), POSTURES.len());
-        // The settings' own ranges allow no parameter that is refused here.
+        // The ranges of the settings exclude parameters that the learners refuse.
         let policy = match evolution.strategy {
             StrategyKind::Xcs => Xcs::new(evolution.xcs.parameters(), bits, actions)
                 .map(|rules| Self::Xcs(Arc::new(rules))),
@@ -129,7 +129,7 @@ impl Learned for Policy {
     }
 
     fn apply(&mut self, evolution: &EvolutionSettings) {
-        // The settings' own ranges allow no parameter that is refused here.
+        // The ranges of the settings exclude parameters that the learners refuse.
         match self {
             Self::Table(_) => {}
             Self::Xcs(rules) => {
@@ -142,7 +142,7 @@ impl Learned for Policy {
     }
 }
 
-/// The rules of each joint.
+/// The XCS rules of each joint.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct JointSystems(#[serde(with = "shared")] Arc<Vec<Xcs>>);
@@ -151,7 +151,7 @@ impl Learned for JointSystems {
     fn first(plan: &RunPlan) -> Self {
         let joints = plan.settings.trial.agent.joints();
         let parameters = plan.settings.evolution.xcs.of_each(joints);
-        // The settings' own ranges allow no parameter that is refused here.
+        // The ranges of the settings exclude parameters that the learners refuse.
         let systems = JointDecisionGenes::empty_systems(&parameters, joints);
         Self(Arc::new(systems.unwrap_or_default()))
     }
@@ -184,7 +184,7 @@ impl Learned for JointSystems {
         for episode in episodes {
             let Episode::Joints(of_joints) = episode else { continue };
             for (system, (decisions, end)) in systems.iter_mut().zip(of_joints) {
-                // A joint may keep its bend, and does for the most part.
+                // The argument `true`: a joint may keep its bend, as it does in most decisions.
                 let _ = system.learn_returns(&decisions, end, evolution.xcs.trace, true, rng);
             }
         }

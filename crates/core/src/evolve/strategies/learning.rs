@@ -1,8 +1,8 @@
-//! Learning by trial and error: all snakes of a run share what they have learned.
+//! Learning by trial and error: all snakes of a run share their knowledge.
 //!
-//! A generation is a number of episodes. In the first the snake plays what has been learned, without chance; only it can
-//! become a champion, because the luck of an explorer is no skill. The others explore, the first of them boldly and the
-//! last carefully. Then the learner takes in the experience of all, in the order of their indices.
+//! A generation is a number of episodes. In the first episode the snake acts by the knowledge, without exploration. Only this snake can
+//! become a champion, because the success of an explorer may be luck. The other snakes explore, the first of them most and the last least.
+//! Then the learner learns from all episodes, in the order of their indices.
 
 use super::learned::Learned;
 use super::search::Search;
@@ -19,12 +19,12 @@ use crate::learn::q_table::epsilon;
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
-/// A learner that all episodes share.
+/// A learner whose knowledge all episodes share.
 #[derive(Debug, Clone)]
 pub struct Learning<L> {
     search: Search,
     evolution: EvolutionSettings,
-    /// The snake of all episodes, without a policy of its own: the founder, or the one in the middle of all ranges.
+    /// Genome of all episodes, into which the knowledge is put: the founder, or the genome in the middle of all ranges.
     first: Genome,
     learned: L,
 }
@@ -41,7 +41,7 @@ impl<L: Learned> Learning<L> {
         }
     }
 
-    /// How an individual explores; the first does not.
+    /// Returns how an individual explores. None for the first individual, which does not explore.
     fn explorer(&self, individual: usize) -> Option<Explorer> {
         let individual = individual as u32;
         let (finished, actors) = (self.search.generation - 1, self.search.population as u32);
@@ -60,10 +60,10 @@ impl<L: Learned> Strategy for Learning<L> {
     fn begin(plan: &RunPlan) -> Self {
         let of_founder = |genome: &Genome| L::of(&genome.controller);
         let founded = plan.founder.as_ref().and_then(|founder| of_founder(founder.genome()));
-        // A founder that learned otherwise lends its body.
+        // If the knowledge of the founder does not fit, only the rest of its genome is used.
         let mut fitting = founded.filter(|learned| learned.check_fits(plan).is_ok());
         if let Some(learned) = &mut fitting {
-            // It was learned under settings of its own.
+            // The founder learned under other settings.
             learned.apply(&plan.settings.evolution);
         }
         Self::with(plan, 0, fitting.unwrap_or_else(|| L::first(plan)))

@@ -1,6 +1,6 @@
-//! MAP-Elites (Mouret and Clune, arXiv:1504.04909): an archive of the best of every kind of behaviour, and two
-//! emitters that fill it: one that varies elites by normally distributed steps along the line to another (Vassiliades and
-//! Mouret, GECCO 2018), and one that searches for improvements by CMA-ES (Fontaine and others, GECCO 2020).
+//! MAP-Elites (Mouret and Clune, arXiv:1504.04909): an archive of the best individual of every kind of behaviour, filled by two emitters.
+//! One moves elites by normally distributed steps along the line to another elite (Vassiliades and Mouret, GECCO 2018); the other searches
+//! for improvements by CMA-ES (Fontaine and others, GECCO 2020).
 
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
@@ -18,17 +18,17 @@ use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::rng::{Purpose, normal};
 use crate::score::Evaluation;
 
-/// The state of MAP-Elites.
+/// State of MAP-Elites, as checkpoints have it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MapElitesState {
-    /// The elites with the numbers of their cells.
+    /// Elites with the numbers of their cells.
     elites: Vec<(u32, Elite<Vec<f64>>)>,
-    /// The CMA-ES emitter, while one is active.
+    /// The CMA-ES emitter. None while it is not active.
     emitter: Option<Cma>,
 }
 
-/// MAP-Elites.
+/// MAP-Elites over two descriptors of behaviour.
 #[derive(Debug, Clone)]
 pub struct MapElites {
     settings: MapElitesSettings,
@@ -39,13 +39,13 @@ pub struct MapElites {
 }
 
 impl MapElites {
-    /// Number of individuals in a generation that the CMA-ES emitter makes. It needs at least four.
+    /// Returns the number of individuals in a generation that the CMA-ES emitter makes: at least 4, or 0 if its share is smaller.
     fn emitter_population(&self) -> usize {
         let wanted = self.search.population as f64 * f64::from(self.settings.cma_share);
         if wanted < 4.0 { 0 } else { wanted as usize }
     }
 
-    /// The cell of an agent; none if it was disqualified.
+    /// Returns the cell of an agent. None if the agent was disqualified, or not observed.
     fn cell(&self, evaluation: &Evaluation) -> Option<u32> {
         if evaluation.disqualified.is_some() {
             return None;
@@ -55,7 +55,7 @@ impl MapElites {
         Some(self.archive.cell([x?, y?]))
     }
 
-    /// An elite, moved by a normally distributed step in every gene and along the line to another elite.
+    /// Makes a candidate from an elite, moved by a normally distributed step in every gene and along the line to another elite.
     fn varied(&self, individual: usize, elites: &[&Elite<Vec<f64>>]) -> Candidate {
         let mut rng = self.search.stream(individual, Purpose::Mutation);
         let parent = rng.random_range(0..elites.len());
@@ -73,8 +73,8 @@ impl MapElites {
         self.search.candidate(point, parents)
     }
 
-    /// Lets the emitter learn: individuals that filled an empty cell rank first, then those that improved one, then the
-    /// others. If there was no progress, or its search has ended, it begins again at another elite.
+    /// Updates the CMA-ES emitter. Individuals that filled an empty cell rank first, then those that improved a cell, then the others. If
+    /// no individual was added, or the emitter's search has ended, the emitter begins again at another elite.
     fn teach(
         &mut self,
         candidates: &[Candidate],
@@ -97,7 +97,8 @@ impl MapElites {
                 let ((class_a, worth_a), (class_b, worth_b)) = (worth(a), worth(b));
                 class_b.cmp(&class_a).then(worth_b.total_cmp(&worth_a))
             });
-            // There are no values by which to judge the end of a search: distinct ones never end it.
+            // The values are made up from ranks and iterations. As they differ and rise, the criteria that compare values never end the
+            // search.
             let ranked: Vec<RankedCandidate> = order
                 .iter()
                 .enumerate()
@@ -123,7 +124,7 @@ impl MapElites {
         let mut rng = self.search.stream(0, Purpose::Restart);
         let start = elites[rng.random_range(0..elites.len())].genes.clone();
         let shape = covariance_shape(self.search.dimension());
-        // The check of the settings excludes errors. Without this emitter the other makes all individuals.
+        // The check of the settings excludes errors. If there were one, the other emitter would make all individuals.
         Cma::new(start, self.settings.cma_step.into(), population as u32, shape, true).ok()
     }
 }
@@ -196,7 +197,7 @@ impl Strategy for MapElites {
                 fitness: evaluation.fitness,
                 generation: self.search.generation,
                 individual: index as u32,
-                // Inside the cube lines between elites are short.
+                // The point is folded into the unit cube, where lines between elites are short.
                 genes: self.search.folded(&candidate.heritage.point),
             };
             self.archive.add(cell, elite)
@@ -217,7 +218,7 @@ impl Strategy for MapElites {
         self.settings = plan.settings.evolution.map_elites.clone();
         self.search.apply_settings(plan);
         let share = self.emitter_population();
-        // An emitter of another size cannot learn from this generation. It begins again after the next.
+        // An emitter with another population cannot learn from the present generation. A new emitter begins after the next.
         self.emitter.take_if(|emitter| emitter.population() as usize != share);
     }
 

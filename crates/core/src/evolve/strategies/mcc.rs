@@ -1,13 +1,14 @@
 //! Minimal criterion coevolution: a queue of snakes and a queue of stairs, without any fitness (Brant and Stanley, "Minimal
 //! Criterion Coevolution", 2017).
 //!
-//! A snake enters its queue if it climbs some stairs of the other queue, and stairs enter theirs if some snake climbs them. Each
-//! member has children in turn; when a queue is full, its oldest member is removed. A limited number of snakes may enter by
-//! climbing the same stairs (Brant and Stanley, 2020): otherwise most snakes would be those of the easiest stairs. A search on the
-//! first stairs finds the snakes to begin with.
+//! A snake enters the queue of snakes if it climbs some stairs of the queue of stairs, and stairs enter their queue if some snake climbs
+//! them. The members of a queue have children in turn; when a queue is full, its oldest member is removed. Only a limited number of snakes
+//! may enter by climbing the same stairs (Brant and Stanley, 2020): otherwise most snakes would be those of the easiest stairs. A search on
+//! the first stairs finds the first snakes.
 //!
-//! Where this differs from the papers: there is one first staircase, children are drawn around their parents as by CMA-ES instead of
-//! by NEAT, a snake that climbs several stairs counts for the least used of them, and the limit ends once no more stairs fit.
+//! Differences from the papers: there is one first staircase, children are drawn around their parents as by CMA-ES instead of by NEAT, a
+//! snake that climbs several stairs counts for the least used of them, and the limit of uses ends once the run has the maximum number of
+//! stairs.
 
 mod state;
 #[cfg(test)]
@@ -28,25 +29,25 @@ use crate::rng::{Purpose, stream};
 use crate::score::Evaluation;
 use state::{FirstSearch, MccProgress, PATIENCE};
 
-/// Minimal criterion coevolution. Its children, and the first snakes, come from searches of the kind `S`.
+/// Minimal criterion coevolution. Searches of the kind `S` make the children and find the first snakes.
 pub struct Mcc<S> {
-    /// The plan of the run.
+    /// Plan of the run.
     plan: RunPlan,
-    /// The next generation; the first is 1.
+    /// Number of the next generation; the first is 1.
     generation: u32,
     progress: MccProgress<S>,
-    /// The attempts of the next generation, which follow from the progress.
+    /// Attempts of the next generation, which follow from the progress.
     batch: Vec<Attempt<MccRole>>,
 }
 
-/// The purpose of an attempt. Children are numbered within the generation.
+/// What an attempt tests. Children are numbered within the generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MccRole {
-    /// Whether it is one of the first snakes.
+    /// The attempt tests whether a candidate can be one of the first snakes.
     First,
-    /// Whether a child of a snake climbs stairs of the queue.
+    /// The attempt tests whether child number `child` of a snake climbs the stairs with the index `node`.
     Snake { child: u32, node: u32 },
-    /// Whether a snake of the queue climbs a mutant of stairs.
+    /// The attempt tests whether a snake of the queue climbs mutant number `child` of the stairs with the index `parent`.
     Stairs { child: u32, parent: u32, snake: u32 },
 }
 
@@ -62,7 +63,7 @@ impl<S: Strategy> Mcc<S> {
         &self.plan.settings.evolution.mcc
     }
 
-    /// The attempts of the next generation.
+    /// Returns the attempts of the next generation.
     fn next_batch(&self) -> Vec<Attempt<MccRole>> {
         if let Some(beginning) = &self.progress.beginning {
             let stairs = self.progress.nodes[0].stairs;
@@ -74,7 +75,7 @@ impl<S: Strategy> Mcc<S> {
         all
     }
 
-    /// Each child of the snakes whose turn it is on all stairs that may still be used.
+    /// Returns the attempts of the children of snakes whose turn it is: each child on all stairs that still have uses.
     fn children_of_snakes(&self) -> Vec<Attempt<MccRole>> {
         let MccProgress { snakes, snake_turn, .. } = &self.progress;
         let open: Vec<u32> = self.progress.active().filter(|node| self.has_uses(*node)).collect();
@@ -94,22 +95,22 @@ impl<S: Strategy> Mcc<S> {
         all
     }
 
-    /// Whether snakes may still enter their queue by climbing these stairs. Once no more stairs come, they always may.
+    /// Returns whether snakes may still enter their queue by climbing these stairs. They always may once no more stairs can be added.
     fn has_uses(&self, node: u32) -> bool {
         !self.has_room() || self.progress.uses[node as usize] < self.settings().uses_of_stairs
     }
 
-    /// Whether more stairs may come.
+    /// Returns whether the run has room for the mutants of another generation.
     fn has_room(&self) -> bool {
         let most_new = self.settings().stairs_children as usize;
         self.progress.nodes.len() + most_new <= PoetSettings::MOST_STAIRS
     }
 
-    /// A child of a snake.
+    /// Draws a child of a snake.
     fn child_of(&self, parent: &Genome, individual: u32) -> Genome {
         let mut rng = stream(self.plan.seed, self.generation, individual, Purpose::Mutation);
         let of = InnerSearch {
-            // The smallest generation of a search.
+            // A search needs a population of at least two.
             population: 2,
             step: self.settings().child_step,
             seed: rng.next_u64(),
@@ -119,7 +120,7 @@ impl<S: Strategy> Mcc<S> {
         drawn.map_or_else(|| parent.clone(), |of| of.genome)
     }
 
-    /// Each mutant of the stairs whose turn it is with all snakes.
+    /// Returns the attempts of all snakes on each mutant of the stairs whose turn it is.
     fn mutants_of_stairs(&self) -> Vec<Attempt<MccRole>> {
         let MccProgress { snakes, nodes, stairs_turn, .. } = &self.progress;
         let active: Vec<u32> = self.progress.active().collect();
@@ -143,12 +144,12 @@ impl<S: Strategy> Mcc<S> {
         all
     }
 
-    /// Whether a snake climbs its stairs.
+    /// Returns whether the evaluated snake climbs its stairs.
     fn climbs(&self, evaluation: &Evaluation) -> bool {
         evaluation.disqualified.is_none() && evaluation.fitness >= self.settings().criterion
     }
 
-    /// Takes the evaluations of the search for the first snakes.
+    /// Processes the evaluations of the search for the first snakes.
     fn after_first(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let wanted = self.settings().first_snakes as usize;
         let mut found = 0;
@@ -183,7 +184,7 @@ impl<S: Strategy> Mcc<S> {
         }
     }
 
-    /// Takes the evaluations of children, and lets those enter the queues that meet the criterion.
+    /// Processes the evaluations of children. Those that meet the criterion enter the queues.
     fn after_children(&mut self, evaluations: &[Evaluation]) {
         self.progress.rounds += 1;
         self.progress.pass_turns(self.settings().snake_children, self.settings().stairs_children);
@@ -209,7 +210,7 @@ impl<S: Strategy> Mcc<S> {
         self.progress.shorten(most);
     }
 
-    /// Lets a child of a snake enter the queue, if it climbs stairs that may still be used: the least used of those.
+    /// Adds a child of a snake to the queue, if it climbs stairs that still have uses. The entry counts for the least used of these stairs.
     fn take_snake(&mut self, tried: &[Tried<'_>]) {
         let mut least: Option<(u32, u32, f32, u32)> = None;
         for (individual, attempt, evaluation) in tried {
@@ -236,10 +237,10 @@ impl<S: Strategy> Mcc<S> {
         self.progress.snakes.push(agent);
     }
 
-    /// Lets a mutant of stairs enter the queue, if a snake climbs it.
+    /// Adds a mutant of stairs to the queue, if a snake climbs it.
     fn take_stairs(&mut self, parent: u32, tried: &[Tried<'_>]) {
         let climbed = tried.iter().filter(|(.., evaluation)| self.climbs(evaluation));
-        // Of equals the first.
+        // Of snakes with equal fitness the first is kept.
         let best = climbed.reduce(|a, b| if b.2.fitness > a.2.fitness { b } else { a });
         let Some((_, attempt, evaluation)) = best else { return };
         let MccRole::Stairs { snake, .. } = attempt.role else { return };
@@ -259,11 +260,11 @@ impl<S: Strategy> Mcc<S> {
     }
 }
 
-/// The number of an individual, what was attempted with it, and the result.
+/// Index of an individual, its attempt, and its evaluation.
 type Tried<'a> = (u32, &'a Attempt<MccRole>, &'a Evaluation);
 
 impl MccRole {
-    /// Whether two attempts belong to one child.
+    /// Returns whether two attempts test the same child.
     fn is_of_child_of(self, other: Self) -> bool {
         match (self, other) {
             (Self::Snake { child: a, .. }, Self::Snake { child: b, .. })
@@ -283,7 +284,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
         let mut progress = MccProgress::read(state, plan, finished)?;
-        // A change of settings may have made the queues shorter.
+        // A change of settings may have reduced the maximum lengths of the queues.
         let mcc = &plan.settings.evolution.mcc;
         progress.shorten([mcc.snake_queue, mcc.stairs_queue].map(|most| most as usize));
         Ok(Self::with(plan, finished, progress))

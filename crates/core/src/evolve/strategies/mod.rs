@@ -1,7 +1,7 @@
 //! The registry of strategies.
 //!
-//! A new strategy is a file here and a line in [`constructors`], a row of
-//! [`StrategyKind`] and, if it has any, its settings in [`super::settings`].
+//! To add a strategy, write a file in this folder, a line in [`constructors`], a row of [`StrategyKind`] and, if the strategy has settings,
+//! a file in [`super::settings`].
 
 mod attempt;
 mod body_children;
@@ -41,7 +41,7 @@ use mcc::Mcc;
 use novelty::Novelty;
 use poet::Poet;
 
-/// The constructors of the strategy of these settings.
+/// Returns the constructors of the strategy that the settings choose.
 fn constructors(settings: &Settings) -> Constructors {
     match settings.evolution.strategy {
         StrategyKind::Halving => Constructors::of::<halving::Halving>(),
@@ -70,7 +70,7 @@ fn constructors(settings: &Settings) -> Constructors {
 
 type Resumed = Result<Box<dyn Strategy>, Invalid>;
 
-/// How a strategy begins and resumes.
+/// Functions that begin and resume a strategy.
 struct Constructors {
     begin: fn(&RunPlan) -> Box<dyn Strategy>,
     resume: fn(&RunPlan, u32, &StrategyState) -> Resumed,
@@ -85,15 +85,15 @@ impl Constructors {
     }
 }
 
-/// The strategy of a run at its beginning.
+/// Begins the strategy of a run.
 pub fn begin(plan: &RunPlan) -> Box<dyn Strategy> {
     (constructors(&plan.settings).begin)(plan)
 }
 
-/// The strategy of a run after its first `finished` generations.
+/// Restores the strategy of a run after its first `finished` generations.
 ///
 /// # Errors
-/// The state does not fit the plan: another strategy has written it, or a value is not allowed.
+/// Fails if the state does not fit the plan: another strategy wrote it, or a value is not allowed.
 pub fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Resumed {
     (constructors(&plan.settings).resume)(plan, finished, state)
 }

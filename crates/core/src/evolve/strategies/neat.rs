@@ -1,4 +1,4 @@
-//! NEAT: networks that grow, in species that protect what is new.
+//! NEAT: evolution of networks that grow, in species that protect new structure.
 
 use super::search::Search;
 use crate::check::{Invalid, within};
@@ -11,19 +11,20 @@ use crate::genome::{ControllerGenes, Genome};
 use crate::learn::neat::{NeatPopulation, NetworkGenome};
 use crate::score::Evaluation;
 
-/// NEAT. The genes of body and servo evolve as the parameters of a network's genome.
+/// NEAT as a strategy. The genes of body and servo evolve as the parameters of a network's genome.
 #[derive(Debug, Clone)]
 pub struct Neat {
     search: Search,
-    /// None only if a first generation could not be made, which the checks of settings and founders rule out.
+    /// The networks of the next generation. None only if the first generation could not be made, which the checks of settings and founders
+    /// exclude.
     population: Option<NeatPopulation>,
 }
 
 impl Neat {
-    /// The first generation.
+    /// Makes the first generation: mutants of the founder, if there is one with a network.
     ///
     /// # Errors
-    /// A number is out of range; the settings' own ranges allow none.
+    /// Fails if a number is out of range, which the ranges of the settings exclude.
     fn first(plan: &RunPlan, search: &Search) -> Result<NeatPopulation, Invalid> {
         let rules = plan.settings.evolution.neat.rules();
         let (size, seed) = (search.population, plan.seed);
@@ -40,7 +41,7 @@ impl Neat {
         NeatPopulation::first(rules, inputs, outputs, parameters, size, seed)
     }
 
-    /// The genome of a network.
+    /// Returns the genome with a network as its controller.
     fn genome(&self, network: &NetworkGenome) -> Genome {
         let point: Vec<f64> = network.parameters.iter().map(|x| f64::from(*x)).collect();
         let mut genome = self.search.genome(&point);
@@ -90,7 +91,7 @@ impl Strategy for Neat {
     }
 
     fn tell(&mut self, _: &[Candidate], evaluations: &[Evaluation]) {
-        // A value that is not a number counts as the worst.
+        // NaN, for a disqualified individual, counts as the worst fitness.
         let fitness = |evaluation: &Evaluation| match evaluation.disqualified {
             Some(_) => f64::NAN,
             None => f64::from(evaluation.fitness),
@@ -108,6 +109,6 @@ impl Strategy for Neat {
         }
     }
 
-    /// No setting of NEAT may change during a run.
+    /// Does nothing, because no setting of NEAT may change during a run.
     fn apply_settings(&mut self, _: &RunPlan) {}
 }

@@ -1,5 +1,4 @@
-//! Novelty search: unseen behaviour is rewarded (Lehman and Stanley, Evolutionary Computation 19 (2011)), to a
-//! configurable share beside fitness.
+//! Novelty search: new behaviour is rewarded (Lehman and Stanley, Evolutionary Computation 19 (2011)), in any proportion to fitness.
 
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
@@ -17,17 +16,17 @@ use crate::rng::Purpose;
 use crate::score::Evaluation;
 use crate::world::Stairs;
 
-/// The state of novelty search.
+/// State of novelty search, as checkpoints have it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct NoveltyState<M, P> {
-    /// The last generation, best first.
+    /// Members of the last generation, best first.
     members: Vec<M>,
-    /// The archived points.
+    /// Points of the archive.
     archive: Vec<P>,
 }
 
-/// Novelty search: a genetic algorithm with another order of the best.
+/// Novelty search: a genetic algorithm whose individuals are ranked by novelty and fitness.
 #[derive(Debug, Clone)]
 pub struct Novelty<B: Breeder> {
     settings: NoveltySettings,
@@ -51,7 +50,7 @@ impl<B: Breeder> Novelty<B> {
         }
     }
 
-    /// The behaviour of an agent; none if it was disqualified.
+    /// Returns the behaviour of an agent. None if the agent was disqualified.
     fn behaviour(&self, evaluation: &Evaluation) -> Option<BehaviourPoint> {
         if evaluation.disqualified.is_some() {
             return None;
@@ -59,7 +58,7 @@ impl<B: Breeder> Novelty<B> {
         let share = |descriptor: Descriptor| {
             descriptor.value(evaluation, self.start_y_m).map_or(0.0, |x| descriptor.share(x))
         };
-        // The axis reaches as far behind the start as the end of the landing is ahead of it.
+        // The axis of the final position reaches as far behind the start as the end of the landing lies ahead.
         let reach_m = f64::from(self.stairs.end_y_m() - self.start_y_m).abs().max(1.0);
         let progress_m = f64::from(evaluation.centre_y_m - self.start_y_m);
         let end = (0.5 + progress_m / (2.0 * reach_m)).clamp(0.0, 1.0);
@@ -67,8 +66,8 @@ impl<B: Breeder> Novelty<B> {
         Some([end, first, second])
     }
 
-    /// Mean distance of each point to its nearest neighbours among all of them and the archive. Individuals without
-    /// a point are the least novel.
+    /// Returns the mean distance of each point to its nearest neighbours among the other points and the archive. Individuals without a
+    /// point are the least novel.
     fn novelties(&self, points: &[Option<B::Point>]) -> Vec<f64> {
         let novelty = |(index, point): (usize, &Option<B::Point>)| {
             let Some(point) = point else { return f64::NEG_INFINITY };
@@ -87,7 +86,7 @@ impl<B: Breeder> Novelty<B> {
         points.iter().enumerate().map(novelty).collect()
     }
 
-    /// Adds some points, chosen at random, to the archive.
+    /// Adds randomly chosen points of a generation to the archive.
     fn remember(&mut self, points: &[Option<B::Point>]) {
         let mut rng = self.breeder.stream(Purpose::Archive);
         let mut candidates: Vec<B::Point> = points.iter().flatten().copied().collect();
@@ -110,7 +109,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }
 
-/// The rank of each index in an order: 0 is the first.
+/// Returns the rank of each index in an order; the first has rank 0.
 fn ranks_in(order: &[usize]) -> Vec<f64> {
     let mut ranks = vec![0.0; order.len()];
     for (rank, &index) in order.iter().enumerate() {
@@ -141,7 +140,7 @@ impl<B: Breeder> Strategy for Novelty<B> {
         self.breeder.population()
     }
 
-    /// Mixes ranks, because novelty and fitness have no common unit.
+    /// Ranks the individuals by a weighted sum of two ranks, because novelty and fitness have no common unit.
     fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let point = |(candidate, evaluation): (&Candidate, &Evaluation)| {
             Some(B::point(self.behaviour(evaluation)?, &candidate.genome, &self.bodies))
@@ -198,7 +197,8 @@ mod tests {
         Evaluation { behaviour, ..Evaluation::of_fitness(centre_y_m) }
     }
 
-    /// The index of the best of four: three behave alike, the last of them is the fittest, and number 1 is different.
+    /// Returns the index of the best of four individuals: three behave alike, the last of which is the fittest, and number 1 behaves
+    /// differently.
     fn first(weight: f32) -> usize {
         let mut settings = Settings::default();
         settings.evolution.population = 4;

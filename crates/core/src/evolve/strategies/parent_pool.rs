@@ -1,23 +1,23 @@
-//! The individuals of the last generation that may have children.
+//! Individuals of the last generation that may become parents.
 
 use crate::evolve::parents::{IndividualId, Parents};
 
 /// Possible parents of the next generation, best first.
 #[derive(Debug, Clone)]
 pub struct ParentPool<M> {
-    /// The parents; empty before the first generation.
+    /// Individuals that may become parents; empty before the first generation.
     pub members: Vec<M>,
-    /// Their ids; empty if they are unknown.
+    /// Ids of the members, in the same order; empty if they are unknown.
     ids: Vec<IndividualId>,
 }
 
 impl<M> ParentPool<M> {
-    /// Parents whose ids are not known.
+    /// Makes a pool of members whose ids are unknown.
     pub fn unknown(members: Vec<M>) -> Self {
         Self { members, ids: Vec::new() }
     }
 
-    /// The individuals of a generation with these indices.
+    /// Makes a pool of the individuals of a generation with the given indices.
     pub fn chosen(generation: u32, indices: &[usize], member: impl FnMut(&usize) -> M) -> Self {
         let id = |&index: &usize| IndividualId { generation, individual: index as u32 };
         Self {
@@ -26,7 +26,7 @@ impl<M> ParentPool<M> {
         }
     }
 
-    /// The parents of a child of one or two members, given their indices.
+    /// Returns the parents of a child, given the indices of one or two members.
     pub fn parents(&self, first: usize, second: Option<usize>) -> Parents {
         let id = |index: usize| self.ids.get(index).copied();
         let parents = match second {
@@ -36,17 +36,17 @@ impl<M> ParentPool<M> {
         parents.unwrap_or(Parents::Unknown)
     }
 
-    /// The ids of the parents, as far as they are known.
+    /// Returns the ids of the members; empty if they are unknown.
     pub fn ids(&self) -> Vec<IndividualId> {
         self.ids.clone()
     }
 
-    /// Takes the ids of the parents from the beginning of a list. If the list is too short, they stay unknown.
+    /// Sets the ids of the members from the beginning of a list. If the list is too short, the ids stay unknown.
     pub fn restore(&mut self, ids: &[IndividualId]) {
         self.ids = ids.get(..self.members.len()).unwrap_or_default().to_vec();
     }
 
-    /// Removes all parents but the best.
+    /// Keeps only the best `most` members.
     pub fn truncate(&mut self, most: usize) {
         self.members.truncate(most);
         self.ids.truncate(most);

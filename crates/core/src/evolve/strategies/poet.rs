@@ -1,11 +1,10 @@
-//! POET, the paired open-ended trailblazer: stairs that evolve, each with a search of its own for the snake that climbs
-//! it (Wang, Lehman, Clune and Stanley, "Paired Open-Ended Trailblazer", 2019, and "Enhanced POET", 2020).
+//! POET, the paired open-ended trailblazer: stairs evolve, and for each staircase a separate search looks for the snake that climbs it best
+//! (Wang, Lehman, Clune and Stanley, "Paired Open-Ended Trailblazer", 2019, and "Enhanced POET", 2020).
 //!
-//! A round has several blocks of learning, each followed by transfers of agents between stairs; at its end mutants of
-//! stairs are tried, and the newest of those that are neither too easy nor too hard become pairs. Each [`Phase`] is a
-//! generation of the run, so a run can stop and go on between any two. Where the authors' code differs from their text, this
-//! follows the text: novelty compares ranks that are clipped to the minimal criterion, and a challenge counts once it is
-//! solved.
+//! A round has several blocks of learning, each followed by transfers of agents between stairs. At its end mutants of stairs are tried, and
+//! the most novel of those that are neither too easy nor too hard become pairs. Each [`Phase`] is a generation of the run, so a run can
+//! stop between any two phases. Where the authors' code differs from their text, this module follows the text: novelty compares ranks that
+//! are clipped to the minimal criterion, and a challenge counts once it is solved.
 
 mod batch;
 mod new_stairs;
@@ -26,18 +25,18 @@ use crate::score::Evaluation;
 use batch::PoetRole;
 use state::{FineTuned, MOST_TRANSFERS, Pair, Phase, PoetProgress, Proposal, RECENT, search_plan};
 
-/// Number of measurements in turn without a better agent after which a pair's search begins again around its agent.
+/// Number of consecutive measurements without a better agent after which a pair's search begins again around its agent.
 const STALE: u32 = 8;
 
-/// POET, whose pairs search with `S`.
+/// POET, whose pairs search with a strategy `S`.
 pub struct Poet<S> {
     settings: PoetSettings,
-    /// The plan of the run.
+    /// Plan of the run.
     plan: RunPlan,
-    /// The next generation; the first is 1.
+    /// Number of the next generation; the first is 1.
     generation: u32,
     progress: PoetProgress<S>,
-    /// The attempts of the next generation, which follow from the progress.
+    /// Attempts of the next generation, which follow from the progress.
     batch: Vec<Attempt<PoetRole>>,
 }
 
@@ -50,29 +49,30 @@ impl<S: Strategy> Poet<S> {
         poet
     }
 
-    /// The stairs on which a run begins: those of the trial with the first rise.
+    /// Returns the first stairs of a run: those of the trial, with the first rise.
     fn root(plan: &RunPlan) -> StairsGenome {
         let rise_m = plan.settings.evolution.poet.root_rise_m;
         StairsGenome::like(&plan.settings.trial.stairs, rise_m)
     }
 
-    /// Length of the longest stairs, in m: a trial has time for those that its settings have.
+    /// Returns the greatest length of stairs, in m: that of the stairs in the settings, for which a trial has time, or of the first stairs
+    /// if they are longer.
     fn longest_m(&self) -> f32 {
         let length_m = Self::root(&self.plan).length_m();
         self.plan.settings.trial.stairs.treads_m().max(length_m)
     }
 
-    /// A search for the agent of a staircase, around a genome or from random ones.
+    /// Begins a search for the agent of a staircase, around a genome or from random genomes.
     fn search(&self, node: u32, restarts: u32, around: Option<&Genome>) -> S {
         S::begin(&search_plan(&self.plan, node, restarts, around))
     }
 
-    /// The score of an evaluation whose fitness is the share of the way: 0 after a disqualification.
+    /// Returns the score of an evaluation, which is its fitness (a share of the way), but at least 0, and 0 after a disqualification.
     fn score(evaluation: &Evaluation) -> f32 {
         if evaluation.disqualified.is_some() { 0.0 } else { evaluation.fitness.max(0.0) }
     }
 
-    /// Takes the scores of a generation in the present phase, in the order of its candidates, and goes on to the next phase.
+    /// Processes the evaluations of the present phase, in the order of its candidates, and begins the next phase.
     fn take(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
         let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
         let attempts = std::mem::take(&mut self.batch);
@@ -139,7 +139,7 @@ impl<S: Strategy> Poet<S> {
             let incumbent = node.agent.take();
             let challenger = pair.challenger.take().map(|(agent, _)| agent);
             let had_agent = incumbent.is_some();
-            // Of equals the agent stays, which comes first.
+            // Of equal scores, that of the agent counts, because it comes first.
             let mut best: Option<(Agent, f32, bool)> = None;
             for (number, agent) in incumbent.into_iter().chain(challenger).enumerate() {
                 let Some((_, &score)) = own.next() else { break };
@@ -178,7 +178,7 @@ impl<S: Strategy> Poet<S> {
         }
     }
 
-    /// Begins the search of a pair again, around the agent of its staircase.
+    /// Restarts the search of a pair around the agent of its staircase.
     fn begin_again(&mut self, node: u32, restarts: u32) {
         let search = self.search(node, restarts, self.progress.agent(node));
         if let Some(pair) = self.progress.pair_mut(node) {
@@ -190,8 +190,8 @@ impl<S: Strategy> Poet<S> {
         }
     }
 
-    /// For each staircase the agent of another one that covers the greatest share of its way in the nominal trial, if that is
-    /// more than its own agent did lately.
+    /// For each staircase, proposes the agent of another staircase that covers the greatest share of the way in the nominal trial, if the
+    /// share exceeds the recent scores of the staircase's own agent.
     fn proposals(&self, attempts: &[Attempt<PoetRole>], scores: &[f32]) -> Vec<Proposal> {
         let mut proposals = Vec::new();
         for pair in &self.progress.pairs {
@@ -211,8 +211,7 @@ impl<S: Strategy> Poet<S> {
         proposals
     }
 
-    /// Keeps the proposals that beat the recent scores of their target over all trials, each with its best fine-tuned
-    /// candidate.
+    /// Keeps the proposals that beat the recent scores of their target over all trials, each with its best fine-tuned candidate.
     fn after_tuning(
         &mut self,
         proposals: Vec<Proposal>,
@@ -242,7 +241,7 @@ impl<S: Strategy> Poet<S> {
         if tuned.is_empty() { self.after_transfers() } else { Phase::Confirm { tuned } }
     }
 
-    /// Replaces the agents of stairs by those fine-tuned ones that beat them, too.
+    /// Replaces the agents of stairs by fine-tuned agents whose scores exceed the agents' recent scores.
     fn after_confirmation(&mut self, tuned: Vec<FineTuned>, scores: &[f32]) -> Phase {
         let round = self.progress.rounds + 1;
         for (FineTuned { from, to, agent }, &score) in tuned.into_iter().zip(scores) {
@@ -278,7 +277,7 @@ impl<S: Strategy> Poet<S> {
         if children.is_empty() { self.end_round() } else { Phase::Breed { children } }
     }
 
-    /// Archives the oldest pairs, if there are too many.
+    /// Ends a round. Archives the oldest pairs, if there are too many.
     fn end_round(&mut self) -> Phase {
         self.progress.rounds += 1;
         let PoetProgress { rounds, nodes, pairs, .. } = &mut self.progress;

@@ -1,4 +1,4 @@
-//! Random search, which learns nothing. Only a founder, if there is one, makes a difference, in the first generation.
+//! Random search, which learns nothing. Only the first generation depends on the founder, if there is one.
 
 use super::search::Search;
 use crate::check::Invalid;
@@ -11,7 +11,7 @@ use crate::score::Evaluation;
 /// Standard deviation of the mutations of a founder, as a share of each gene's range.
 const FOUNDER_STEP: f64 = 0.1;
 
-/// Random search.
+/// Random search as a strategy.
 #[derive(Debug, Clone)]
 pub struct Random {
     search: Search,

@@ -1,6 +1,6 @@
-//! Children that take over a good wave: the best waves of a generation are put together in the next.
+//! Wave takeover: a child replaces its parent's least used wave by a much used wave of another good individual.
 //!
-//! Only the genetic algorithm does so, and only where a genome has a library of waves.
+//! Only the genetic algorithm uses it, and only where genomes have a library of waves.
 
 use std::ops::Range;
 
@@ -13,31 +13,31 @@ use crate::control::WaveUses;
 use crate::evolve::plan::RunPlan;
 use crate::score::Evaluation;
 
-/// Number of the best individuals that give waves.
+/// Number of best individuals whose waves may be taken over.
 const DONORS: usize = 4;
 
-/// The places of a library's waves in a point of the unit cube.
+/// Positions of a library's waves among the coordinates of a genome's point.
 #[derive(Debug, Clone)]
 pub struct WaveTakeover {
-    /// The coordinates of each wave; empty without a library.
+    /// Ranges of the coordinates of each wave; empty without a library.
     library: Vec<Range<usize>>,
 }
 
 impl WaveTakeover {
-    /// The takeover in a run.
+    /// Makes the wave takeover of a run.
     pub fn new(plan: &RunPlan) -> Self {
         let settings = &plan.settings;
         Self { library: settings.genome.library_coordinates(settings.trial.genome_shape()) }
     }
 
-    /// Checks the uses of a member from a file.
+    /// Checks the wave uses of a member from a file.
     pub fn check(&self, member: &GaMember) -> Result<(), Invalid> {
         let Some(uses) = &member.uses else { return Ok(()) };
         let waves = self.library.len();
         within("number of wave uses", uses.counts().len(), waves..=waves)
     }
 
-    /// Notes the uses of waves of a generation's members, of which `order` has the indices.
+    /// Stores the wave uses of a generation in its members; `order` has the index of each member in the generation.
     pub fn learn(&self, members: &mut [GaMember], order: &[usize], evaluations: &[Evaluation]) {
         for (member, &index) in members.iter_mut().zip(order) {
             let behaviour = evaluations.get(index).and_then(|evaluation| evaluation.behaviour);
@@ -46,8 +46,8 @@ impl WaveTakeover {
         }
     }
 
-    /// With probability `share`, the index of another of the best, of whom a child of member number `first` takes over a
-    /// wave. Draws no number where there is no library.
+    /// Returns, with probability `share`, the index of another of the best members, whose wave a child of member `first` takes over. Draws
+    /// no random number where there is no library.
     pub fn donor(
         &self,
         members: &[GaMember],
@@ -66,7 +66,7 @@ impl WaveTakeover {
         others.get(rng.random_range(0..others.len())).copied()
     }
 
-    /// Puts the most used wave of a donor in the place of the wave that the parent of a child has least used.
+    /// Copies the most used wave of a donor to the coordinates of the wave that the child's parent used least.
     pub fn take_over(&self, child: &mut [f64], parent: &GaMember, donor: &GaMember) {
         let block = |member: &GaMember, index: fn(&WaveUses) -> usize| {
             member.uses.as_ref().and_then(|uses| self.library.get(index(uses))).cloned()
@@ -96,7 +96,7 @@ mod tests {
         settings.evolution.population = 100;
         settings.genome.controller = controller;
         settings.evolution.ga.wave_takeover = wave_takeover;
-        // Children differ from their parents by next to nothing else.
+        // Without crossover, and with the smallest step, children differ from their parents by hardly more than the wave.
         settings.evolution.ga.crossover_share = 0.0;
         settings.evolution.ga.step = 1.0e-4;
         RunPlan::new("test", 1, settings)
@@ -106,7 +106,7 @@ mod tests {
         counts.to_vec().try_into().expect("allowed")
     }
 
-    /// Evaluations of a generation in the order of its indices, the first the best. Each has chosen another wave most.
+    /// Returns the evaluations of a generation in which the first individual is the best. Each individual has chosen another wave most.
     fn evaluations(count: usize) -> Vec<Evaluation> {
         let evaluation = |index: usize| {
             let mut counts = [5; 4];

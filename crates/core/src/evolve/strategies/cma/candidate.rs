@@ -1,23 +1,23 @@
-//! A candidate with its value, and checks of numbers.
+//! Candidates of CMA-ES with their values, and checks of numbers.
 
 use crate::check::Invalid;
 
-/// A candidate and its value.
+/// A candidate of CMA-ES with its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankedCandidate<'a> {
-    /// The candidate as it was drawn.
+    /// Point of the candidate, as it was drawn.
     pub point: &'a [f64],
-    /// Larger is better; NaN is the worst value. The search uses only ranks. Values only decide when a run
-    /// terminates.
+    /// Value of the candidate. Larger is better; NaN is the worst. The search uses only the ranks of values; the criteria of termination
+    /// compare the values themselves.
     pub value: f64,
 }
 
-/// A finite value, which can be compared: NaN becomes the worst.
+/// Returns a finite value for comparisons: NaN becomes the least value.
 pub fn finite(value: f64) -> f64 {
     if value.is_nan() { f64::MIN } else { value.clamp(f64::MIN, f64::MAX) }
 }
 
-/// Checks that there are `length` numbers and that all are finite.
+/// Checks that there are `length` numbers, and that all of them are finite.
 pub fn check_floats(field: &str, floats: &[f64], length: usize) -> Result<(), Invalid> {
     if floats.len() != length {
         return Err(Invalid::new(field, format!("{} numbers", floats.len()), length.to_string()));

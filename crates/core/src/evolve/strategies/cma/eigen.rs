@@ -1,29 +1,28 @@
-//! The principal axes of a covariance: C = B D² Bᵀ, with B orthogonal and D diagonal.
+//! Principal axes of a covariance: C = B D² Bᵀ, with B orthogonal and D diagonal.
 //!
-//! Jacobi's method needs nothing but the four operations and roots, turns the pairs of coordinates in
-//! a fixed order, and finds even the smallest variances to full relative precision (Demmel & Veselić
-//! 1992, "Jacobi's method is more accurate than QR").
+//! Jacobi's method needs only the four operations and roots, rotates the pairs of coordinates in a fixed order, and finds even the smallest
+//! variances to full relative precision (Demmel & Veselić 1992, "Jacobi's method is more accurate than QR").
 
-/// Maximum number of sweeps over all pairs of Jacobi's method, which needs 6 to 10.
+/// Maximum number of sweeps over all pairs of coordinates. Jacobi's method needs 6 to 10.
 const MOST_SWEEPS: u32 = 60;
 
-/// The principal axes of a covariance and the variances along them, in no particular order.
+/// Principal axes of a covariance and the variances along them, in no particular order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrincipalAxes {
-    /// The diagonal of D². An entry is not positive only if the matrix was no covariance.
+    /// Diagonal of D². An entry is not positive only if the matrix is not a covariance.
     variances: Vec<f64>,
-    /// The columns of B, one after the other; `None` stands for the coordinate axes.
+    /// Columns of B, one after the other. None: the coordinate axes.
     directions: Option<Vec<f64>>,
 }
 
 impl PrincipalAxes {
-    /// The axes of a diagonal covariance, of which `variances` is the diagonal.
+    /// Returns the axes of a diagonal covariance with the diagonal `variances`.
     pub fn of_diagonal(variances: &[f64]) -> Self {
         Self { variances: variances.to_vec(), directions: None }
     }
 
-    /// The axes of the symmetric matrix whose lower triangle, row by row with the diagonal, is
-    /// `triangle`; its `dimension` rows have dimension · (dimension + 1) / 2 entries.
+    /// Returns the axes of a symmetric matrix, given the lower triangle with the diagonal, row by row: dimension · (dimension + 1) / 2
+    /// entries.
     pub fn of_symmetric(triangle: &[f64], dimension: usize) -> Self {
         let mut matrix = square(triangle, dimension);
         let mut directions = identity(dimension);
@@ -36,14 +35,14 @@ impl PrincipalAxes {
         Self { variances, directions: Some(directions) }
     }
 
-    /// B D z: turns a standard normal vector into one with the covariance.
+    /// Returns B D z, which converts a standard normal vector to a vector with the covariance.
     pub fn stretched(&self, vector: &[f64]) -> Vec<f64> {
         let lengths = self.variances.iter().map(|variance| variance.max(0.0).sqrt());
         let scaled: Vec<f64> = vector.iter().zip(lengths).map(|(x, length)| x * length).collect();
         self.turned(&scaled)
     }
 
-    /// D⁻¹ Bᵀ y: the standard normal vector that was stretched to `vector`. It is as long as C^-½ y.
+    /// Returns D⁻¹ Bᵀ y, the standard normal vector that `stretched` converts to `vector`. Its length is that of C^-½ y.
     pub fn whitened(&self, vector: &[f64]) -> Vec<f64> {
         let components = match &self.directions {
             None => vector.to_vec(),
@@ -55,7 +54,7 @@ impl PrincipalAxes {
         components.iter().zip(lengths).map(|(x, length)| x / length).collect()
     }
 
-    /// B z: components along the axes become coordinates.
+    /// Returns B z, which converts components along the axes to coordinates.
     pub fn turned(&self, components: &[f64]) -> Vec<f64> {
         let Some(directions) = &self.directions else {
             return components.to_vec();
@@ -67,19 +66,19 @@ impl PrincipalAxes {
         vector
     }
 
-    /// One axis, as long as the standard deviation along it; `index` is taken modulo the dimension.
+    /// Returns the vector along an axis with the length of the standard deviation; `index` is taken modulo the dimension.
     pub fn axis(&self, index: usize) -> Vec<f64> {
         let dimension = self.variances.len();
         let unit = (0..dimension).map(|i| if i == index % dimension { 1.0 } else { 0.0 });
         self.stretched(&unit.collect::<Vec<_>>())
     }
 
-    /// The largest standard deviation along an axis.
+    /// Returns the largest standard deviation along an axis.
     pub fn longest(&self) -> f64 {
         self.variances.iter().fold(0.0, |longest: f64, &variance| longest.max(variance)).sqrt()
     }
 
-    /// The largest variance divided by the smallest; infinite if one is not positive.
+    /// Returns the largest variance divided by the smallest; infinite if a variance is not positive.
     pub fn condition(&self) -> f64 {
         let smallest = self.variances.iter().fold(f64::INFINITY, |least, &variance| {
             if variance > 0.0 { least.min(variance) } else { 0.0 }
@@ -89,12 +88,12 @@ impl PrincipalAxes {
     }
 }
 
-/// The scalar product, summed from the front.
+/// Returns the scalar product, summed in the order of the elements.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (x, y)| sum + x * y)
 }
 
-/// The whole symmetric matrix, row by row, from its lower triangle.
+/// Returns the whole symmetric matrix, row by row, from its lower triangle.
 fn square(triangle: &[f64], dimension: usize) -> Vec<f64> {
     let mut matrix = vec![0.0; dimension * dimension];
     let places = (0..dimension).flat_map(|row| (0..=row).map(move |column| (row, column)));
@@ -111,7 +110,7 @@ fn identity(dimension: usize) -> Vec<f64> {
     matrix
 }
 
-/// Rotates every pair of coordinates once, row by row; false if no pair needed it.
+/// Rotates every pair of coordinates once, row by row. Returns false if no pair needed a rotation.
 fn sweep(matrix: &mut [f64], directions: &mut [f64], dimension: usize) -> bool {
     let mut turned = false;
     for p in 0..dimension {
@@ -126,7 +125,7 @@ fn sweep(matrix: &mut [f64], directions: &mut [f64], dimension: usize) -> bool {
     turned
 }
 
-/// A rotation in the plane of two coordinates.
+/// A rotation in the plane of two coordinates, by its angle's functions.
 struct Rotation {
     tangent: f64,
     cosine: f64,
@@ -134,9 +133,8 @@ struct Rotation {
 }
 
 impl Rotation {
-    /// The smaller of the two rotations that clear the entry (p, q); `None` if the entry is already
-    /// negligible beside its two diagonal entries.
-    /// (Golub & Van Loan, "Matrix Computations", section 8.5.2; the limit is Demmel & Veselić's.)
+    /// Returns the smaller of the two rotations that clear the entry (p, q). None if the entry is already negligible relative to its two
+    /// diagonal entries. (Golub & Van Loan, "Matrix Computations", section 8.5.2; the limit is that of Demmel & Veselić.)
     fn that_clears(matrix: &[f64], dimension: usize, p: usize, q: usize) -> Option<Self> {
         let entry = matrix[p * dimension + q];
         let (first, second) = (matrix[p * dimension + p], matrix[q * dimension + q]);
@@ -169,7 +167,7 @@ impl Rotation {
         }
     }
 
-    /// Rotates rows p < q. B is stored column by column, so its columns are these rows.
+    /// Rotates the rows p < q. B is stored column by column, so these rows are its columns.
     fn rows(&self, matrix: &mut [f64], dimension: usize, p: usize, q: usize) {
         let (upper, lower) = matrix.split_at_mut(q * dimension);
         let row_p = &mut upper[p * dimension..(p + 1) * dimension];
@@ -211,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_tiny_variance_beside_a_large_one_is_precise() {
-        // The exact variances of [[1, h], [h, 2 h²]] are 1 + h² and h² - h⁴, up to h⁶.
+        // To within h⁶, the exact variances of [[1, h], [h, 2 h²]] are 1 + h² and h² - h⁴.
         let h = 1e-9;
         let axes = PrincipalAxes::of_symmetric(&[1.0, h, 2.0 * h * h], 2);
         let small = axes.variances[1];

@@ -1,4 +1,4 @@
-//! The parameters of CMA-ES that follow from dimension and population.
+//! Parameters of CMA-ES that follow from dimension and population.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,49 +7,49 @@ use super::eigen::dot;
 /// The dependences between coordinates that a covariance can express.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum CovarianceShape {
-    /// Every dependence between coordinates.
+    /// The covariance has an entry for every pair of coordinates.
     Full,
-    /// One variance per coordinate: time and memory are linear in the dimension, and learning is
-    /// (dimension + 2) / 3 times as fast.
+    /// The covariance has one variance per coordinate. Time and memory are linear in the dimension, and learning is (dimension + 2) / 3
+    /// times as fast.
     Diagonal,
 }
 
-/// The default parameters of Table 1, which follow from dimension and population.
+/// Default parameters of Table 1 of the tutorial, which follow from dimension and population.
 pub struct LearningRates {
     pub dimension: f64,
-    /// w: per rank, best first. The positive ones sum to 1.
+    /// w: weight of each rank, best first. The positive weights sum to 1.
     pub weights: Vec<f64>,
     /// μ_eff: effective number of candidates with positive weights.
     pub selection_mass: f64,
-    /// c_σ.
+    /// c_σ: rate of the evolution path of the step size.
     pub step_path: f64,
-    /// d_σ.
+    /// d_σ: damping of the step size.
     pub damping: f64,
-    /// c_c.
+    /// c_c: rate of the evolution path of the covariance.
     pub path: f64,
-    /// c_1.
+    /// c_1: learning rate of the covariance's rank-one update.
     pub one: f64,
-    /// c_μ.
+    /// c_μ: learning rate of the covariance's rank-μ update.
     pub many: f64,
-    /// The expected length of a standard normal vector (approximated as in the tutorial).
+    /// Expected length of a standard normal vector, by the approximation of the tutorial.
     pub expected_length: f64,
 }
 
 impl LearningRates {
     pub fn new(dimension: usize, population: u32, shape: CovarianceShape, active: bool) -> Self {
         let n = real(dimension);
-        // Eq. 49.
+        // Eq. 49 of the tutorial, before scaling.
         let middle = libm::log((f64::from(population) + 1.0) / 2.0);
         let mut weights: Vec<f64> =
             (1..=population).map(|rank| middle - libm::log(f64::from(rank))).collect();
         let (good, mass) = sum_and_mass(weights.iter().filter(|weight| **weight > 0.0));
         let (bad, bad_mass) = sum_and_mass(weights.iter().filter(|weight| **weight < 0.0));
-        // Eqs. 57 and 58, with the factor of Ros & Hansen for a diagonal.
+        // Eqs. 57 and 58, with the factor of Ros & Hansen for a diagonal covariance.
         let speed = if shape == CovarianceShape::Diagonal { (n + 2.0) / 3.0 } else { 1.0 };
         let one = (speed * 2.0 / ((n + 1.3) * (n + 1.3) + mass)).min(1.0);
         let many = speed * 2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0) * (n + 2.0) + mass);
         let many = many.min(1.0 - one);
-        // Eqs. 50 to 53: the third limit keeps the covariance positive definite.
+        // Eqs. 50 to 53. The third limit keeps the covariance positive definite.
         let limits = [2.0 * bad_mass / (mass + 2.0) + 1.0, (1.0 - one - many) / (n * many)];
         let limit = limits.into_iter().fold(1.0 + one / many, f64::min);
         let bad_scale = if active && many > 0.0 { limit / bad.abs() } else { 0.0 };
@@ -70,14 +70,14 @@ impl LearningRates {
         }
     }
 
-    /// The factor that makes the square of a bad shift, given in white coordinates, n (eq. 46). A candidate on
-    /// the mean itself has no direction and does not count.
+    /// Returns the factor of a bad shift's square, which makes the square equal to n, given the shift in white coordinates (eq. 46). 0 for
+    /// a candidate on the mean, which has no direction.
     pub fn shrunk(&self, white: &[f64]) -> f64 {
         let square = dot(white, white);
         if square > 0.0 { self.dimension / square } else { 0.0 }
     }
 
-    /// h_σ: whether the path of the step size is not much longer than that of a random walk.
+    /// Returns h_σ: whether the path of the step size is not much longer than that of a random walk.
     pub fn is_calm(&self, length: f64, iteration: u32) -> bool {
         let rest = libm::pow(1.0 - self.step_path, 2.0 * (f64::from(iteration) + 1.0));
         let limit = (1.4 + 2.0 / (self.dimension + 1.0)) * self.expected_length;
@@ -85,13 +85,13 @@ impl LearningRates {
     }
 }
 
-/// The sum of some weights, and its square over the sum of their squares: their effective number.
+/// Returns the sum of weights, and its square over the sum of their squares, which is their effective number.
 fn sum_and_mass<'a>(weights: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
     (sum, sum * sum / squares)
 }
 
-/// A count as a float: exact up to 2⁵³.
+/// Converts a count to a float; exact up to 2⁵³.
 pub fn real(count: usize) -> f64 {
     count as f64
 }
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn rates_are_those_of_pycma() {
-        // From pycma 4.5 (recombination_weights.py, with the tutorial's c_1 and c_mu), n and λ = 10.
+        // The numbers are those of pycma 4.5 (recombination_weights.py, with the tutorial's c_1 and c_mu), for n and λ = 10.
         let rates = LearningRates::new(10, 10, CovarianceShape::Full, true);
         let pairs = [
             (rates.selection_mass, 3.1672992814107017),

@@ -1,8 +1,7 @@
 //! CMA-ES with restarts.
 //!
-//! The restarts are those of Auger & Hansen 2005, "A Restart CMA Evolution Strategy With Increasing Population
-//! Size" (IPOP), and of Hansen 2009, "Benchmarking a BI-Population CMA-ES on the BBOB-2009 Function Testbed"
-//! (BIPOP).
+//! IPOP is after Auger & Hansen 2005, "A Restart CMA Evolution Strategy With Increasing Population Size", and BIPOP after Hansen 2009,
+//! "Benchmarking a BI-Population CMA-ES on the BBOB-2009 Function Testbed".
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -17,23 +16,23 @@ use crate::rng::uniform;
 /// Maximum number of times that the population of large runs doubles.
 const MOST_DOUBLINGS: u32 = 9;
 
-/// The parameters with which runs begin.
+/// Parameters with which each run begins.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CmaParameters {
-    /// The first standard deviation of every coordinate, in box widths. 0.2 to 0.5 are usual.
+    /// First standard deviation of every coordinate, in box widths. Usual values are 0.2 to 0.5.
     pub step: f64,
-    /// Candidates per iteration of the first run.
+    /// Number of candidates per iteration of the first run.
     pub population: u32,
-    /// The shape of the covariance.
+    /// Shape of the covariance.
     pub shape: CovarianceShape,
     /// Whether bad candidates make their directions less likely, which usually saves evaluations.
     pub active: bool,
-    /// The kind of restart after a run.
+    /// Kind of restart after a run has ended.
     pub restart: RestartKind,
 }
 
-/// Consecutive runs: the whole state, from which they continue bit for bit.
+/// A series of runs of CMA-ES. The state is complete, so that it continues bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestartedCma {
@@ -42,18 +41,18 @@ pub struct RestartedCma {
     restarts: u32,
     /// Number of times that the population of the large runs has doubled.
     doublings: u32,
-    /// Whether the current run is a small one.
+    /// Whether the current run is a small run.
     small: bool,
-    /// Maximum number of evaluations of the current run.
+    /// Maximum number of evaluations of the current run. None: no limit.
     limit: Option<u64>,
-    /// Evaluations of all small runs that have ended.
+    /// Number of evaluations of all small runs that have ended.
     small_evaluations: u64,
-    /// Evaluations of all large runs that have ended.
+    /// Number of evaluations of all large runs that have ended.
     large_evaluations: u64,
 }
 
 impl RestartedCma {
-    /// A first run around `start`.
+    /// Begins a first run around the point `start`.
     pub fn new(parameters: CmaParameters, start: Vec<f64>) -> Result<Self, Invalid> {
         let CmaParameters { step, population, shape, active, restart } = parameters;
         let current = Cma::new(start, step, population, shape, active)?;
@@ -70,15 +69,14 @@ impl RestartedCma {
         })
     }
 
-    /// This series of runs; its first run has a standard deviation of its own for each coordinate, as a factor of the
-    /// step.
+    /// Returns this series with a separate standard deviation for each coordinate of its first run, given as factors of the step.
     #[must_use]
     pub fn with_scales(mut self, scales: &[f64]) -> Self {
         self.current.scale(scales);
         self
     }
 
-    /// The parameters with which runs begin.
+    /// Returns the parameters with which runs begin.
     pub fn parameters(&self) -> &CmaParameters {
         &self.parameters
     }
@@ -88,29 +86,29 @@ impl RestartedCma {
         self.current.forget_values();
     }
 
-    /// The current run.
+    /// Returns the current run.
     pub fn current(&self) -> &Cma {
         &self.current
     }
 
-    /// Number of restarts.
+    /// Returns the number of restarts.
     #[cfg(test)]
     pub fn restarts(&self) -> u32 {
         self.restarts
     }
 
-    /// Number of candidates in the current iteration. Restarts change it.
+    /// Returns the number of candidates in the current iteration, which restarts change.
     pub fn population(&self) -> u32 {
         self.current.population()
     }
 
-    /// The candidates of this iteration; see [`Cma::candidates`].
+    /// Returns the candidates of the current iteration; see [`Cma::candidates`].
     pub fn candidates(&self, random: impl Fn(u32) -> ChaCha8Rng) -> Vec<Vec<f64>> {
         self.current.candidates(random)
     }
 
-    /// Learns from all candidates of this iteration, best first; see [`Cma::update`]. If the run has
-    /// ended, the next starts at a random point of the unit box.
+    /// Learns from all candidates of the current iteration, best first; see [`Cma::update`]. If the run has then ended, a new run starts at
+    /// a random point of the unit box.
     pub fn update(
         &mut self,
         ranked: &[RankedCandidate],
@@ -143,7 +141,7 @@ impl RestartedCma {
         Ok(())
     }
 
-    /// Evaluations of the current run.
+    /// Returns the number of evaluations of the current run.
     fn evaluations(&self) -> u64 {
         u64::from(self.current.iteration()) * u64::from(self.current.population())
     }
@@ -164,14 +162,14 @@ impl RestartedCma {
         Ok(())
     }
 
-    /// Step size and population of the next large run.
+    /// Returns the step size and the population of the next large run, after doubling the latter.
     fn large_run(&mut self) -> (f64, u32) {
         self.doublings = (self.doublings + 1).min(MOST_DOUBLINGS);
         (self.parameters.step, self.large_population())
     }
 
-    /// Step size and population of the next small run: σ₀ 10^(-2 U) and
-    /// ⌊λ₀ (½ λ_large / λ₀)^(U²)⌋ with two numbers U from [0, 1).
+    /// Draws the step size and the population of the next small run: σ₀ 10^(-2 U) and ⌊λ₀ (½ λ_large / λ₀)^(U²)⌋, with separate numbers U
+    /// from [0, 1).
     fn small_run(&self, random: &mut ChaCha8Rng) -> (f64, u32) {
         let (for_step, for_population) = (uniform(random), uniform(random));
         let first = f64::from(self.parameters.population);
@@ -180,7 +178,7 @@ impl RestartedCma {
         (self.parameters.step * libm::pow(10.0, -2.0 * for_step), population.floor() as u32)
     }
 
-    /// The population of the latest large run, as far as memory allows.
+    /// Returns the population of large runs, limited by memory.
     fn large_population(&self) -> u32 {
         let affordable = LARGEST_SAMPLE / self.current.mean().len();
         let affordable = u32::try_from(affordable).unwrap_or(LARGEST_POPULATION);
@@ -189,7 +187,7 @@ impl RestartedCma {
     }
 }
 
-/// A point drawn from the unit box [0, 1)ⁿ.
+/// Draws a point from the unit box [0, 1)ⁿ.
 pub fn random_point(dimension: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
     (0..dimension).map(|_| uniform(random)).collect()
 }

@@ -1,13 +1,12 @@
-//! One run of the covariance matrix adaptation evolution strategy.
+//! A run of CMA-ES without restarts.
 //!
-//! The search draws candidates from a normal distribution and moves, scales and shapes it so that
-//! good candidates become likelier. Everything follows Hansen, "The CMA Evolution Strategy: A
-//! Tutorial" (arXiv:1604.00772v2); "eq." is an equation and "Table 1" the table of parameters there.
-//! For many dimensions the covariance may be kept diagonal (Ros & Hansen 2008, "A Simple Modification
-//! in CMA-ES Achieving Linear Time and Space Complexity").
+//! The search draws candidates from a normal distribution, and moves, scales and shapes the distribution so that good candidates become
+//! more likely. It follows Hansen, "The CMA Evolution Strategy: A Tutorial" (arXiv:1604.00772v2); "eq." is an equation of the tutorial and
+//! "Table 1" its table of parameters. For many dimensions the covariance may be diagonal (Ros & Hansen 2008, "A Simple Modification in
+//! CMA-ES Achieving Linear Time and Space Complexity").
 //!
-//! Only the four operations, roots and `libm` are used, sums run from the front, and random numbers
-//! come from named streams: the same state gives the same bits on every machine.
+//! Only the four operations, roots and `libm` are used, sums run in the order of the elements, and random numbers come from named streams.
+//! Equal states therefore give equal bits on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -20,39 +19,39 @@ use crate::check::{Invalid, within};
 use crate::evolve::settings::{LARGEST_POPULATION, LARGEST_SAMPLE};
 use crate::rng::normal;
 
-/// Maximum dimension of a full covariance, whose axes take time cubic in it.
+/// Maximum dimension of a full covariance. The time to find its axes is cubic in the dimension.
 pub const LARGEST_FULL: usize = 256;
 /// Maximum dimension of a diagonal covariance.
 pub const LARGEST_DIAGONAL: usize = 1_000_000;
-/// A run without restarts: the whole state, from which it continues bit for bit.
+/// A run of CMA-ES without restarts. The state is complete, so that it continues bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cma {
     shape: CovarianceShape,
     /// Whether bad candidates make their directions less likely.
     active: bool,
-    /// Candidates per iteration, λ.
+    /// λ: number of candidates per iteration.
     population: u32,
-    /// Iterations that have been learned from, g.
+    /// g: number of iterations learned.
     iteration: u32,
-    /// The centre of the distribution, m.
+    /// m: centre of the distribution.
     mean: Vec<f64>,
     pub(super) initial_step: f64,
-    /// The overall standard deviation, σ.
+    /// σ: overall standard deviation.
     step: f64,
-    /// The evolution path of the step size, p_σ.
+    /// p_σ: evolution path of the step size.
     step_path: Vec<f64>,
-    /// The evolution path of the covariance, p_c.
+    /// p_c: evolution path of the covariance.
     covariance_path: Vec<f64>,
-    /// C without σ²: the lower triangle row by row, or only the diagonal if that is the shape.
+    /// C, without σ²: the lower triangle row by row, or the diagonal only, depending on the shape.
     covariance: Vec<f64>,
     history: ValueHistory,
     stop: Option<StopReason>,
 }
 
 impl Cma {
-    /// A run that starts around `mean` with the standard deviation `step` in every coordinate.
-    /// `population` is at least 2; the tutorial recommends 4 + ⌊3 ln n⌋. `active` is the usual default.
+    /// Begins a run around `mean` with the standard deviation `step` in every coordinate. `population` is at least 2; the tutorial
+    /// recommends 4 + ⌊3 ln n⌋. By default, `active` is true.
     pub fn new(
         mean: Vec<f64>,
         step: f64,
@@ -88,38 +87,38 @@ impl Cma {
         }
     }
 
-    /// Candidates per iteration.
+    /// Returns the number of candidates per iteration.
     pub fn population(&self) -> u32 {
         self.population
     }
 
-    /// Iterations that have been learned from.
+    /// Returns the number of iterations learned.
     pub fn iteration(&self) -> u32 {
         self.iteration
     }
 
-    /// The centre of the distribution, the best estimate of the optimum.
+    /// Returns the centre of the distribution, which is the best estimate of the optimum.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// The overall standard deviation.
+    /// Returns the overall standard deviation.
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// The first overall standard deviation.
+    /// Returns the overall standard deviation at the start.
     pub fn initial_step(&self) -> f64 {
         self.initial_step
     }
 
-    /// Why the run has ended, if it has. It then learns nothing more.
+    /// Returns why the run has ended, after which it learns nothing. None while the run continues.
     pub fn stop(&self) -> Option<StopReason> {
         self.stop
     }
 
-    /// The candidates of this iteration. `random` returns the stream of the candidate with an index; it should
-    /// differ in every iteration. Candidates may lie anywhere: the caller handles bounds.
+    /// Returns the candidates of the current iteration. `random` returns the stream of the candidate with an index, which should differ in
+    /// every iteration. Candidates may have any coordinates: the caller handles bounds.
     pub fn candidates(&self, random: impl Fn(u32) -> ChaCha8Rng) -> Vec<Vec<f64>> {
         let axes = self.axes();
         let candidate = |index| {
@@ -132,12 +131,13 @@ impl Cma {
         (0..self.population).map(candidate).collect()
     }
 
-    /// Learns from all candidates of this iteration, best first.
+    /// Learns from all candidates of the current iteration, best first.
     ///
-    /// If numbers leave the range of `f64`, the run keeps its state and stops.
+    /// If numbers leave the range of `f64`, the run keeps its state and ends.
     ///
     /// # Errors
-    /// Their number or dimension differs from that of [`Self::candidates`], or one is not finite. Nothing is learned.
+    /// Fails if the number or dimension of candidates differs from that of [`Self::candidates`], or if a coordinate is not finite. The
+    /// state then stays unchanged.
     pub fn update(&mut self, ranked: &[RankedCandidate]) -> Result<(), Invalid> {
         self.check_candidates(ranked)?;
         if self.stop.is_some() {
@@ -155,14 +155,14 @@ impl Cma {
         Ok(())
     }
 
-    /// Forgets the values of all iterations so far, because they do not compare with values of later iterations. The
-    /// criteria that compare values begin anew.
+    /// Forgets the values of all iterations so far, because they are not comparable with values of later iterations. The criteria that
+    /// compare values begin anew.
     pub fn forget_values(&mut self) {
         self.history = ValueHistory::default();
     }
 
-    /// Checks a state from a file. A run that passes cannot panic, and its candidates have at most
-    /// [`LARGEST_SAMPLE`] coordinates.
+    /// Checks a state from a file. A run that passes the check cannot panic, and its candidates have at most [`LARGEST_SAMPLE`]
+    /// coordinates.
     pub fn check(&self) -> Result<(), Invalid> {
         let dimension = self.mean.len();
         check_size(self.shape, dimension, self.population)?;
@@ -178,7 +178,7 @@ impl Cma {
         self.history.check(self.iteration, self.windows().long).map_err(|e| e.inside("history"))
     }
 
-    /// Whether the run has this shape and is active or not.
+    /// Returns whether the run has the given shape and active setting.
     pub(super) fn is_of(&self, shape: CovarianceShape, active: bool) -> bool {
         self.shape == shape && self.active == active
     }
@@ -187,7 +187,7 @@ impl Cma {
         HistoryWindows::new(self.mean.len(), self.population, self.iteration)
     }
 
-    /// The reason of the first criterion that is met (appendix B.3 of the tutorial).
+    /// Returns the reason of the first criterion that is met (appendix B.3 of the tutorial).
     fn reason_to_stop(&self) -> Option<StopReason> {
         let (axes, windows) = (self.axes(), self.windows());
         let variances: Vec<f64> = self.variances().collect();
@@ -221,7 +221,7 @@ impl Cma {
         points.try_for_each(|point| check_floats("candidate", point, self.mean.len()))
     }
 
-    /// The principal axes of C.
+    /// Returns the principal axes of C.
     fn axes(&self) -> PrincipalAxes {
         match self.shape {
             CovarianceShape::Full => PrincipalAxes::of_symmetric(&self.covariance, self.mean.len()),
@@ -229,13 +229,13 @@ impl Cma {
         }
     }
 
-    /// The diagonal of C.
+    /// Returns the diagonal of C.
     fn variances(&self) -> impl Iterator<Item = f64> {
         let places = (0..self.mean.len()).map(|i| diagonal_index(self.shape, i));
         places.filter_map(|place| self.covariance.get(place).copied())
     }
 
-    /// One iteration (appendix A of the tutorial).
+    /// Performs one iteration (appendix A of the tutorial).
     fn learn(&mut self, ranked: &[RankedCandidate]) {
         let rates = LearningRates::new(self.mean.len(), self.population, self.shape, self.active);
         let axes = self.axes();
@@ -246,13 +246,14 @@ impl Cma {
             add(&mut shift, weight, y);
         }
         add(&mut self.mean, self.step, &shift);
-        // Eqs. 43 and 44: consecutive steps in one direction are too short, steps that cancel are too long.
+        // Eqs. 43 and 44: the step size grows if consecutive shifts have similar directions, and shrinks if they cancel.
         let white = axes.turned(&axes.whitened(&shift));
         fade(&mut self.step_path, rates.step_path, rates.selection_mass, &white);
         let length = dot(&self.step_path, &self.step_path).sqrt();
         let surplus = length / rates.expected_length - 1.0;
         self.step *= libm::exp(rates.step_path / rates.damping * surplus);
-        // Eq. 45; a path that is still far too long must not stretch the covariance as well.
+        // Eq. 45. While the path of the step size is far too long, the covariance's path gets no shift, so that the covariance does not
+        // grow as well.
         let calm = rates.is_calm(length, self.iteration);
         if calm {
             fade(&mut self.covariance_path, rates.path, rates.selection_mass, &shift);
@@ -263,13 +264,13 @@ impl Cma {
         self.iteration = self.iteration.saturating_add(1);
     }
 
-    /// y = (x - m) / σ.
+    /// Returns y = (x - m) / σ.
     fn shift_to(&self, point: &[f64]) -> Vec<f64> {
         point.iter().zip(&self.mean).map(|(x, m)| (x - m) / self.step).collect()
     }
 
-    /// Eqs. 46 and 47: the covariance forgets a little, and learns its path (rank one) and the shifts
-    /// (rank μ); a bad shift counts as if it had the expected length.
+    /// Applies eqs. 46 and 47: the covariance decays a little, and learns its path (rank one) and the shifts (rank μ). A bad shift counts
+    /// as if it had the expected length.
     fn adapt(
         &mut self,
         rates: &LearningRates,
@@ -289,18 +290,18 @@ impl Cma {
     }
 }
 
-/// vector += factor · other.
+/// Computes vector += factor · other.
 fn add(vector: &mut [f64], factor: f64, other: &[f64]) {
     vector.iter_mut().zip(other).for_each(|(x, y)| *x += factor * y);
 }
 
-/// Lets an evolution path fade at `rate` and adds a shift, so that a random walk keeps its variance.
+/// Lets an evolution path decay at `rate` and adds a shift, scaled so that the path of a random walk keeps its variance.
 fn fade(path: &mut [f64], rate: f64, mass: f64, shift: &[f64]) {
     let uptake = (rate * (2.0 - rate) * mass).sqrt();
     path.iter_mut().zip(shift).for_each(|(x, y)| *x = (1.0 - rate) * *x + uptake * y);
 }
 
-/// covariance += factor · v vᵀ, restricted to the entries of the shape.
+/// Computes covariance += factor · v vᵀ, for the entries of the shape only.
 fn add_square(covariance: &mut [f64], shape: CovarianceShape, factor: f64, vector: &[f64]) {
     if shape == CovarianceShape::Diagonal {
         covariance.iter_mut().zip(vector).for_each(|(entry, x)| *entry += factor * x * x);
@@ -312,7 +313,7 @@ fn add_square(covariance: &mut [f64], shape: CovarianceShape, factor: f64, vecto
     }
 }
 
-/// Number of entries of a covariance.
+/// Returns the number of stored entries of a covariance.
 fn entries(shape: CovarianceShape, dimension: usize) -> usize {
     match shape {
         CovarianceShape::Full => dimension * (dimension + 1) / 2,
@@ -320,7 +321,7 @@ fn entries(shape: CovarianceShape, dimension: usize) -> usize {
     }
 }
 
-/// Index of the variance of a coordinate in the covariance.
+/// Returns the index of a coordinate's variance among the stored entries of a covariance.
 fn diagonal_index(shape: CovarianceShape, coordinate: usize) -> usize {
     match shape {
         CovarianceShape::Full => coordinate * (coordinate + 3) / 2,

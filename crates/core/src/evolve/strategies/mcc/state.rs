@@ -1,4 +1,4 @@
-//! The state of minimal criterion coevolution: both queues, and the search for the first snakes.
+//! State of minimal criterion coevolution: the two queues, and the search for the first snakes.
 
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -11,35 +11,35 @@ use crate::evolve::stairs_tree::{Agent, StairsNode};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::rng::{Purpose, stream};
 
-/// Candidates of a generation of the search for the first snakes.
+/// Number of candidates in a generation of the search for the first snakes.
 const CANDIDATES: u32 = 30;
-/// Its first step, as a share of each gene's range.
+/// First step of the search for the first snakes, as a share of each gene's range.
 const FIRST_STEP: f32 = 0.15;
-/// Generations of that search without a snake that climbs, after which it begins again.
+/// Number of consecutive generations without a successful snake after which the search for the first snakes begins again.
 pub const PATIENCE: u32 = 50;
 
-/// The search for the first snakes. In a file, its state stands for the search.
+/// The search for the first snakes. A file has the state of the search in place of the search.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct FirstSearch<S> {
     #[serde(serialize_with = "serialize_search")]
     pub search: S,
-    /// Generations that it has finished.
+    /// Number of generations that the search has finished.
     pub finished: u32,
-    /// How often it has begun again.
+    /// Number of times that the search has begun again.
     pub restarts: u32,
-    /// Generations in turn without a snake that climbs.
+    /// Number of consecutive generations without a snake that climbs the first stairs.
     pub idle: u32,
 }
 
 impl<S: Strategy> FirstSearch<S> {
-    /// A search that has not begun.
+    /// Begins a search.
     pub fn new(plan: &RunPlan, restarts: u32) -> Self {
         let search = S::begin(&Self::plan(plan, restarts));
         Self { search, finished: 0, restarts, idle: 0 }
     }
 
-    /// Its plan: around the founder of the run, or from random genomes.
+    /// Returns the plan of the search, around the founder of the run or from random genomes.
     pub fn plan(plan: &RunPlan, restarts: u32) -> RunPlan {
         let of = InnerSearch {
             population: CANDIDATES,
@@ -51,28 +51,28 @@ impl<S: Strategy> FirstSearch<S> {
     }
 }
 
-/// The whole progress of the run.
+/// Everything that minimal criterion coevolution has found.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct MccProgress<S> {
-    /// The search for the first snakes; none once they are found.
+    /// The search for the first snakes. None once the first snakes are found.
     pub beginning: Option<FirstSearch<S>>,
-    /// Generations of coevolution.
+    /// Number of generations of coevolution.
     pub rounds: u32,
-    /// All stairs that ever entered their queue; those that left it are archived.
+    /// All stairs that ever entered the queue of stairs; those that left it are archived.
     pub nodes: Vec<StairsNode>,
-    /// For each of them, the number of snakes that entered their queue by climbing it.
+    /// For each staircase, the number of snakes that entered the queue of snakes by climbing it.
     pub uses: Vec<u32>,
-    /// The queue of snakes, the oldest first.
+    /// Queue of snakes, the oldest first.
     pub snakes: Vec<Agent>,
-    /// Place in the queue of the snake that has children next.
+    /// Index in the queue of the snake that has children next.
     pub snake_turn: u32,
-    /// Place in the queue of the stairs that have mutants next.
+    /// Index in the queue of the stairs that have mutants next.
     pub stairs_turn: u32,
 }
 
 impl<S> MccProgress<S> {
-    /// The beginning of a run, with its first stairs.
+    /// Makes the progress at the beginning of a run, with its first stairs.
     pub fn begin(root: StairsNode, beginning: FirstSearch<S>) -> Self {
         Self {
             beginning: Some(beginning),
@@ -85,13 +85,13 @@ impl<S> MccProgress<S> {
         }
     }
 
-    /// The queue of stairs, as indices of all stairs, the oldest first.
+    /// Returns the queue of stairs, as indices of `nodes`, the oldest first.
     pub fn active(&self) -> impl Iterator<Item = u32> {
         let nodes = (0..).zip(&self.nodes);
         nodes.filter(|(_, node)| node.archived.is_none()).map(|(index, _)| index)
     }
 
-    /// Passes the turn on by the numbers of children in a generation.
+    /// Moves the turns forward by the numbers of children in a generation.
     pub fn pass_turns(&mut self, snake_children: u32, stairs_children: u32) {
         let passed = |turn: u32, children: u32, members: usize| {
             turn.saturating_add(children) % (members as u32).max(1)
@@ -101,8 +101,8 @@ impl<S> MccProgress<S> {
         self.stairs_turn = passed(self.stairs_turn, stairs_children, stairs);
     }
 
-    /// Removes the oldest members of the queues of snakes and of stairs until they have at most these numbers. The turn stays
-    /// with the member that has it.
+    /// Removes the oldest members of the queues until they have at most the given numbers of snakes and stairs. The turn stays with the
+    /// member whose turn it is.
     pub fn shorten(&mut self, [most_snakes, most_stairs]: [usize; 2]) {
         let too_many = self.snakes.len().saturating_sub(most_snakes);
         self.snakes.drain(..too_many);
@@ -117,7 +117,7 @@ impl<S> MccProgress<S> {
         self.stairs_turn = moved(self.stairs_turn, archived, active - archived);
     }
 
-    /// Reads what a run had found after its first `finished` generations.
+    /// Reads the progress of a run after its first `finished` generations.
     pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid>
     where
         S: Strategy,
@@ -149,7 +149,7 @@ impl MccProgress<StrategyState> {
         within("rounds", self.rounds, 0..=finished)?;
         within("nodes", self.nodes.len(), 1..=PoetSettings::MOST_STAIRS)?;
         within("uses", self.uses.len(), self.nodes.len()..=self.nodes.len())?;
-        // A change of settings may have made a queue shorter.
+        // A change of settings may have reduced the maximum length of a queue, so the check is against the greatest allowed length.
         within("snakes", self.snakes.len(), 0..=1000)?;
         for (index, node) in self.nodes.iter().enumerate() {
             node.check(index, self.rounds, plan).map_err(|error| error.inside("nodes"))?;

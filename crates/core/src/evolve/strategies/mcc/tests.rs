@@ -21,7 +21,7 @@ fn plan() -> RunPlan {
     RunPlan::new("test", 1, settings)
 }
 
-/// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
+/// Returns an evaluation whose share of the way falls with the distance of a gene from a target, which follows from the rise of the stairs.
 fn evaluate(mcc: &Mcc<CmaEs>, attempt: &Attempt<MccRole>) -> Evaluation {
     let point = mcc.plan.settings.genome.point_of(&attempt.candidate.genome);
     let target = 0.5 + f64::from(attempt.stairs.rise_m) / 2.4;
@@ -39,7 +39,7 @@ fn advance(mcc: &mut Mcc<CmaEs>) {
     mcc.tell(&asked, &evaluations);
 }
 
-/// A run of this many rounds, and its number of generations.
+/// Returns a run after the given number of rounds, and its number of generations.
 fn run(rounds: u32) -> (Mcc<CmaEs>, u32) {
     let mut mcc = Mcc::<CmaEs>::begin(&plan());
     let mut generations = 0;
@@ -149,7 +149,7 @@ fn a_resumed_run_goes_on_with_the_same_bits() {
 fn each_snake_has_children_in_turn_while_others_come_and_go() {
     let (mut mcc, _) = run(1);
     let mut parents: Vec<u32> = Vec::new();
-    // Of each generation, two children enter, and the two oldest snakes are removed.
+    // In each generation two children enter, and the two oldest snakes are removed.
     let queue = mcc.settings().snake_queue as usize;
     let mut oldest = 0;
     while mcc.progress.snakes.len() < queue {
@@ -168,7 +168,8 @@ fn each_snake_has_children_in_turn_while_others_come_and_go() {
         mcc.progress.shorten([queue, 6]);
         oldest += 2;
     }
-    // Numbered by the order in which they came, the snakes follow one another, from the newest back to the oldest.
+    // The snakes are numbered in the order in which they entered. Turns go from the oldest to the newest snake, and then back to the
+    // oldest.
     for pair in parents.windows(2) {
         let is_next = pair[1] == pair[0] + 1;
         assert!(is_next || pair[1] < pair[0], "{pair:?} of {parents:?}");

@@ -1,4 +1,4 @@
-//! The attempts of a generation, which follow from the phase.
+//! Attempts of a generation of POET, which follow from the phase.
 
 use super::super::attempt::Attempt;
 use super::Poet;
@@ -7,17 +7,17 @@ use crate::evolve::parents::Parents;
 use crate::evolve::strategy::Strategy;
 use crate::genome::{Genome, StairsGenome};
 
-/// The stairs of an attempt among those of the run.
+/// Relation of an attempt to the stairs of the run.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PoetRole {
-    /// The index of the stairs on which the candidate is evaluated, if the trials count for these.
+    /// Index of the stairs on which the candidate is evaluated. None if the trials do not count for these stairs.
     pub node: Option<u32>,
-    /// The index of the stairs from which the candidate comes, if it is not one of their own.
+    /// Index of the stairs from which the candidate comes. None if it is evaluated on its own stairs.
     pub from: Option<u32>,
 }
 
 impl Attempt<PoetRole> {
-    /// Whether a search has drawn its candidate.
+    /// Returns whether a search has drawn the candidate.
     pub fn is_sample(&self) -> bool {
         self.candidate.parents == Parents::Distribution
     }
@@ -28,7 +28,7 @@ impl Attempt<PoetRole> {
 }
 
 impl<S: Strategy> Poet<S> {
-    /// The attempts of the next generation.
+    /// Returns the attempts of the next generation.
     pub(super) fn next_batch(&self) -> Vec<Attempt<PoetRole>> {
         let perturbed = self.settings.perturbed;
         match &self.progress.phase {
@@ -69,15 +69,15 @@ impl<S: Strategy> Poet<S> {
         pairs.flat_map(|pair| self.samples(&pair.search, pair.node, None)).collect()
     }
 
-    /// The next candidates of a search, on the stairs of a node.
+    /// Returns the next candidates of a search, on the stairs with the index `node`.
     fn samples(&self, search: &S, node: u32, from: Option<u32>) -> Vec<Attempt<PoetRole>> {
         let Some(stairs) = self.progress.node(node).map(|of| of.stairs) else { return Vec::new() };
         let role = PoetRole { node: Some(node), from };
         search.ask().into_iter().map(|asked| Attempt::sampled(asked, stairs, role)).collect()
     }
 
-    /// The agents and challengers on their own stairs, the agent of a pair before its challenger; then the better of both on
-    /// the stairs of all other pairs, in the nominal trial.
+    /// Returns the agents and challengers on their own stairs, the agent of a pair before its challenger; then the better of the two on the
+    /// stairs of all other pairs, in the nominal trial.
     fn measured(&self) -> Vec<Attempt<PoetRole>> {
         let mut all = Vec::new();
         let mut sent = Vec::new();
@@ -88,7 +88,7 @@ impl<S: Strategy> Poet<S> {
                 let own = self.on_node(genome, pair.node, None);
                 all.extend(own.map(|own| own.perturbed(self.settings.perturbed)));
             }
-            // A challenger that was worse in the nominal trial than the agent in all trials is not sent in its place.
+            // A challenger that was worse in the nominal trial than the agent in all trials does not replace the agent on other stairs.
             let score = self.progress.node(pair.node).map_or(0.0, |node| node.score);
             let is_better = pair.challenger.as_ref().is_some_and(|(_, nominal)| *nominal > score);
             let best = if is_better { challenger } else { agent.or(challenger) };
@@ -102,7 +102,8 @@ impl<S: Strategy> Poet<S> {
         all
     }
 
-    /// An agent on the stairs to which it may move, in all trials, and the candidates of one generation around it.
+    /// Returns the attempt of an agent on the stairs to which it may be transferred, in all trials, and one generation of candidates around
+    /// the agent.
     fn fine_tuned(&self, proposal: &Proposal) -> Vec<Attempt<PoetRole>> {
         let &Proposal { from, to, ref genome } = proposal;
         let restarts = self.progress.pair(to).map_or(0, |pair| pair.restarts.saturating_add(1));
@@ -112,7 +113,7 @@ impl<S: Strategy> Poet<S> {
         direct.into_iter().chain(self.samples(&around, to, Some(from))).collect()
     }
 
-    /// All active agents, and the panel, on a mutant.
+    /// Returns the attempts of all active agents and of the panel on a mutant of stairs.
     fn compared(&self, stairs: &StairsGenome) -> Vec<Attempt<PoetRole>> {
         let active = self.progress.pairs.iter().filter_map(|pair| self.progress.agent(pair.node));
         active.chain(&self.progress.panel).map(|genome| on_stairs(genome, *stairs)).collect()
@@ -124,7 +125,7 @@ impl<S: Strategy> Poet<S> {
     }
 }
 
-/// An attempt on stairs for which its trials do not count.
+/// Makes an attempt that does not count among the trials of a staircase of the run.
 fn on_stairs(genome: &Genome, stairs: StairsGenome) -> Attempt<PoetRole> {
     Attempt::new(genome, stairs, PoetRole::default())
 }

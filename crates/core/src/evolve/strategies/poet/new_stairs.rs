@@ -1,4 +1,4 @@
-//! New stairs at the end of a round: mutants, the minimal criterion, and the choice of the newest.
+//! New stairs at the end of a round: mutants, the minimal criterion, and the selection of the most novel mutants.
 
 use super::state::{Child, Pair, Phase, PoetProgress};
 use super::{Poet, novelty};
@@ -9,7 +9,7 @@ use crate::genome::StairsChange;
 use crate::rng::{Purpose, drawn, stream};
 
 impl<S: Strategy> Poet<S> {
-    /// Mutants of the stairs whose agents are good enough.
+    /// Returns mutants of stairs whose agents have the score that reproduction requires.
     pub(super) fn children(&self) -> Vec<Child> {
         let score = |node: u32| self.progress.node(node).map_or(0.0, |node| node.score);
         let mut parents: Vec<u32> = self.progress.pairs.iter().map(|pair| pair.node).collect();
@@ -31,7 +31,7 @@ impl<S: Strategy> Poet<S> {
         (0..self.settings.children).filter_map(child).collect()
     }
 
-    /// Keeps the mutants on which the agents of their parents are neither too good nor too bad.
+    /// Keeps the mutants on which the agents of their parents score neither too much nor too little.
     pub(super) fn after_breeding(&mut self, children: Vec<Child>, scores: &[f32]) -> Phase {
         let fits = |score: f32| {
             (self.settings.too_hard_below..=self.settings.too_easy_above).contains(&score)
@@ -51,7 +51,7 @@ impl<S: Strategy> Poet<S> {
         if children.is_empty() { self.end_round() } else { Phase::Compare { children } }
     }
 
-    /// Admits the newest of the mutants on which the best agent of the run is neither too good nor too bad.
+    /// Admits the most novel mutants on which the best active agent scores neither too much nor too little.
     pub(super) fn after_comparison(&mut self, children: &[Child], scores: &[f32]) -> Phase {
         let (least, most) = (self.settings.too_hard_below, self.settings.too_easy_above);
         let agents = self.progress.pairs.len();

@@ -1,10 +1,11 @@
-//! The novelty of stairs: in how new an order they rank the agents of a run (PATA-EC, Wang et al., "Enhanced POET", 2020).
+//! Novelty of stairs: how much their ranking of the agents of a run differs from that of other stairs (PATA-EC, Wang et al., "Enhanced
+//! POET", 2020).
 
 /// Number of nearest stairs whose mean distance is the novelty.
 const NEAREST: usize = 5;
 
-/// The ranks of scores that are clipped to the minimal criterion, centred: -0.5 for the least, 0.5 for the greatest. Equal
-/// scores share the mean of their ranks, because what is too hard for all of several agents says nothing about their order.
+/// Returns the centred ranks of scores that are clipped to the minimal criterion: -0.5 for the least, 0.5 for the greatest. Equal scores
+/// share the mean of their ranks, because stairs that are too hard for several agents do not order these agents.
 pub fn ranks(scores: &[f32], least: f32, most: f32) -> Vec<f32> {
     let clipped: Vec<f32> = scores.iter().map(|score| score.clamp(least, most)).collect();
     let last = clipped.len().saturating_sub(1).max(1) as f32;
@@ -16,7 +17,7 @@ pub fn ranks(scores: &[f32], least: f32, most: f32) -> Vec<f32> {
     clipped.iter().map(rank).collect()
 }
 
-/// The mean distance of ranks to their [`NEAREST`] nearest among `known`; 0 if there are none.
+/// Returns the mean distance of ranks to their [`NEAREST`] nearest among `known`; 0 if `known` is empty.
 pub fn distance(ranks: &[f32], known: &[Vec<f32>]) -> f32 {
     let between = |other: &Vec<f32>| {
         let squares: f32 = ranks.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();

@@ -1,4 +1,4 @@
-//! The state of POET: stairs, pairs, and the phase of the round.
+//! State of POET: stairs, pairs, and the phase of the round.
 
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -13,31 +13,31 @@ use crate::genome::{Genome, StairsGenome};
 use crate::rng::{Purpose, stream};
 use crate::schema::check;
 
-/// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to beat.
+/// Maximum number of an agent's latest scores, the greatest of which an agent from other stairs has to exceed.
 pub const RECENT: usize = 5;
-/// Maximum number of transfers that are remembered.
+/// Maximum number of transfers that are stored.
 pub const MOST_TRANSFERS: usize = 2000;
 
-/// The next generation of a round.
+/// Phases of a round, each of which is a generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Phase {
-    /// Each pair learns, in this many generations.
+    /// Each pair learns, for `left` more generations.
     Learn { left: u32 },
-    /// Agents and challengers are measured on their own stairs, and agents tried on those of others.
+    /// Agents and challengers are measured on their own stairs, and tried on the stairs of other pairs.
     Measure,
-    /// Agents that may move are measured, and fine-tuned for a generation.
+    /// Agents that may be transferred are measured on the new stairs, and fine-tuned for a generation.
     Tune { proposals: Vec<Proposal> },
-    /// The fine-tuned ones are measured.
+    /// Fine-tuned agents are measured.
     Confirm { tuned: Vec<FineTuned> },
     /// Mutants of stairs are tried with the agents of their parents.
     Breed { children: Vec<Child> },
-    /// The mutants that are neither too easy nor too hard are tried with all agents.
+    /// Mutants that are neither too easy nor too hard are tried with all agents.
     Compare { children: Vec<Child> },
-    /// The agents of the new stairs, of which the first has this index, are tried on all stairs.
+    /// The agents of the new stairs, whose indices begin with `first`, are tried on all stairs.
     Place { first: u32 },
 }
 
-/// An agent that may move.
+/// A proposed transfer of an agent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Proposal {
@@ -46,7 +46,7 @@ pub struct Proposal {
     pub genome: Genome,
 }
 
-/// The best fine-tuned candidate of a proposal.
+/// The best fine-tuned candidate of a proposed transfer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FineTuned {
@@ -55,7 +55,7 @@ pub struct FineTuned {
     pub agent: Agent,
 }
 
-/// A mutant of stairs.
+/// A mutant of stairs, with the index of its parent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Child {
@@ -63,7 +63,7 @@ pub struct Child {
     pub stairs: StairsGenome,
 }
 
-/// Active stairs and the search for their agent. In a file, its state stands for the search.
+/// Active stairs and the search for their agent. A file has the state of the search in place of the search.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct Pair<S> {
@@ -71,20 +71,20 @@ pub struct Pair<S> {
     pub node: u32,
     #[serde(serialize_with = "serialize_search")]
     pub search: S,
-    /// Generations that the search has finished.
+    /// Number of generations that the search has finished.
     pub finished: u32,
-    /// How often it has begun again.
+    /// Number of times that the search has begun again.
     pub restarts: u32,
-    /// The latest scores of the agent, at most [`RECENT`].
+    /// Latest scores of the agent, at most [`RECENT`].
     pub recent: Vec<f32>,
-    /// Measurements in turn without a better agent.
+    /// Number of consecutive measurements without a better agent.
     pub stale: u32,
-    /// The best candidate since the last measurement, and its score in the nominal trial.
+    /// Best candidate since the last measurement, with its score in the nominal trial.
     pub challenger: Option<(Agent, f32)>,
 }
 
 impl<S> Pair<S> {
-    /// A pair whose search has not begun.
+    /// Makes a pair whose search has not begun.
     pub fn new(node: u32, search: S) -> Self {
         Self {
             node,
@@ -97,13 +97,13 @@ impl<S> Pair<S> {
         }
     }
 
-    /// The score that an agent from other stairs has to beat: the greatest of the recent ones.
+    /// Returns the score that an agent from other stairs has to exceed: the greatest recent score.
     pub fn to_beat(&self) -> f32 {
         self.recent.iter().copied().fold(0.0, f32::max)
     }
 }
 
-/// The plan of a search for the agent of a staircase, around a genome or from random ones.
+/// Returns the plan of a search for the agent of a staircase, around a genome or from random genomes.
 pub fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Genome>) -> RunPlan {
     let poet = &plan.settings.evolution.poet;
     let of = InnerSearch {
@@ -120,22 +120,22 @@ pub fn search_plan(plan: &RunPlan, node: u32, restarts: u32, around: Option<&Gen
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct PoetProgress<S> {
     pub phase: Phase,
-    /// Finished rounds.
+    /// Number of finished rounds.
     pub rounds: u32,
-    /// Transfers of this round that are done.
+    /// Number of transfer phases that this round has finished.
     pub transfers_done: u32,
     pub nodes: Vec<StairsNode>,
     /// Active pairs, the oldest first.
     pub pairs: Vec<Pair<S>>,
-    /// For the novelty of stairs: a copy of each agent as it was when its stairs came.
+    /// Copies of agents, each made when the stairs of the agent were created. They serve to compare stairs for novelty.
     pub panel: Vec<Genome>,
-    /// For each staircase, the scores of the panel on it.
+    /// For each staircase, the scores of the panel's agents on it.
     pub rows: Vec<Vec<f32>>,
     pub transfers: Vec<Transfer>,
 }
 
 impl<S> PoetProgress<S> {
-    /// The beginning of a run, with one pair.
+    /// Makes the progress at the beginning of a run, with one pair.
     pub fn begin(root: StairsNode, pair: Pair<S>, iterations: u32) -> Self {
         Self {
             phase: Phase::Learn { left: iterations },
@@ -153,7 +153,7 @@ impl<S> PoetProgress<S> {
         self.nodes.get(index as usize)
     }
 
-    /// The genes of the agent of a staircase.
+    /// Returns the genome of a staircase's agent.
     pub fn agent(&self, index: u32) -> Option<&Genome> {
         Some(&self.node(index)?.agent.as_ref()?.genome)
     }
@@ -170,7 +170,7 @@ impl<S> PoetProgress<S> {
         self.pairs.iter_mut().find(|pair| pair.node == node)
     }
 
-    /// Reads what a run had learned after its first `finished` generations.
+    /// Reads the progress of a run after its first `finished` generations.
     pub fn read(state: &StrategyState, plan: &RunPlan, finished: u32) -> Result<Self, Invalid>
     where
         S: Strategy,
@@ -179,7 +179,7 @@ impl<S> PoetProgress<S> {
         saved.check(plan, finished)?;
         let mut pairs = Vec::new();
         for (index, pair) in saved.pairs.into_iter().enumerate() {
-            // Around its agent, which decides nothing once the search has begun.
+            // A search that has begun does not depend on the genome around which it began; the agent stands in for that genome.
             let around = saved.nodes.get(pair.node as usize).and_then(|node| node.agent.as_ref());
             let around = around.map(|agent| &agent.genome);
             let plan = search_plan(plan, pair.node, pair.restarts, around);
@@ -219,12 +219,12 @@ impl PoetProgress<StrategyState> {
         within("panel", self.panel.len(), 0..=self.nodes.len())?;
         within("rows", self.rows.len(), self.nodes.len()..=self.nodes.len())?;
         for (index, node) in self.nodes.iter().enumerate() {
-            // Stairs that have just come belong to the round that is not finished yet.
+            // Stairs created in the current round belong to a round that is not finished.
             let checked = node.check(index, self.rounds + 1, plan);
             checked.map_err(|error| error.inside("nodes"))?;
         }
         for row in &self.rows {
-            // A staircase that has just come lacks the columns of those that came with it.
+            // Each row has one column per agent of the panel, which gets the agents of new stairs only after the phase `Place`.
             within("row", row.len(), self.panel.len()..=self.panel.len())?;
             row.iter().try_for_each(|score| check_score("row", *score))?;
         }
@@ -311,7 +311,7 @@ impl PoetProgress<StrategyState> {
         within("stairs", index, 0..=self.nodes.len() as u32 - 1)
     }
 
-    /// Checks that there are such stairs, with an agent.
+    /// Checks that the stairs with this index exist and have an agent.
     fn check_agent(&self, index: u32) -> Result<(), Invalid> {
         self.check_place(index)?;
         match self.nodes.get(index as usize).and_then(|node| node.agent.as_ref()) {

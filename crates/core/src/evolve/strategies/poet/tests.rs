@@ -20,7 +20,7 @@ fn plan() -> RunPlan {
     RunPlan::new("test", 1, settings)
 }
 
-/// An evaluation whose share falls with the distance of a gene from a target that the rise of the stairs decides.
+/// Returns an evaluation whose share of the way falls with the distance of a gene from a target, which follows from the rise of the stairs.
 fn evaluate(poet: &Poet<CmaEs>, attempt: &Attempt<PoetRole>) -> Evaluation {
     let point = poet.plan.settings.genome.point_of(&attempt.candidate.genome);
     let target = f64::from(attempt.stairs.rise_m) / 1.2;
@@ -39,7 +39,7 @@ fn advance(poet: &mut Poet<CmaEs>) {
     poet.tell(&asked, &evaluations);
 }
 
-/// A run of this many rounds, and its number of generations.
+/// Returns a run after the given number of rounds, and its number of generations.
 fn run(rounds: u32) -> (Poet<CmaEs>, u32) {
     let mut poet = Poet::<CmaEs>::begin(&plan());
     let mut generations = 0;
@@ -75,7 +75,7 @@ fn archived(tree: &StairsTree) -> usize {
     tree.nodes.iter().filter(|node| node.archived.is_some()).count()
 }
 
-/// Gives the last pair, whose search has begun, an agent that hardly moves, before a measurement. Returns its stairs.
+/// Gives the last pair, whose search has begun, an agent that hardly moves, before a measurement. Returns the index of its stairs.
 fn forget_an_agent(poet: &mut Poet<CmaEs>) -> u32 {
     advance(poet);
     let target = poet.progress.pairs[3].node;
