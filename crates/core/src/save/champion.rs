@@ -1,4 +1,4 @@
-//! Reading and writing champions.
+//! Reading and writing of champions' files.
 
 use std::path::Path;
 
@@ -15,34 +15,34 @@ use crate::score::{Recording, SuiteResult};
 /// A champion read from a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadedChampion {
-    /// The champion with its recorded evaluation.
+    /// Champion with its recorded evaluation.
     pub champion: Champion,
-    /// The engine that recorded it.
+    /// Engine that recorded the champion.
     pub engine: Engine,
-    /// Its recorded poses, if the file has them.
+    /// Recorded poses. None if the file has no poses.
     pub recording: Option<Recording>,
-    /// The results of its exam, if the file has them.
+    /// Results of the champion's exam; empty if the file has none.
     pub exam: Vec<SuiteResult>,
 }
 
 /// Reads a champion.
 ///
 /// # Errors
-/// The file is unreadable, too large, damaged, of another kind or format, or has a value out of range.
+/// Fails if the file is unreadable, too large, damaged, of another kind or format, or has a value out of range.
 pub fn load_champion(path: &Path) -> Result<LoadedChampion, SaveError> {
     parse_champion(path, &read_text(path)?)
 }
 
-/// Reads a champion, and the comment of its user in the first line of the file.
+/// Reads a champion, and the comment that the user wrote in the first line of the file.
 ///
 /// # Errors
-/// As for [`load_champion`].
+/// Fails as [`load_champion`] does.
 pub fn load_champion_and_note(path: &Path) -> Result<(LoadedChampion, Option<String>), SaveError> {
     let text = read_text(path)?;
     Ok((parse_champion(path, &text)?, note(&text)))
 }
 
-/// The user's comment in the first line of a champion's file: a comment there, unless the program wrote it.
+/// Returns the user's comment in the first line of a champion's file. None if there is no comment, or if the program wrote it.
 pub(super) fn note(text: &str) -> Option<String> {
     let comment = text.lines().next()?;
     let line = comment.strip_prefix("//")?.trim();
@@ -50,14 +50,14 @@ pub(super) fn note(text: &str) -> Option<String> {
     (!is_own).then(|| single_line(line))
 }
 
-/// Bytes reserved for the comment at the top.
+/// Bytes reserved for the comments at the top of a file.
 const HEADER: u64 = 10_000;
 
-/// Writes a champion and, if given, its recorded poses as readable text, atomically. The poses are left out if the file
-/// would become too large to be read again.
+/// Writes a champion and, if given, its recorded poses as readable text, atomically. The poses are omitted if the file would become too
+/// large to be read.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_champion(
     path: &Path,
     champion: &Champion,
@@ -66,10 +66,10 @@ pub fn store_champion(
     write_champion(path, "", champion, recording, &[])
 }
 
-/// A champion's file as text: its recorded poses are left out if the file would become too large to be read again.
+/// Returns the text of a champion's file. The recorded poses are omitted if the file would become too large to be read.
 ///
 /// # Errors
-/// The file would be too large even without them.
+/// Fails if the file would be too large even without the poses.
 pub fn champion_text(
     champion: &Champion,
     recording: Option<&Recording>,
@@ -121,18 +121,18 @@ fn text_with_comments(
     Ok(format!("{comments}{header}{text}"))
 }
 
-/// The champion that the studio shows at its start.
+/// Reads the champion that the studio shows at its start.
 ///
 /// # Errors
-/// The embedded file is broken; a test prevents this.
+/// Fails if the embedded file is damaged, which a test prevents.
 pub fn shipped_champion() -> Result<LoadedChampion, SaveError> {
     parse_champion(Path::new("climber.ron"), include_str!("../../../../saves/climber.ron"))
 }
 
-/// Parses a champion; `path` is the file's name in errors.
+/// Parses a champion; errors name the file `path`.
 ///
 /// # Errors
-/// As for [`load_champion`], except for reading the file.
+/// Fails as [`load_champion`] does, except for reading the file.
 pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: ChampionV5 = parse(path, text)?;
@@ -142,7 +142,7 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
 }
 
 impl LoadedChampion {
-    /// Whether this program computes the same bits as the one that recorded the champion.
+    /// Returns whether this program computes the same bits as the program that recorded the champion.
     pub fn is_of_this_engine(&self) -> bool {
         has_bits_of_this(self.engine, self.champion.trial.physics.engine)
     }
@@ -180,7 +180,7 @@ mod tests {
     fn the_champions_of_the_program_are_written_with_the_bytes_that_they_have() {
         let content = |text: &str| -> String {
             let begins = text.find("\n(\n").expect("its first field");
-            // Poses are rounded when they are written.
+            // Only the part before the poses is compared, because poses are rounded when they are written.
             text[begins..].split("poses:").next().unwrap_or_default().to_owned()
         };
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../saves");
@@ -256,7 +256,7 @@ mod tests {
             kept: 0.7,
             each: vec![("120 Hz".to_owned(), 0.9), ("240 Hz".to_owned(), 0.7)],
         };
-        // Twice, as after an exam is repeated.
+        // The exam is stored twice, as when it is repeated.
         for _ in 0..2 {
             store_exam(&path, &loaded, std::slice::from_ref(&result)).expect("written");
         }
@@ -344,7 +344,7 @@ mod tests {
         );
     }
 
-    /// The error of `load_champion` for a champion's text after `edit`.
+    /// Returns the error of `load_champion` for a champion's text after `edit`.
     fn refusal(edit: impl FnOnce(String) -> String) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");

@@ -1,4 +1,4 @@
-//! The results of an exam in a champion's file.
+//! Results of an exam in a champion's file.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use crate::check::Invalid;
 use crate::schema::Choices;
 use crate::score::{ExamSuite, SuiteResult};
 
-/// Writes the results of an exam into a champion's file, atomically. Results of other suites and what the user wrote
-/// above the champion are kept.
+/// Writes the results of an exam into a champion's file, atomically. Results of other suites, and lines that the user wrote above the
+/// champion, are kept.
 ///
 /// # Errors
-/// Another engine recorded the champion, the file now holds another champion, or it cannot be read or written.
+/// Fails if another engine recorded the champion, if the file now has another champion, or if it cannot be read or written.
 pub fn store_exam(
     path: &Path,
     loaded: &LoadedChampion,
@@ -22,7 +22,7 @@ pub fn store_exam(
 ) -> Result<(), SaveError> {
     check_examinable(path, loaded)?;
     let text = read_text(path)?;
-    // A long exam leaves time to rename files.
+    // The file is compared with the examined champion, because it may have been renamed or replaced during a long exam.
     let present = parse_champion(path, &text)?;
     if present.champion != loaded.champion {
         let allowed = "the champion that was examined";
@@ -40,10 +40,10 @@ pub fn store_exam(
     write_champion(path, &own, &present.champion, present.recording.as_ref(), &all)
 }
 
-/// Checks that results of an exam may stand in a champion's file, beside its record.
+/// Checks that the file of a champion may get results of an exam: this engine must have recorded the champion.
 ///
 /// # Errors
-/// Another engine recorded the champion.
+/// Fails if another engine recorded the champion.
 pub fn check_examinable(path: &Path, loaded: &LoadedChampion) -> Result<(), SaveError> {
     if loaded.is_of_this_engine() {
         return Ok(());
@@ -53,14 +53,14 @@ pub fn check_examinable(path: &Path, loaded: &LoadedChampion) -> Result<(), Save
     Err(SaveError::Invalid { path: path.to_owned(), source })
 }
 
-/// Whether the program writes comments that begin like this line at the top of a champion's file.
+/// Returns whether the program writes comments that begin like this line at the top of a champion's file.
 pub(super) fn is_programs_comment(line: &str) -> bool {
     ["// A champion of Snakes & Stairs", "// Fitness (", "// Exam:", "// Replay it exactly"]
         .iter()
         .any(|start| line.starts_with(start))
 }
 
-/// The results of an exam in one line; none of none.
+/// Describes the results of an exam in one line. None if there are no results.
 pub fn exam_in_words(exam: &[SuiteResult]) -> Option<String> {
     let words = exam.iter().map(|result| {
         let name = result.suite.choice().title.to_lowercase();

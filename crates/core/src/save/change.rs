@@ -1,4 +1,4 @@
-//! Settings that were changed during a run: `changes.jsonl`, one line per change.
+//! Changes of settings during a run: `changes.jsonl`, one line per change.
 
 use std::path::Path;
 
@@ -12,11 +12,11 @@ use crate::evolve::{MOST_CHANGES, RunPlan, SettingChange};
 
 pub const CHANGES_FILE: &str = "changes.jsonl";
 
-/// A change of one setting, as a line of the log.
+/// A change of one setting, as a line of the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeRecord {
-    /// The first generation that uses the new value.
+    /// First generation that uses the new value.
     generation: u32,
     field: String,
     value: String,
@@ -29,7 +29,7 @@ impl From<&SettingChange> for ChangeRecord {
     }
 }
 
-/// Reads the changes of the run in a folder, the earliest first; none if it was never changed.
+/// Reads the changes of the run in a folder, the earliest first; empty if the run was never changed.
 pub fn read_changes(folder: &Path, plan: &RunPlan) -> Result<Vec<SettingChange>, SaveError> {
     let path = folder.join(CHANGES_FILE);
     parse_changes(&path, &read_log_bytes(&path)?, plan)
@@ -43,10 +43,10 @@ pub fn load_changed_plan(folder: &Path) -> Result<RunPlan, SaveError> {
     changed.map_err(SaveError::invalid(&folder.join(CHANGES_FILE)))
 }
 
-/// Parses the changes of the run that began with `plan`; `path` is the file's name in errors.
+/// Parses the changes of the run that began with `plan`; errors name the file `path`.
 ///
 /// # Errors
-/// A complete line is damaged, out of order, or changes a setting that may not change during a run.
+/// Fails if a complete line is damaged, is out of order, or changes a setting that may not change during a run.
 pub fn parse_changes(
     path: &Path,
     bytes: &[u8],

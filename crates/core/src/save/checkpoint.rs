@@ -17,9 +17,9 @@ use crate::evolve::{
 use crate::schema::is_default;
 
 const KIND: &str = "snakes-and-stairs checkpoint";
-/// Format 2 had another state of strategies. It was never released, and is not read any more.
+/// Number of the format. Format 2, which was never released, is not read.
 const FORMAT: u32 = 3;
-/// The number of the parents' torque points is bounded so that a checkpoint stays smaller than this.
+/// Maximum size of a checkpoint, in MiB. The number of the parents' torque points is limited so that checkpoints stay smaller.
 const LARGEST_MIB: u64 = 64;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,9 +34,9 @@ struct CheckpointV3 {
     plan: String,
     /// Number of finished generations.
     generation: u32,
-    /// Hash over them, which ties the checkpoint to its log.
+    /// Hash over the finished generations, which ties the checkpoint to its log.
     run_hash: String,
-    /// Stored as the strategy wrote it: a checkpoint belongs to one engine only.
+    /// State as the strategy wrote it, because only the engine that wrote a checkpoint reads it.
     strategy: StrategyState,
     front: Vec<FrontMember>,
 }
@@ -44,9 +44,9 @@ struct CheckpointV3 {
 /// The state of a search: everything that a run needs to continue.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchState {
-    /// The strategy's state.
+    /// State of the strategy.
     pub strategy: StrategyState,
-    /// The Pareto front of fitness and energy.
+    /// Pareto front of distance and energy.
     pub front: Front,
 }
 
@@ -72,12 +72,12 @@ pub fn store_checkpoint(
     store_ron(&checkpoint_path(folder, generation), &checkpoint)
 }
 
-/// The generations of a folder's checkpoints, in no particular order.
+/// Returns the generations of a folder's checkpoints, in no particular order.
 pub fn checkpoints(folder: &Path) -> Result<Vec<u32>, SaveError> {
     numbered(folder, "checkpoint-")
 }
 
-/// Removes the checkpoints that are not kept after `finished` generations: see [`is_kept`].
+/// Removes the checkpoints that [`is_kept`] does not keep after `finished` generations.
 pub fn remove_old_checkpoints(folder: &Path, finished: u32) {
     // A checkpoint that cannot be removed does no harm.
     for generation in checkpoints(folder).unwrap_or_default() {
@@ -87,8 +87,8 @@ pub fn remove_old_checkpoints(folder: &Path, finished: u32) {
     }
 }
 
-/// Old checkpoints are removed so that a long run does not fill the disk. The latest two stay, and of the earlier ones
-/// those of generations 1, 2, 4, 8 and so on. Champions always stay.
+/// Returns whether a checkpoint is kept, so that a long run does not fill the disk: one of the latest two, or of generation 1, 2, 4, 8 and
+/// so on. Champions are always kept.
 fn is_kept(generation: u32, finished: u32) -> bool {
     let is_latest = generation <= finished && finished - generation < 2;
     is_latest || (generation < finished && generation.is_power_of_two())
@@ -98,7 +98,7 @@ fn checkpoint_path(folder: &Path, generation: u32) -> PathBuf {
     folder.join(format!("checkpoint-{generation}.ron"))
 }
 
-/// Reads the checkpoint that was written after the finished generations `records`.
+/// Reads the checkpoint of a generation, which must belong to the finished generations `records`.
 pub fn load_checkpoint(
     folder: &Path,
     generation: u32,
@@ -121,10 +121,10 @@ pub fn load_checkpoint(
     Ok(state)
 }
 
-/// Parses a checkpoint: its generation, the run's hash, and the state of the search.
+/// Parses a checkpoint. Returns its generation, the run's hash, and the state of the search.
 ///
 /// # Errors
-/// It is damaged, of another engine, or a genome in it does not fit the settings.
+/// Fails if the checkpoint is damaged or of another engine, or if a genome in it does not fit the settings.
 pub fn parse_checkpoint(
     path: &Path,
     text: &str,
@@ -146,7 +146,7 @@ pub fn parse_checkpoint(
             return Err(Invalid::new("plan", quoted(&of), allowed));
         }
         let run_hash = hash_of("run_hash", &run_hash)?;
-        // A state that can be resumed is valid.
+        // A state is valid if the strategy can resume from it.
         resume(plan, generation, &strategy).map_err(|error| error.inside("strategy"))?;
         let front = read_front(front, plan)?;
         Ok((generation, run_hash, SearchState { strategy, front }))

@@ -9,26 +9,26 @@ use super::library::plain_name;
 use super::{SaveError, store_champion};
 use crate::evolve::Champion;
 
-/// Copies of champions, which exist as long as this does.
+/// Copies of champions, which are removed when this value is dropped.
 #[derive(Debug)]
 pub struct ChampionCopies {
-    /// Removes the folder when dropped.
+    /// Temporary folder, which is removed when this value is dropped.
     _folder: TempDir,
     paths: Vec<PathBuf>,
 }
 
 impl ChampionCopies {
-    /// Writes named champions, each under its name or one that is as close to it as a file allows.
+    /// Writes named champions to files, each under its name or the most similar name that a file can have.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// Fails if a file cannot be written.
     pub fn of(champions: &[(String, Champion)]) -> Result<Self, SaveError> {
         let around = std::env::temp_dir();
         let folder = tempfile::Builder::new().prefix("snakes-").tempdir_in(&around);
         let folder = folder.map_err(SaveError::unwritable(&around))?;
         let mut paths = Vec::new();
         for (number, (name, champion)) in champions.iter().enumerate() {
-            // A folder for each, because names may be equal.
+            // Each champion has its own folder, because names may be equal.
             let own = folder.path().join(number.to_string());
             fs::create_dir(&own).map_err(SaveError::unwritable(&own))?;
             let path = own.join(format!("{}.ron", plain_name(name)));
@@ -38,7 +38,7 @@ impl ChampionCopies {
         Ok(Self { _folder: folder, paths })
     }
 
-    /// The paths of the copies, in the order of the champions.
+    /// Returns the paths of the copies, in the order of the champions.
     pub fn paths(&self) -> &[PathBuf] {
         &self.paths
     }

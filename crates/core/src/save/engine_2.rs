@@ -1,27 +1,27 @@
-//! Worlds of engine 2 in the numbers of this engine, in which they act as they did.
+//! Conversion of worlds of engine 2 to the numbers of this engine, with which they behave as in engine 2.
 //!
-//! Engine 2 had rates and shares per physics step: the effect of the same number depended on the step rate. Presets of
-//! format 2 and champions of engine 2 hold such numbers.
+//! Engine 2 had rates and shares per physics step, so the effect of a number depended on the step rate. Presets of format 2 and champions
+//! of engine 2 have such numbers.
 
 use crate::evolve::Settings;
 use crate::score::Trial;
 use crate::world::{ERP_TIME_S, Surface};
 
-/// The settings of a preset of format 2 in those of this engine.
+/// Converts the settings of a preset of format 2 to those of this engine.
 pub fn converted_settings(mut settings: Settings) -> Settings {
     settings.trial = converted(settings.trial);
-    // One range was that of bends and twists.
+    // In format 2, bends and twists had a common range.
     let wave = &mut settings.genome.wave;
     wave.twist_range_rad = wave.angle_range_rad;
     settings
 }
 
-/// The trial of engine 2 in the numbers of this engine.
+/// Converts a trial of engine 2 to the numbers of this engine.
 pub fn converted(mut trial: Trial) -> Trial {
     let steps_per_s = trial.physics.steps_per_s as f32;
-    // It had one iteration per substep.
+    // Engine 2 had one iteration per substep.
     trial.physics.iterations = 1;
-    // It divided by 1 + d h in each step.
+    // Engine 2 divided velocities by 1 + d h in each step.
     let damping = &mut trial.agent.angular_damping_per_s;
     *damping = steps_per_s * libm::log1pf(*damping / steps_per_s);
     for surface in std::iter::once(&mut trial.surface).chain(&mut trial.ground) {
@@ -29,30 +29,30 @@ pub fn converted(mut trial: Trial) -> Trial {
     }
     let skin = &mut trial.agent.skin;
     convert_softness(&mut skin.soft_erp, &mut skin.soft_cfm_m_s_per_n, steps_per_s);
-    // The joints keep their stiffness. The damping of a soft joint follows it, because joints have no ERP of their own.
+    // The joints keep their stiffness. The damping of a soft joint follows from it, because joints have no ERP of their own.
     let stiffer = 1.0 / (ERP_TIME_S * steps_per_s);
     trial.agent.joint_cfm_m_s_per_n =
         trial.agent.joint_cfm_m_s_per_n.map(|cfm| (cfm * stiffer).min(MOST_JOINT_CFM));
     trial
 }
 
-/// Largest damping of a surface, in 1/s. Engine 2 stopped limbs within one step at the highest damping and the lowest
-/// step rate, which no rate can do.
+/// Largest damping of a surface, in 1/s. At its highest damping and lowest step rate, engine 2 stopped limbs within one step, which no
+/// finite rate can do.
 const MOST_DAMPING_PER_S: f32 = 20.0;
-/// Least ERP of a material, greatest CFM of one, and of a joint: at low step rates numbers at the limits of engine 2 are
-/// beyond those of this one.
+/// Limits of this engine: the least ERP and the greatest CFM of a material, and the greatest CFM of a joint. At low step rates, extreme
+/// numbers of engine 2 convert to numbers beyond these limits.
 const LEAST_ERP: f32 = 0.01;
 const MOST_CFM: f32 = 1.0;
 const MOST_JOINT_CFM: f32 = 0.1;
 
 fn convert_surface(surface: &mut Surface, steps_per_s: f32) {
-    // It multiplied by 1 - d h in each step.
+    // Engine 2 multiplied velocities by 1 - d h in each step.
     let share = (surface.dampen_per_s / steps_per_s).min(1.0);
     surface.dampen_per_s = (-steps_per_s * libm::log1pf(-share)).min(MOST_DAMPING_PER_S);
     convert_softness(&mut surface.soft_erp, &mut surface.soft_cfm_m_s_per_n, steps_per_s);
 }
 
-/// ERP was the share that was corrected in a step.
+/// Converts the ERP, which was the share of an error that a step corrected, and the CFM of a material.
 fn convert_softness(erp: &mut f32, cfm_m_s_per_n: &mut f32, steps_per_s: f32) {
     let steps = ERP_TIME_S * steps_per_s;
     if (steps - 1.0).abs() < 1.0e-6 {

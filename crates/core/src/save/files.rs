@@ -1,4 +1,4 @@
-//! Reading bounded text, and writing RON.
+//! Reading of text with a limited size, and writing of RON.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -17,7 +17,7 @@ pub enum SaveError {
     /// The file could not be opened or read.
     #[error("{}: cannot be read: {source}", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,
@@ -25,7 +25,7 @@ pub enum SaveError {
     /// The file or its folder could not be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Unwritable {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,
@@ -33,68 +33,68 @@ pub enum SaveError {
     /// The file is larger than any that this program writes.
     #[error("{}: the file is larger than {limit_mib} MiB, the largest that is read", path.display())]
     TooLarge {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The largest size that is read, in MiB.
+        /// Largest size that is read, in MiB.
         limit_mib: u64,
     },
-    /// The text is damaged, or ends too early.
+    /// The text of the file is damaged, or ends too early.
     #[error("{}: damaged or incomplete at line {line}, column {column}: {problem}", path.display())]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line of the damage; the first is 1.
         line: usize,
         /// Column of the damage; the first is 1.
         column: usize,
-        /// The problem there.
+        /// Description of the damage.
         problem: String,
     },
     /// The file is well-formed, but of another kind.
     #[error("{}: kind is {found}; allowed: {expected:?}", path.display())]
     Foreign {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The kind that the file states.
+        /// Kind that the file states.
         found: String,
-        /// The kind that it should state.
+        /// Kind that the file should state.
         expected: &'static str,
     },
-    /// Written in a format that this version does not read.
+    /// The file has a format that this version does not read.
     #[error("{}: format is {found}; allowed: {supported} ({} wrote this file)", path.display(),
         if found > supported { "a newer version of Snakes & Stairs" } else { "a version before the first release" })]
     OtherFormat {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The format it has.
+        /// Format that the file has.
         found: u32,
-        /// The format that this version reads.
+        /// Format that this version reads.
         supported: u32,
     },
     /// Another program writes into the folder.
     #[error("{}: in use by {owner}", path.display())]
     InUse {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
-        /// The program's process number and its name.
+        /// Process number and name of the other program.
         owner: String,
     },
     /// The folder contains a run with another preset, seed or setting.
     #[error("{}: holds another run; allowed: an empty folder, or the folder of the same run", path.display())]
     OtherRun {
-        /// The folder.
+        /// Path of the folder.
         path: PathBuf,
     },
-    /// No built-in preset or stairs and no file have this name; the field says which of them.
+    /// No built-in preset or stairs and no file have this name. The field tells which of the two was wanted.
     #[error("{0}")]
     Unknown(Invalid),
-    /// A study does not exist, or has a value that is not allowed.
+    /// A study with this name does not exist, or a value of a study is not allowed.
     #[error("{0}")]
     Study(Invalid),
     /// A value in the file is not allowed.
     #[error("{}: {source}", path.display())]
     Invalid {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The field, its value, and the allowed values.
         source: Invalid,
@@ -102,23 +102,23 @@ pub enum SaveError {
 }
 
 impl SaveError {
-    /// The error that a file or folder cannot be read, from the system's reason.
+    /// Makes the error of an unreadable file or folder from the system's reason.
     pub fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
         move |source| Self::Unreadable { path: path.to_owned(), source }
     }
 
-    /// The error that a file or folder cannot be written, from the system's reason.
+    /// Makes the error of an unwritable file or folder from the system's reason.
     pub fn unwritable(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {
         move |source| Self::Unwritable { path: path.to_owned(), source }
     }
 
-    /// The error that a value in a file is not allowed, from the value and what is allowed.
+    /// Makes the error of a value in a file that is not allowed.
     pub fn invalid(path: &Path) -> impl Fn(Invalid) -> Self + Copy {
         move |source| Self::Invalid { path: path.to_owned(), source }
     }
 }
 
-/// The largest file that is read, in MiB; files that this program writes stay below.
+/// Largest file that is read, in MiB. Files that this program writes are smaller.
 pub const LARGEST_FILE_MIB: u64 = 10;
 
 /// Reads a text file of at most [`LARGEST_FILE_MIB`].
@@ -126,8 +126,8 @@ pub fn read_text(path: &Path) -> Result<String, SaveError> {
     text_of(path, read_bytes(path, LARGEST_FILE_MIB)?)
 }
 
-/// Reads a regular file of at most `limit_mib`. A device might never end, and a pipe might block for ever: both are
-/// refused.
+/// Reads a regular file of at most `limit_mib`. Devices and pipes are refused, because a device might never end and a pipe might block for
+/// ever.
 pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     let unreadable = SaveError::unreadable(path);
     let limit = limit_mib * 1024 * 1024;
@@ -150,13 +150,13 @@ pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
 /// Reads a small text file.
 ///
 /// # Errors
-/// It cannot be read, is no text, or is larger than a MiB.
+/// Fails if the file cannot be read, is not text, or is larger than 1 MiB.
 pub fn load_text(path: &Path) -> Result<String, SaveError> {
     text_of(path, read_bytes(path, 1)?)
 }
 
-/// Refuses anything that exists and is not a regular file, links included: a run's folder may come from anywhere, and
-/// no name in it may lead out of it.
+/// Refuses a path at which something other than a regular file exists, such as a link. A run's folder may come from anyone, and no file
+/// name in it may lead out of the folder.
 pub fn refuse_link(path: &Path) -> std::io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(about) if about.is_file() => Ok(()),
@@ -181,14 +181,14 @@ pub fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<
     ron::from_str(text).map_err(|error| damaged(path, error))
 }
 
-/// The error of a text that is no RON of the expected type.
+/// Makes the error of a text that is not RON of the expected type.
 pub fn damaged(path: &Path, error: ron::error::SpannedError) -> SaveError {
     SaveError::Damaged {
         path: path.to_owned(),
         line: error.span.start.line,
         column: error.span.start.col,
         problem: match error.code {
-            // The parser would name a type of this program.
+            // The parser's message would name a type of this program.
             ron::Error::ExpectedNamedStructLike(_)
             | ron::Error::ExpectedStructLike
             | ron::Error::ExpectedDifferentStructName { .. } => {
@@ -199,14 +199,14 @@ pub fn damaged(path: &Path, error: ron::error::SpannedError) -> SaveError {
     }
 }
 
-/// Shortens a parser's message to one line without control characters: it may quote the file, which must not be able to
-/// control a terminal.
+/// Shortens a parser's message to one line without control characters. The message may quote the file, which must not be able to control a
+/// terminal.
 pub fn single_line(text: &str) -> String {
     let plain = text.chars().map(|c| if c.is_control() { ' ' } else { c });
     plain.take(200).collect()
 }
 
-/// The part of a file that states its kind and format; the rest is skipped.
+/// The kind and format that a file states; its other fields are skipped.
 #[derive(Deserialize)]
 pub struct Header {
     #[serde(default)]
@@ -216,7 +216,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// The kind that a text states; none of a damaged text, or one without a kind.
+    /// Returns the kind that a text states. None if the text is damaged or states no kind.
     pub fn kind_of(text: &str) -> Option<String> {
         let Self { kind, .. } = ron::from_str(text).ok()?;
         (!kind.is_empty()).then_some(kind)
@@ -238,7 +238,7 @@ impl Header {
     }
 }
 
-/// Checks a file's format; 0 stands for a file that does not state one.
+/// Checks a file's format; `found` is 0 for a file that does not state one.
 pub fn check_format(path: &Path, found: u32, supported: u32) -> Result<(), SaveError> {
     let path = path.to_owned();
     if found == 0 {
@@ -248,7 +248,7 @@ pub fn check_format(path: &Path, found: u32, supported: u32) -> Result<(), SaveE
     if found == supported { Ok(()) } else { Err(SaveError::OtherFormat { path, found, supported }) }
 }
 
-/// The files of these names, without their extension, in a folder of the assets: each with its name and text.
+/// Embeds the files with the given names, without extension, from a folder of the assets: each as its name and text.
 macro_rules! embedded {
     ($folder:literal; $($name:literal),* $(,)?) => {
         &[$((
@@ -259,12 +259,12 @@ macro_rules! embedded {
 }
 pub(super) use embedded;
 
-/// The names of embedded files, without their extension.
+/// Returns the names of embedded files, without their extension.
 pub fn embedded_names(files: &[(&'static str, &str)]) -> Vec<&'static str> {
     files.iter().map(|(file, _)| file.trim_end_matches(".ron")).collect()
 }
 
-/// The numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
+/// Returns the numbers N for which a folder has a file `<prefix>N.ron`, in no particular order.
 pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     let unreadable = SaveError::unreadable(folder);
     let mut numbers = Vec::new();
@@ -273,7 +273,7 @@ pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
         let number = file.to_str().and_then(|file| {
             let digits = file.strip_prefix(prefix)?.strip_suffix(".ron")?;
             let number = digits.parse::<u32>().ok()?;
-            // Not a copy that a user named `generation-01.ron`.
+            // A copy that a user named `generation-01.ron` is skipped.
             (number.to_string() == digits).then_some(number)
         });
         numbers.extend(number);
@@ -281,7 +281,7 @@ pub fn numbered(folder: &Path, prefix: &str) -> Result<Vec<u32>, SaveError> {
     Ok(numbers)
 }
 
-/// RON with line breaks and indentation.
+/// Writes RON with line breaks and indentation.
 pub fn pretty(path: &Path, file: &impl Serialize) -> Result<String, SaveError> {
     let layout = PrettyConfig::new().compact_arrays(true).struct_names(false);
     ron::ser::to_string_pretty(file, layout).map(|text| text + "\n").map_err(|error| {
@@ -294,7 +294,7 @@ pub fn store_ron(path: &Path, file: &impl Serialize) -> Result<(), SaveError> {
     write_whole(path, pretty(path, file)?.as_bytes())
 }
 
-/// The names of all entries of a folder, hidden ones included, sorted.
+/// Returns the names of all entries of a folder, hidden ones included, sorted.
 #[cfg(test)]
 pub fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
@@ -304,7 +304,7 @@ pub fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Time of the last change, since the beginning of 1970; zero if it is unknown.
+/// Returns the time of the last change, since the beginning of 1970; zero if it is unknown.
 pub(super) fn modified(about: &fs::Metadata) -> Duration {
     about.modified().ok().and_then(|at| at.duration_since(UNIX_EPOCH).ok()).unwrap_or_default()
 }

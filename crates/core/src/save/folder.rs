@@ -15,12 +15,12 @@ use super::whole_file::prepare_folder;
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::evolve::RunPlan;
 
-/// The folder of saved champions and runs.
+/// Folder of saved champions and runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavesFolder(PathBuf);
 
 impl SavesFolder {
-    /// The folder that the user named; else `saves/` in the working directory, if it exists; else the platform's data
+    /// Returns the folder that the user named; otherwise `saves/` in the working directory, if it exists; otherwise the platform's data
     /// folder.
     pub fn find(named: Option<&Path>) -> Self {
         if let Some(named) = named {
@@ -35,10 +35,10 @@ impl SavesFolder {
         Self(data.map_or(here, |data| data.data_dir().join("saves")))
     }
 
-    /// A folder within a run's folder. The run's folder may come from anywhere, so links in it are not followed.
+    /// Returns a folder within a run's folder. Links are not followed, because a run's folder may come from anyone.
     ///
     /// # Errors
-    /// The folder is a link.
+    /// Fails if the folder is a link.
     pub fn within_run(run: &Path, name: &str) -> Result<Self, SaveError> {
         let path = run.join(name);
         if path.is_symlink() {
@@ -48,36 +48,36 @@ impl SavesFolder {
         Ok(Self(path))
     }
 
-    /// Its folder for screenshots.
+    /// Returns the folder of screenshots within this folder.
     #[must_use]
     pub fn pictures(&self) -> Self {
         Self(self.0.join("pictures"))
     }
 
-    /// Its folder for exported files.
+    /// Returns the folder of exported files within this folder.
     #[must_use]
     pub fn exports(&self) -> Self {
         Self(self.0.join("exports"))
     }
 
-    /// The first free path in it of the form `NAME-NUMBER.EXTENSION`.
+    /// Returns the first free path of the form `NAME-NUMBER.EXTENSION` in this folder.
     pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
         let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
         let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
         free.next().unwrap_or_else(|| path(0))
     }
 
-    /// The folder's path.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Its folder for a run.
+    /// Returns the folder of a run within this folder.
     pub fn of_run(&self, plan: &RunPlan) -> PathBuf {
         self.0.join(run_name(plan))
     }
 
-    /// The runs in it that this engine can read, in the order of their folders' names; unreadable ones are left out.
+    /// Returns the runs in this folder that this engine can read, in the order of their folders' names; unreadable runs are omitted.
     pub fn runs(&self) -> Vec<RunSummary> {
         let Ok(entries) = fs::read_dir(&self.0) else { return Vec::new() };
         let folders = entries.flatten().filter(|entry| entry.file_type().is_ok_and(|t| t.is_dir()));
@@ -91,7 +91,7 @@ impl SavesFolder {
             if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
                 is_stopped = !plan.has_ended(&read_records(&folder, &plan).ok()?);
             }
-            // Notes that cannot be read do not keep a run from being resumed.
+            // A run whose notes cannot be read can still be resumed.
             let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
             let name = notes.own_name().map(str::to_owned);
             let log = fs::metadata(folder.join("log.jsonl"));
@@ -101,7 +101,7 @@ impl SavesFolder {
         folders.into_iter().filter_map(summary).collect()
     }
 
-    /// Makes sure that files can be written into it, and creates it if it does not exist.
+    /// Checks that files can be written into the folder, and creates it if it does not exist.
     pub fn prepare(&self) -> Result<(), SaveError> {
         prepare_folder(&self.0)
     }
@@ -110,41 +110,41 @@ impl SavesFolder {
 /// A run in a folder of saves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
-    /// Its folder.
+    /// Folder of the run.
     pub folder: PathBuf,
-    /// Its plan, after all its changes.
+    /// Plan of the run, after all its changes.
     pub plan: RunPlan,
     /// Number of finished generations.
     pub finished: u32,
-    /// The name that the user gave it, if any.
+    /// Name that the user gave the run. None: the run has no name.
     pub name: Option<String>,
-    /// Time of the last change of its log since 1970; zero if it is unknown.
+    /// Time of the last change of the run's log since 1970; zero if it is unknown.
     pub saved_at: Duration,
-    /// Whether evaluations are left for another generation.
+    /// Whether the run can continue with another generation.
     is_stopped: bool,
 }
 
 impl RunSummary {
-    /// Whether generations are left to evolve.
+    /// Returns whether generations are left to evolve.
     pub fn is_stopped(&self) -> bool {
         self.is_stopped
     }
 
-    /// Its finished generations in words: "3 of 40 generations".
+    /// Describes the finished generations in words: "3 of 40 generations".
     pub fn generations_in_words(&self) -> String {
         self.plan.generations_in_words(self.finished, !self.is_stopped)
     }
 }
 
-/// Name of the file of a generation's champion; the first generation is 1.
+/// Returns the name of the file of a generation's champion; the first generation is 1.
 pub fn champion_file_name(generation: u32) -> String {
     format!("generation-{generation}.ron")
 }
 
-/// The champions in a run's folder with the numbers of their generations, in order.
+/// Reads the champions in a run's folder with the numbers of their generations, in order.
 ///
 /// # Errors
-/// The folder cannot be read, or contains no champion or a damaged one.
+/// Fails if the folder cannot be read, has no champion, or has a damaged champion.
 pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> {
     let mut generations = numbered(folder, "generation-")?;
     generations.sort_unstable();
@@ -160,7 +160,7 @@ pub fn load_run(folder: &Path) -> Result<Vec<(u32, LoadedChampion)>, SaveError> 
 /// Reads the champion of one generation from a run's folder; the first generation is 1.
 ///
 /// # Errors
-/// There is none, or it is damaged.
+/// Fails if the generation has no champion, or if the champion is damaged.
 pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion, SaveError> {
     let path = folder.join(champion_file_name(generation));
     refuse_link(&path).map_err(SaveError::unreadable(&path))?;

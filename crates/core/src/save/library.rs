@@ -1,7 +1,7 @@
 //! The library: the champions and runs in a folder of saves, and the operations on them.
 //!
-//! [`list`] reads names only, so that ten thousand files take no time. [`read_entry`] reads the contents of one entry; a
-//! damaged one does not affect the others. Nothing here simulates.
+//! [`list`] reads names only, so that ten thousand files take little time. [`read_entry`] reads the contents of one entry; a damaged entry
+//! does not affect the others. The library does not simulate.
 //!
 //! No operation loses data: no file is overwritten, deleted entries are moved into a hidden folder, and every [`FileStep`]
 //! can be undone. Links are not followed.
@@ -44,14 +44,14 @@ mod fixtures {
     };
     use crate::score::{Recording, evaluate};
 
-    /// An empty folder of saves, which is removed when dropped.
+    /// Makes an empty folder of saves, which is removed when the first value is dropped.
     pub fn saves() -> (TempDir, SavesFolder) {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         (folder, saves)
     }
 
-    /// A champion in it.
+    /// Stores the shipped champion under a name in a folder of saves.
     pub fn champion_in(saves: &SavesFolder, name: &str) -> SavePlace {
         let path = saves.path().join(format!("{name}.ron"));
         let loaded = shipped_champion().expect("well formed");
@@ -59,7 +59,7 @@ mod fixtures {
         SavePlace::Champion(path)
     }
 
-    /// A run in it that was stopped after two of four generations.
+    /// Stores a run, stopped after two of four generations, in a folder of saves.
     pub fn run_in(saves: &SavesFolder, seed: u64) -> SavePlace {
         let mut settings = Settings::default();
         settings.evolution.population = 6;
@@ -110,7 +110,7 @@ mod fixtures {
         SavePlace::Run(path)
     }
 
-    /// The names of the entries that match.
+    /// Returns the names of the matching entries.
     pub fn names(entries: &[LibraryEntry], matches: impl Fn(&SavePlace) -> bool) -> Vec<String> {
         let matching = entries.iter().filter(|entry| matches(&entry.place));
         matching.map(|entry| entry.place.name()).collect()

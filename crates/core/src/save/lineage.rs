@@ -1,7 +1,7 @@
-//! Parents of individuals: `lineage.jsonl`, one line per finished generation, so that a resumed run still knows them.
+//! Parents of individuals: `lineage.jsonl`, one line per finished generation, from which a resumed run knows them.
 //!
-//! A run's result does not depend on this file. Lines that cannot be written or do not fit the run are left out; then
-//! lines of descent begin later.
+//! The results of a run do not depend on this file. Lines that cannot be written or do not fit the run are omitted; lines of descent then
+//! begin later.
 
 use std::path::Path;
 
@@ -18,38 +18,38 @@ pub const LINEAGE_FILE: &str = "lineage.jsonl";
 /// Maximum number of fitness values that are written per generation.
 pub const MAX_SPREAD: usize = 40;
 
-/// The fitness values and parents of one generation.
+/// Fitness values and parents of one generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LineageRecord {
-    /// The first is 1.
+    /// Number of the generation; the first is 1.
     pub generation: u32,
     /// Fitness values of healthy individuals, ascending, sampled evenly.
     pub spread: Vec<f32>,
-    /// The individuals that may become parents, in the strategy's order; also the best one.
+    /// The individuals that may become parents, in the strategy's order, and the best individual.
     pub born: Vec<IndividualRecord>,
 }
 
-/// An individual: its index, its fitness unless it was disqualified, and its parents.
+/// An individual: its index, its fitness (none if it was disqualified), and its parents.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IndividualRecord(pub u32, pub Option<f32>, pub ParentsRecord);
 
 /// [`Parents`] in compact form: each parent is a generation and an index in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ParentsRecord {
-    /// Drawn at random.
+    /// The individual was drawn at random.
     #[serde(rename = "n")]
     Newborn,
-    /// One parent.
+    /// The individual has one parent: generation and index.
     #[serde(rename = "1")]
     One(u32, u32),
-    /// Two parents.
+    /// The individual has two parents: generation and index of each.
     #[serde(rename = "2")]
     Two(u32, u32, u32, u32),
-    /// Drawn from a search distribution.
+    /// The individual was drawn from a search distribution.
     #[serde(rename = "d")]
     Distribution,
-    /// Unknown.
+    /// The parents are unknown.
     #[serde(rename = "u")]
     Unknown,
 }
@@ -79,7 +79,7 @@ impl From<ParentsRecord> for Parents {
     }
 }
 
-/// Reads the first `finished` generations' records of a run's folder; none if the file is damaged.
+/// Reads the records of the first `finished` generations from a run's folder; empty if the file is damaged.
 pub fn read_lineage(folder: &Path, finished: u32, plan: &RunPlan) -> Vec<LineageRecord> {
     let path = folder.join(LINEAGE_FILE);
     let read = read_log_bytes(&path).and_then(|bytes| parse_lineage(&path, &bytes, plan));
@@ -88,10 +88,10 @@ pub fn read_lineage(folder: &Path, finished: u32, plan: &RunPlan) -> Vec<Lineage
     records
 }
 
-/// Parses lineage records; `path` is the file's name in errors.
+/// Parses lineage records; errors name the file `path`.
 ///
 /// # Errors
-/// A complete line is damaged, out of order, or has a value that is not allowed.
+/// Fails if a complete line is damaged, is out of order, or has a value that is not allowed.
 pub fn parse_lineage(
     path: &Path,
     bytes: &[u8],
@@ -110,7 +110,7 @@ pub fn parse_lineage(
             within("individual", u64::from(*individual), 0..=last)?;
             fitness.map_or(Ok(()), |fitness| within("fitness", fitness, FITNESS_RANGE))?;
             for parent in Parents::from(*parents).ids() {
-                // A parent is of an earlier generation; otherwise a line of descent would never end.
+                // A parent is of an earlier generation. Otherwise a line of descent could be endless.
                 let earlier = 1..=generation.saturating_sub(1);
                 within("parent's generation", parent.generation, earlier)?;
                 within("parent", u64::from(parent.individual), 0..=last)?;

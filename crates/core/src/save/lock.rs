@@ -1,4 +1,4 @@
-//! A lock that lets only one program at a time write into a run's folder.
+//! A lock with which only one program at a time writes into a run's folder.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::Read;
@@ -7,25 +7,25 @@ use std::path::Path;
 use super::SaveError;
 use super::files::refuse_link;
 
-/// The right to write into a folder. The operating system releases it when the program ends, even by a crash.
+/// The exclusive right to write into a folder. The operating system releases it when the program ends, even after a crash.
 #[derive(Debug)]
 pub struct Lock {
-    /// Stays open and locked until this value is dropped.
+    /// Lock file, which stays open and locked until this value is dropped.
     _file: File,
 }
 
-/// Name of the lock's file.
+/// Name of the lock file.
 pub const LOCK_FILE: &str = "lock";
 
-/// Name of the file with the process number and name of the lock's owner. It is another one, because Windows lets no other
+/// Name of the file with the process number and name of the lock's owner. It is separate from the lock file, because Windows lets no other
 /// program read a locked file.
 pub const OWNER_FILE: &str = "lock-owner";
 
 impl Lock {
-    /// Takes the lock of a folder. `owner` is the name that other programs report, such as "the studio".
+    /// Takes the lock of a folder. Other programs report `owner` as the owner's name, such as "the studio".
     ///
     /// # Errors
-    /// Another program holds the lock, and the error names it; or the file cannot be written.
+    /// Fails if another program holds the lock (the error names it), or if the lock file cannot be written.
     pub fn take(folder: &Path, owner: &str) -> Result<Self, SaveError> {
         let path = folder.join(LOCK_FILE);
         let unwritable = SaveError::unwritable(&path);
@@ -33,7 +33,7 @@ impl Lock {
         refuse_link(&path).map_err(unwritable)?;
         refuse_link(&owner_path).map_err(SaveError::unwritable(&owner_path))?;
         let mut options = OpenOptions::new();
-        // Not truncated: a program that does not get the lock must not erase the owner's name.
+        // The file is not truncated before it is locked, so that a program without the lock changes nothing.
         options.read(true).write(true).create(true).truncate(false);
         let file = options.open(&path).map_err(unwritable)?;
         match file.try_lock() {
@@ -53,10 +53,10 @@ impl Lock {
     }
 }
 
-/// The owner's name from its file.
+/// Returns the owner's name from its file.
 fn read_owner(path: &Path) -> String {
     let mut bytes = Vec::new();
-    // Without the name the lock is still held.
+    // If the name cannot be read, the lock is still held.
     let _ = File::open(path).and_then(|file| file.take(100).read_to_end(&mut bytes));
     let text = String::from_utf8_lossy(&bytes);
     let text: String = text.trim().chars().filter(|c| !c.is_control()).collect();

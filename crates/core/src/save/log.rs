@@ -1,7 +1,7 @@
 //! An append-only log: lines of JSON, each with its own checksum.
 //!
-//! The checksum (XXH3, 64 bits) is the last field of the line and covers everything before it. A kill, a full disk
-//! or a power cut can only leave an incomplete last line, which is ignored; a wrong complete line is damage.
+//! The checksum (XXH3, 64 bits) is the last field of a line and covers everything before it. A kill, a full disk or a power cut can only
+//! leave an incomplete last line, which is ignored. A complete line with a wrong checksum is an error.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -19,7 +19,7 @@ use super::files::{LARGEST_FILE_MIB, read_bytes, refuse_link, single_line};
 pub struct Log {
     path: PathBuf,
     file: File,
-    /// Length of the complete lines, in bytes; anything beyond is overwritten.
+    /// Length of the complete lines, in bytes. The next line overwrites anything beyond.
     end: u64,
 }
 
@@ -28,7 +28,7 @@ const AFTER_SUM: &str = "\"}";
 const SUM_DIGITS: usize = 16;
 
 impl Log {
-    /// Opens a log to continue after its first `kept` lines, which must be complete; creates it if there is none.
+    /// Opens a log to continue it after its first `kept` lines, which must be complete. Creates it if it does not exist.
     pub fn open(path: &Path, kept: usize) -> Result<Self, SaveError> {
         let unwritable = SaveError::unwritable(path);
         refuse_link(path).map_err(unwritable)?;
@@ -45,13 +45,13 @@ impl Log {
         Ok(Self { path: path.to_owned(), file, end: end as u64 })
     }
 
-    /// Adds a line and flushes it to the disk, so that it survives a power cut. If that fails, the next line replaces it.
+    /// Adds a line and flushes it to the disk, so that it survives a power cut. If writing fails, the next line replaces it.
     pub fn append(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
         self.write(entry, true)
     }
 
-    /// Adds a line without flushing it: it survives a kill, but perhaps not a power cut. Fails if the log would become
-    /// too long to be read again.
+    /// Adds a line without flushing it: it survives a kill, but perhaps not a power cut. Fails if the log would become too large to be
+    /// read.
     pub fn append_lightly(&mut self, entry: &impl Serialize) -> Result<(), SaveError> {
         self.write(entry, false)
     }
@@ -68,7 +68,7 @@ impl Log {
         let written = self.file.write_all(line.as_bytes());
         let written = written.and_then(|()| if to_disk { self.file.sync_data() } else { Ok(()) });
         if let Err(error) = written {
-            // The line is reported as not written, so it must not count later.
+            // The line is reported as not written, so it must not remain in the log.
             let _ = self.file.set_len(self.end);
             return Err(unwritable(error));
         }
@@ -77,25 +77,25 @@ impl Log {
     }
 }
 
-/// Reads the bytes of a log; none if there is no such file.
+/// Reads the bytes of a log; empty if the file does not exist.
 ///
 /// # Errors
-/// The file is unreadable or too large.
+/// Fails if the file is unreadable or too large.
 pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
     refuse_link(path).map_err(SaveError::unreadable(path))?;
     if path.exists() { read_bytes(path, LARGEST_FILE_MIB) } else { Ok(Vec::new()) }
 }
 
-/// Parses the complete lines of a log; `path` is its name in errors.
+/// Parses the complete lines of a log; errors name the file `path`.
 ///
 /// # Errors
-/// A complete line is damaged.
+/// Fails if a complete line is damaged.
 pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T>, SaveError> {
     let mut entries = Vec::new();
     for (index, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
         match entry_of(line) {
             Ok(entry) => entries.push(entry),
-            // The program was stopped while it wrote this line.
+            // An incomplete last line: the program was stopped while it wrote the line.
             Err(_) if !line.ends_with(b"\n") => break,
             Err(problem) => {
                 let path = path.to_owned();
@@ -108,7 +108,7 @@ pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T
 
 fn line_of(entry: &impl Serialize) -> serde_json::Result<String> {
     let mut line = serde_json::to_string(entry)?;
-    // Every line is an object: remove its closing brace to add one more field.
+    // Every line is an object. Its closing brace is removed to add one more field.
     line.pop();
     let sum = xxh3_64(line.as_bytes());
     line += &format!("{BEFORE_SUM}{sum:016x}{AFTER_SUM}\n");

@@ -1,10 +1,9 @@
-//! The only place that touches files: runs, champions and presets as text, plots and tables, written so that
-//! a kill at any instant loses nothing that was finished.
+//! All access to files: runs, champions and presets as text, plots and tables. Files are written so that a kill at any instant loses
+//! nothing that was finished.
 //!
-//! The outermost type of a file is one of this module; what it contains are mostly types of the core, written as they
-//! are. From the first release on, every released format stays readable (see `v5`).
-//! Everything that is read is checked before it is used; an error names the file, the field, the value and the allowed
-//! values.
+//! The outermost type of a file belongs to this module; most types within it are types of the core, written directly. From the first
+//! release on, every released format stays readable (see `v5`). Everything that is read is checked before it is used; an error names the
+//! file, the field, the value and the allowed values.
 
 mod champion;
 mod champion_exam;

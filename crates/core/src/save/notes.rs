@@ -1,7 +1,7 @@
-//! Names and notes that the user gives to saves: format 1, in a small file of their own beside a champion, or in the
-//! folder of a run. Nothing else reads them, so they cannot change a replay.
+//! Names and notes that the user gives to saves: format 1, in a separate small file beside a champion, or in the folder of a run. Replays
+//! do not read these files, so notes cannot change a replay.
 //!
-//! A champion is named by its file; only a run, whose folder's name says which run it is, has a name in its notes.
+//! The name of a champion is that of its file. A run, whose folder's name identifies it, has a name in its notes instead.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -17,17 +17,17 @@ const KIND: &str = "snakes-and-stairs notes";
 const FORMAT: u32 = 1;
 /// Maximum length of a run's name, in characters.
 pub const MAX_NAME_CHARS: usize = 100;
-/// Maximum length of notes, in characters: a page of text.
+/// Maximum length of notes, in characters: about a page of text.
 const MAX_NOTES_CHARS: usize = 4000;
-/// Maximum size of the file, in MiB.
+/// Maximum size of a file of notes, in MiB.
 const LARGEST_MIB: u64 = 1;
 
 /// The user's name and notes for a save; both may be empty.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EntryNotes {
-    /// Name of a run; if empty, its folder's name is shown.
+    /// Name of a run. If it is empty, the name of the folder is shown.
     pub name: String,
-    /// Free text, which may have several lines.
+    /// Text of the notes, which may have several lines.
     pub text: String,
 }
 
@@ -41,16 +41,16 @@ struct NotesFile {
     notes: String,
 }
 
-/// The file of notes in a run's folder.
+/// Returns the path of the notes in a run's folder.
 pub fn notes_in_run(folder: &Path) -> PathBuf {
     folder.join("about.ron")
 }
 
 impl EntryNotes {
-    /// Reads a file of notes; empty ones if it does not exist.
+    /// Reads a file of notes. Returns empty notes if the file does not exist.
     ///
     /// # Errors
-    /// The file is unreadable, damaged, a link, or of another kind or format.
+    /// Fails if the file is unreadable, damaged, a link, or of another kind or format.
     pub fn load(path: &Path) -> Result<Self, SaveError> {
         match path.symlink_metadata() {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
@@ -64,10 +64,10 @@ impl EntryNotes {
         Ok(notes)
     }
 
-    /// Writes a file of notes, or removes it if they are empty. Returns what it contained before.
+    /// Writes a file of notes, or removes it if the notes are empty. Returns the notes that it had before.
     ///
     /// # Errors
-    /// Name or notes are not allowed; the present ones are damaged, and would be lost; the file cannot be written.
+    /// Fails if name or notes are not allowed, if the present notes are damaged and would be lost, or if the file cannot be written.
     pub fn store(&self, path: &Path) -> Result<Self, SaveError> {
         self.check().map_err(SaveError::invalid(path))?;
         let before = Self::load(path)?;
@@ -81,12 +81,12 @@ impl EntryNotes {
         Ok(before)
     }
 
-    /// Whether there is neither a name nor a text.
+    /// Returns whether there is neither a name nor a text.
     pub fn is_empty(&self) -> bool {
         self.name.is_empty() && self.text.is_empty()
     }
 
-    /// The name, unless it is empty.
+    /// Returns the name. None if it is empty.
     pub fn own_name(&self) -> Option<&str> {
         Some(self.name.as_str()).filter(|name| !name.is_empty())
     }
@@ -99,10 +99,10 @@ impl EntryNotes {
     }
 }
 
-/// Checks the name of a run. It is no file's name, so it may have any visible characters.
+/// Checks the name of a run. The name is not used for files, so it may have any visible characters.
 ///
 /// # Errors
-/// The name is empty or too long, or has a control character or spaces at its ends.
+/// Fails if the name is empty or too long, has a control character, or has spaces at its ends.
 pub fn check_run_name(name: &str) -> Result<(), Invalid> {
     let characters = name.chars().count();
     if !(1..=MAX_NAME_CHARS).contains(&characters) {
@@ -122,7 +122,7 @@ pub fn check_run_name(name: &str) -> Result<(), Invalid> {
 /// Checks the text of notes.
 ///
 /// # Errors
-/// The text is too long, or has control characters other than line breaks and tabs.
+/// Fails if the text is too long, or has control characters other than line breaks and tabs.
 pub fn check_notes(text: &str) -> Result<(), Invalid> {
     let characters = text.chars().count();
     if characters > MAX_NOTES_CHARS {

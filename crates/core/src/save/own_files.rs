@@ -1,5 +1,5 @@
-//! The user's own files of a kind that the program has built in, too: presets and stairs. Each kind has a folder within the
-//! saves; a file is named after its content.
+//! The user's own presets and stairs, which are also built into the program. Each of these kinds of files has a folder within the saves; a
+//! file is named after its content.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -11,52 +11,52 @@ use super::{Preset, SaveError, SavesFolder};
 use crate::check::{self, Invalid};
 use crate::evolve::Settings;
 
-/// A kind of named file that is built in and that users make, too.
+/// A kind of named file with built-in examples, of which users make their own.
 pub trait OwnKind: Clone {
-    /// Its folder within the saves.
+    /// Name of the folder for own files of this kind, within the saves.
     const FOLDER: &'static str;
-    /// One of them, in messages: "preset".
+    /// Word for a file of this kind in messages, such as "preset".
     const WORD: &'static str;
-    /// The field and the flag that name one: "preset".
+    /// Name of the field and flag that select a file of this kind, such as "preset".
     const FIELD: &'static str;
 
-    /// The built-in files: each with its name and text.
+    /// Names and texts of the built-in files.
     const EMBEDDED: &'static [(&'static str, &'static str)];
 
-    /// The built-in ones.
+    /// Parses the built-in files.
     ///
     /// # Errors
-    /// An embedded file is broken; a test prevents this.
+    /// Fails if an embedded file is damaged, which a test prevents.
     fn built_in() -> Result<Vec<Self>, SaveError> {
         Self::EMBEDDED.iter().map(|(file, text)| Self::parse(Path::new(file), text)).collect()
     }
 
-    /// The names of the built-in ones.
+    /// Returns the names of the built-in files.
     fn built_in_names() -> Vec<&'static str> {
         embedded_names(Self::EMBEDDED)
     }
 
-    /// The name of the file.
+    /// Returns the name of the file.
     fn name(&self) -> &str;
-    /// This file under another name.
+    /// Returns this file under another name.
     #[must_use]
     fn renamed(self, name: &str) -> Self;
-    /// Reads one; `path` is the file's name in errors.
+    /// Parses a file; errors name the file `path`.
     ///
     /// # Errors
-    /// The text is damaged, or a value in it is not allowed.
+    /// Fails if the text is damaged, or if a value in it is not allowed.
     fn parse(path: &Path, text: &str) -> Result<Self, SaveError>;
-    /// Its file; `path` is the file's name in errors.
+    /// Returns the text of the file; errors name the file `path`.
     ///
     /// # Errors
-    /// It cannot be written as text.
+    /// Fails if the content cannot be written as text.
     fn text(&self, path: &Path) -> Result<String, SaveError>;
 }
 
-/// Loads one by the name of a built-in one, or by the path of a file.
+/// Loads a file by the name of a built-in file, or by a path.
 ///
 /// # Errors
-/// There is no such name and no such file, or a value in the file is not allowed.
+/// Fails if no built-in file has the name and no file the path, or if a value in the file is not allowed.
 pub(super) fn load_named<T: OwnKind>(name_or_path: &str) -> Result<T, SaveError> {
     let built_in = T::built_in()?.into_iter().find(|of| of.name() == name_or_path);
     let path = Path::new(name_or_path);
@@ -74,25 +74,25 @@ pub(super) fn load_named<T: OwnKind>(name_or_path: &str) -> Result<T, SaveError>
 /// A file in the folder of the user's own files of a kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnFile<T> {
-    /// The file's name without its ending.
+    /// Name of the file without its ending.
     pub name: String,
-    /// Its content under that name, or the error in one line.
+    /// Content under the name of the file, or the error in one line.
     pub content: Result<T, String>,
 }
 
 /// Maximum number of own files of a kind that are listed.
 const MAX_OWN_FILES: usize = 200;
-/// Maximum size of an own file, in MiB; a built-in one has about 3 KiB.
+/// Maximum size of an own file, in MiB; a built-in file has about 3 KiB.
 const LARGEST_MIB: u64 = 1;
 
 impl SavesFolder {
-    /// Its folder for the user's own files of a kind.
+    /// Returns the folder for the user's own files of a kind.
     #[must_use]
     pub fn own_folder<T: OwnKind>(&self) -> PathBuf {
         self.path().join(T::FOLDER)
     }
 
-    /// The names of all of the user's own files of a kind, sorted; none if their folder does not exist.
+    /// Returns the names of all of the user's own files of a kind, sorted; empty if their folder does not exist.
     fn own_names<T: OwnKind>(&self) -> Vec<String> {
         let Ok(entries) = fs::read_dir(self.own_folder::<T>()) else { return Vec::new() };
         let mut names: Vec<String> = entries
@@ -105,7 +105,7 @@ impl SavesFolder {
         names
     }
 
-    /// The first of the user's own files of a kind by name, damaged ones included.
+    /// Reads the first `MAX_OWN_FILES` of the user's own files of a kind by name, damaged ones included.
     pub fn own_files<T: OwnKind>(&self) -> Vec<OwnFile<T>> {
         let names = self.own_names::<T>().into_iter().take(MAX_OWN_FILES);
         let read = |name: String| {
@@ -115,16 +115,16 @@ impl SavesFolder {
         names.map(read).collect()
     }
 
-    /// Adds a file to the user's own; never overwrites one.
+    /// Adds a file to the user's own files. Never overwrites a file.
     ///
     /// # Errors
-    /// The name is not allowed or taken, or the file cannot be written.
+    /// Fails if the name is not allowed or is taken, or if the file cannot be written.
     pub fn store_own<T: OwnKind>(&self, own: &T) -> Result<PathBuf, SaveError> {
         let path = self.own_path::<T>(own.name());
         let invalid = |source| SaveError::Invalid { path: self.own_folder::<T>(), source };
         check_own_name::<T>(own.name()).map_err(invalid)?;
         prepare_folder(&self.own_folder::<T>())?;
-        // Writing itself checks that the name is free: another program may take it at any time.
+        // Only the writing itself checks that the name is free, because another program may take the name at any time.
         write_new(&path, own.text(&path)?.as_bytes()).map_err(|error| match error {
             SaveError::Unwritable { path, source } if source.kind() == ErrorKind::AlreadyExists => {
                 let reason = format!("a file of {} with this name already exists", T::FOLDER);
@@ -143,7 +143,7 @@ impl SavesFolder {
 /// Checks the name of an own file.
 ///
 /// # Errors
-/// The name has a character that is not allowed, no file on Windows can have it, or a built-in one has it.
+/// Fails if the name has a character that is not allowed, if no file on Windows can have it, or if a built-in file has it.
 pub fn check_own_name<T: OwnKind>(name: &str) -> Result<(), Invalid> {
     check::name("name", name)?;
     check::no_device("name", name)?;
@@ -158,23 +158,23 @@ fn read_own<T: OwnKind>(path: &Path, name: &str) -> Result<T, SaveError> {
     check_own_name::<T>(name).map_err(SaveError::invalid(path))?;
     refuse_link(path).map_err(SaveError::unreadable(path))?;
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
-    // The file's name counts: in a copied file the content still has the old name.
+    // The file is known by its own name, because a copied file still has the old name in its content.
     Ok(T::parse(path, &text)?.renamed(name))
 }
 
-/// All files of a kind that can be chosen: the built-in ones and the user's own.
+/// All files of a kind that can be chosen: the built-in files and the user's own.
 #[derive(Debug)]
 pub struct KnownFiles<T> {
     built_in: Vec<T>,
     own: Vec<OwnFile<T>>,
-    /// The names of all own ones, also of those that are too many to be listed.
+    /// Names of all own files, including those beyond the listed number.
     own_names: Vec<String>,
 }
 
 impl<T: OwnKind> KnownFiles<T> {
-    /// Reads all of them; damaged own ones are included with their errors.
+    /// Reads all files of a kind; damaged own files are included with their errors.
     pub fn read(saves: &SavesFolder) -> Self {
-        // The built-in ones are well-formed; tests check this.
+        // The built-in files are well-formed; tests check this.
         Self {
             built_in: T::built_in().unwrap_or_default(),
             own: saves.own_files(),
@@ -182,20 +182,20 @@ impl<T: OwnKind> KnownFiles<T> {
         }
     }
 
-    /// The built-in ones, in their order.
+    /// Returns the built-in files, in their order.
     pub fn built_in(&self) -> &[T] {
         &self.built_in
     }
 
-    /// The user's own, by name.
+    /// Returns the listed own files, in the order of their names.
     pub fn own(&self) -> &[OwnFile<T>] {
         &self.own
     }
 
-    /// The file with this name, if there is one.
+    /// Returns the file with a name. None if no listed file has it.
     ///
     /// # Errors
-    /// It is damaged: the error in one line.
+    /// Describes the damage in one line, if the file is damaged.
     pub fn find(&self, name: &str) -> Result<Option<&T>, String> {
         if let Some(built_in) = self.built_in.iter().find(|of| of.name() == name) {
             return Ok(Some(built_in));
@@ -204,12 +204,12 @@ impl<T: OwnKind> KnownFiles<T> {
         own.map(|own| own.content.as_ref().map_err(Clone::clone)).transpose()
     }
 
-    /// Whether one, damaged or not, has this name.
+    /// Returns whether a file, damaged or not, has the name.
     pub fn has(&self, name: &str) -> bool {
         !matches!(self.find(name), Ok(None)) || self.own_names.iter().any(|own| own == name)
     }
 
-    /// The problem with a name for a new one, in a sentence; `None` if it is allowed and free.
+    /// Describes the problem with a name for a new file in a sentence. None if the name is allowed and free.
     pub fn problem_with(&self, name: &str) -> Option<String> {
         if self.has(name) {
             return Some(format!(
@@ -224,7 +224,7 @@ impl<T: OwnKind> KnownFiles<T> {
         })
     }
 
-    /// A free name for a copy: "my-ice", then "my-ice-2" and so on.
+    /// Returns a free name for a copy: "my-ice", then "my-ice-2" and so on.
     pub fn name_for_copy(&self, copied: &str) -> String {
         let is_plain = |c: &char| c.is_ascii_lowercase() || c.is_ascii_digit() || *c == '-';
         let plain: String = copied.chars().filter(is_plain).collect();
@@ -232,7 +232,7 @@ impl<T: OwnKind> KnownFiles<T> {
         self.numbered_if_taken(&format!("my-{own}"))
     }
 
-    /// A free name that is like a name that may not be allowed: "my-ice-1-2" for "My ice: 1/2".
+    /// Returns an allowed and free name that is similar to `wanted`: "my-ice-1-2" for "My ice: 1/2".
     pub fn allowed_name(&self, wanted: &str) -> String {
         let wanted = wanted.to_ascii_lowercase();
         let words =
@@ -241,7 +241,7 @@ impl<T: OwnKind> KnownFiles<T> {
         self.numbered_if_taken(&if plain.is_empty() { format!("my-{}", T::WORD) } else { plain })
     }
 
-    /// The name if it is free, else the name with the first free number.
+    /// Returns the name if it is free, otherwise the name with the first free number.
     fn numbered_if_taken(&self, name: &str) -> String {
         let start: String = name.chars().take(36).collect();
         let numbered = (2..1000).map(|number| format!("{start}-{number}"));
@@ -251,7 +251,7 @@ impl<T: OwnKind> KnownFiles<T> {
 }
 
 impl KnownFiles<Preset> {
-    /// The settings of the preset with this name, if there is one and it is not damaged.
+    /// Returns the settings of the preset with a name. None if it does not exist or is damaged.
     pub fn settings_of(&self, name: &str) -> Option<&Settings> {
         self.find(name).ok().flatten().map(|preset| &preset.settings)
     }

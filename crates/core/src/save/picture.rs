@@ -1,4 +1,4 @@
-//! Writes pictures as PNG, tables as CSV, and plain text.
+//! Writing of pictures as PNG, of tables as CSV, and of plain text.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::SaveError;
 use super::files::read_bytes;
 use super::whole_file::write_whole;
 
-/// Maximum size of a picture that is read, in MiB: more than the largest window's.
+/// Maximum size of a picture that is read, in MiB: more than that of the largest window.
 const LARGEST_PICTURE_MIB: u64 = 256;
 
 /// A picture of red, green and blue bytes, row by row from the top left pixel.
@@ -17,12 +17,12 @@ pub struct Picture {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Three bytes for each pixel.
+    /// Three bytes for each pixel: red, green, blue.
     pub rgb: Vec<u8>,
 }
 
 impl Picture {
-    /// A black picture.
+    /// Makes a black picture.
     pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, rgb: vec![0; width as usize * height as usize * 3] }
     }
@@ -31,12 +31,12 @@ impl Picture {
 /// Writes a picture as PNG, atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     write_whole(path, &encoded(picture).map_err(SaveError::unwritable(path))?)
 }
 
-/// A picture as the bytes of a PNG file.
+/// Encodes a picture as a PNG file.
 pub(super) fn encoded(picture: &Picture) -> std::io::Result<Vec<u8>> {
     let encode = || -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
@@ -51,7 +51,7 @@ pub(super) fn encoded(picture: &Picture) -> std::io::Result<Vec<u8>> {
 /// Reads a picture that [`store_picture`] wrote.
 ///
 /// # Errors
-/// The file cannot be read, or is no such picture.
+/// Fails if the file cannot be read, or is not a picture of this form.
 pub fn load_picture(path: &Path) -> Result<Picture, SaveError> {
     let bytes = read_bytes(path, LARGEST_PICTURE_MIB)?;
     let decode = || -> Result<Picture, png::DecodingError> {
@@ -69,7 +69,7 @@ pub fn load_picture(path: &Path) -> Result<Picture, SaveError> {
 /// Writes a text atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
     write_whole(path, text.as_bytes())
 }
@@ -77,7 +77,7 @@ pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
 /// Writes records as CSV (RFC 4180), atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> {
     let encode = || -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());

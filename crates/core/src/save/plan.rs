@@ -17,7 +17,7 @@ const KIND: &str = "snakes-and-stairs run";
 const FORMAT: u32 = 4;
 pub const RUN_FILE: &str = "run.ron";
 
-/// The whole file.
+/// Contents of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RunV4 {
@@ -42,7 +42,7 @@ struct FounderV4 {
 /// Reads the plan of the run in a folder.
 ///
 /// # Errors
-/// The folder contains no run, another engine recorded it, or its file is damaged.
+/// Fails if the folder has no run, if another engine recorded the run, or if the file is damaged.
 pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
     let path = folder.join(RUN_FILE);
     if !path.is_symlink() && !path.exists() {
@@ -53,10 +53,10 @@ pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
     parse_plan(&path, &read_text(&path)?)
 }
 
-/// Parses the plan of a run; `path` is the file's name in errors.
+/// Parses the plan of a run; errors name the file `path`.
 ///
 /// # Errors
-/// As for [`load_plan`], except for reading the file.
+/// Fails as [`load_plan`] does, except for reading the file.
 pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let file: RunV4 = parse(path, text)?;

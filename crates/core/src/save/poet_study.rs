@@ -19,7 +19,7 @@ const LARGEST_MIB: u64 = 16;
 /// Maximum number of rounds of a run.
 const MOST_ROUNDS: usize = 100_000;
 
-/// A run of POET, and the control runs on its hardest stairs.
+/// A run of POET, with control runs on its hardest stairs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoetStudy {
@@ -30,60 +30,60 @@ pub struct PoetStudy {
     processors: Processors,
     /// Fingerprint of the plan of the run of POET.
     pub plan: String,
-    /// Its seed.
+    /// Seed of the run of POET.
     pub seed: u64,
-    /// Rounds after which it was measured.
+    /// Number of rounds after which the run was measured.
     pub rounds: u32,
-    /// Evaluations up to there.
+    /// Number of evaluations up to the measurement.
     pub evaluations: u64,
-    /// Wall-clock time of these, in seconds.
+    /// Wall-clock time of the evaluations, in seconds.
     pub elapsed_s: f64,
-    /// Number of stairs.
+    /// Number of stairs in the run.
     pub stairs: u32,
     /// Number of solved stairs.
     pub solved: u32,
-    /// After each round, the number of new challenges that were solved (ANNECS).
+    /// Number of new challenges solved so far (ANNECS), after each round.
     pub challenges: Vec<u32>,
-    /// Hash over its generations.
+    /// Hash over the generations of the run.
     pub run_hash: String,
-    /// The hardest of its solved stairs, the hardest first.
+    /// The hardest solved stairs of the run, the hardest first.
     pub hardest: Vec<HardStairs>,
-    /// The control runs, in the order in which they were finished.
+    /// Control runs, in the order in which they finished.
     pub controls: Vec<ControlRun>,
 }
 
-/// Stairs that POET has solved.
+/// A staircase that POET has solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HardStairs {
-    /// Their index in the run.
+    /// Index of the staircase in the run.
     pub node: u32,
-    /// The stairs.
+    /// Genes of the staircase.
     pub stairs: StairsGenome,
-    /// Mean share of the way that the agents of all stairs of the run cover on them.
+    /// Mean share of the way that the agents of all stairs of the run cover on this staircase.
     pub mean_share: f32,
-    /// Perturbed trials in which their own agent covered the share that counts as a success.
+    /// Number of perturbed trials in which the staircase's own agent covered the share that counts as a success.
     pub successes: u32,
-    /// Trials that POET spent on them and on all their ancestors.
+    /// Number of trials that POET spent on the staircase and on all its ancestors.
     pub trials: u64,
 }
 
-/// A direct search on hard stairs.
+/// A direct search for a snake that climbs a hard staircase.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ControlRun {
-    /// The index of the stairs in the run of POET.
+    /// Index of the staircase in the run of POET.
     pub node: u32,
-    /// Its seed.
+    /// Seed of the search.
     pub seed: u64,
-    /// Evaluations that it spent.
+    /// Number of evaluations of the search.
     pub evaluations: u64,
-    /// Its best share; none if all were disqualified.
+    /// Best share of the way. None if all individuals were disqualified.
     pub share: Option<f32>,
 }
 
 impl PoetStudy {
-    /// The study of a run of which nothing is known yet.
+    /// Makes an empty study of the run with a plan's fingerprint and a seed.
     pub fn new(plan: String, seed: u64) -> Self {
         Self {
             kind: KIND.to_owned(),
@@ -122,7 +122,7 @@ impl PoetStudy {
 /// Reads a study.
 ///
 /// # Errors
-/// The file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
+/// Fails if the file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
 pub fn load_poet_study(path: &Path) -> Result<PoetStudy, SaveError> {
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
     Header::check(path, &text, KIND, FORMAT)?;
@@ -134,7 +134,7 @@ pub fn load_poet_study(path: &Path) -> Result<PoetStudy, SaveError> {
 /// Writes a study atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_poet_study(path: &Path, study: &PoetStudy) -> Result<(), SaveError> {
     store_ron(path, study)
 }

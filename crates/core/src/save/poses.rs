@@ -1,9 +1,9 @@
 //! Recorded poses as compact text: base64 of small numbers.
 //!
-//! Each pose is a position, then a rotation. A coordinate is in whole millimetres, as the difference from the same limb
-//! in the previous frame, in zigzag and LEB128 encoding (the variable-length integers of DWARF and Protocol Buffers).
-//! A rotation is the three smaller components of its unit quaternion with ten bits each, and two bits for the index of
-//! the largest ("smallest three"): 32 bits, little-endian, accurate to 0.27°.
+//! Each pose is a position, then a rotation. A coordinate of the position is in whole millimetres, as the difference from the same limb in
+//! the previous frame, in zigzag and LEB128 encoding (the variable-length integers of DWARF and Protocol Buffers). A rotation has the three
+//! smaller components of its unit quaternion with ten bits each, and two bits for the index of the largest component ("smallest three"): 32
+//! bits, little-endian, accurate to 0.27°.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD as BASE64;
@@ -13,7 +13,7 @@ use crate::check::{Invalid, within};
 use crate::score::Recording;
 use crate::world::{Pose, Rotation, Vector};
 
-/// A recording as files contain it.
+/// A recording, as files have it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PosesV5 {
@@ -24,11 +24,11 @@ pub struct PosesV5 {
 }
 
 const MM_PER_M: f32 = 1000.0;
-/// Farther than any limb can get: ten minutes at the highest speed that a trial allows are 600 km.
+/// Greatest coordinate, in mm, beyond the reach of any limb: ten minutes at the highest speed that a trial allows are 600 km.
 const LARGEST_MM: i64 = 10_000_000_000;
-/// Minimum size of a pose: one byte per coordinate, four bytes for the rotation.
+/// Minimum size of a pose, in bytes: one byte per coordinate, four bytes for the rotation.
 const MIN_POSE_BYTES: usize = 7;
-/// Steps on either side of zero that fit into ten bits.
+/// Greatest number of quantisation steps on either side of zero that fits into ten bits.
 const TURN_STEPS: f32 = 511.0;
 const TURN_MASK: u32 = 0x3ff;
 
@@ -60,7 +60,7 @@ impl PosesV5 {
     /// Decodes the recording of a snake with `limbs` limbs.
     ///
     /// # Errors
-    /// The counts do not match, the data are too short or too long, or a limb is impossibly far away.
+    /// Fails if the counts do not match, if the data are too short or too long, or if a limb is impossibly far away.
     pub fn recording(&self, limbs: u32) -> Result<Recording, Invalid> {
         within("every_steps", self.every_steps, 1..=1_000_000)?;
         within("limbs", self.limbs, limbs..=limbs)?;
@@ -99,7 +99,7 @@ impl PosesV5 {
 }
 
 fn write_number(number: i64, bytes: &mut Vec<u8>) {
-    // Zigzag encoding: small numbers of either sign stay small.
+    // In zigzag encoding, small numbers of either sign have small codes.
     let mut rest = (number.wrapping_shl(1) ^ (number >> 63)).cast_unsigned();
     loop {
         let [low, ..] = (rest & 0x7f).to_le_bytes();
@@ -111,7 +111,7 @@ fn write_number(number: i64, bytes: &mut Vec<u8>) {
     }
 }
 
-/// None if the bytes end within the number, or the number is longer than 63 bits.
+/// Reads a number and removes its bytes. None if the bytes end within the number, or if the number has more than 63 bits.
 fn read_number(bytes: &mut &[u8]) -> Option<i64> {
     let mut number = 0_u64;
     for shift in (0..63).step_by(7) {
@@ -131,18 +131,18 @@ fn packed(turn: Rotation) -> u32 {
     let largest = (1..4).fold(0, |largest, index| {
         if components[index].abs() > components[largest].abs() { index } else { largest }
     });
-    // A quaternion and its negative are the same rotation: choose the one whose largest component is positive.
+    // A quaternion and its negative are the same rotation. The one with a positive largest component is stored.
     let sign = if components[largest] < 0.0 { -1.0 } else { 1.0 };
     let others = (0..4).filter(|&index| index != largest).map(|index| components[index] * sign);
     others.fold(largest as u32, |bits, component| {
-        // None of the three is larger than 1/√2.
+        // None of the three smaller components is larger than 1/√2.
         let share = (component * std::f32::consts::SQRT_2).clamp(-1.0, 1.0);
         let steps = (share * TURN_STEPS).round() as i32 + TURN_STEPS as i32;
         bits << 10 | steps.cast_unsigned()
     })
 }
 
-/// None if the three components are too large for a unit quaternion.
+/// Decodes a rotation. None if the three components are too large for a unit quaternion.
 fn unpacked(bits: u32) -> Option<Rotation> {
     let largest = (bits >> 30) as usize;
     let mut components = [0.0; 4];
@@ -154,7 +154,7 @@ fn unpacked(bits: u32) -> Option<Rotation> {
         sum += components[place] * components[place];
     }
     components[largest] = (1.0 - sum).max(0.0).sqrt();
-    // Rounding may carry three equal ones a little beyond 1.
+    // With rounding, the squares of three equal components may add up to a little more than 1.
     (sum < 1.01).then(|| Rotation::from_array(components).normalize())
 }
 
@@ -182,8 +182,8 @@ mod tests {
         for (a, b) in recording.frames().flatten().zip(read.frames().flatten()) {
             assert!((a.translation - b.translation).abs().max_element() < 0.000_51);
             let angle = a.rotation.angle_between(b.rotation).to_degrees();
-            // Each of three components is off by up to half a step, s = √2 / 1023 / 2. With all four equal, the fourth
-            // is off by 3 s, and the angle by 2 √12 s.
+            // Each of the three stored components is off by up to half a step, s = √2 / 1023 / 2. With all four components equal, the
+            // fourth is off by 3 s, and the angle by 2 √12 s.
             assert!(angle < 0.275, "{angle}°");
         }
     }

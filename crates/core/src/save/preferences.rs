@@ -1,4 +1,4 @@
-//! The user's preferences for the window: format 1. Nothing in them can change the bits of a run.
+//! The user's preferences for the window: format 1. They cannot change the bits of a run.
 //!
 //! An unreadable file is renamed and reported, and the window opens with the defaults.
 
@@ -15,9 +15,9 @@ use crate::check::{Invalid, quoted, within};
 
 const KIND: &str = "snakes-and-stairs preferences";
 const FORMAT: u32 = 1;
-/// The scales of the panels that the user can choose.
+/// Scales of the panels that the user can choose.
 pub const UI_SCALES: [f32; 8] = [0.75, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0];
-/// Maximum number of files that were opened lately.
+/// Maximum number of recently opened files that are stored.
 pub const MAX_RECENT: usize = 10;
 /// Maximum length of a file's path, in bytes.
 const LONGEST_PATH: usize = 4096;
@@ -30,29 +30,29 @@ const LONGEST_LAYOUT: usize = 100_000;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// `light` or `dark`.
+    /// Name of the colour theme: see `THEMES`.
     pub theme: String,
     /// Scale of the panels: see [`UI_SCALES`].
     pub ui_scale: f32,
-    /// Size of the window, in logical pixels; none for the default.
+    /// Size of the window, in logical pixels. None: the default.
     pub window_size: Option<(u32, u32)>,
-    /// Layout of the panels, in the studio's own text form; empty for the default.
+    /// Layout of the panels, in the studio's own text form. Empty: the default.
     pub layout: String,
     /// Names of the overlays that are drawn over the scene.
     pub overlays: Vec<String>,
     /// Playback speed, in simulated seconds per second.
     pub speed: f32,
-    /// Whether playback repeats.
+    /// Whether playback repeats at the end.
     pub loops: bool,
-    /// Whether edges are smoothed; none to decide by the machine.
+    /// Whether edges are smoothed. None: the studio decides by the machine.
     pub smooth_edges: Option<bool>,
     /// Whether the tour was finished or skipped.
     pub tour_is_over: bool,
-    /// Paths of the files that were opened or imported lately, the latest first.
+    /// Paths of the recently opened or imported files, the latest first.
     pub recent: Vec<String>,
-    /// Titles of the sections whose advanced settings are unfolded.
+    /// Titles of the sections whose advanced settings are shown.
     pub unfolded: Vec<String>,
-    /// Address of the server that was used last, without a password; empty if there was none.
+    /// Address of the last used server, without a password; empty if none was used.
     pub server: String,
 }
 
@@ -75,14 +75,14 @@ impl Default for Preferences {
     }
 }
 
-/// The names of the colour themes.
+/// Names of the colour themes.
 pub const THEMES: [&str; 2] = ["light", "dark"];
 
 impl Preferences {
     /// Checks every field against its range.
     ///
     /// # Errors
-    /// A field is out of its range.
+    /// Names the first field that is out of its range.
     pub fn check(&self) -> Result<(), Invalid> {
         if !THEMES.contains(&self.theme.as_str()) {
             return Err(Invalid::new("theme", quoted(&self.theme), "light, dark"));
@@ -104,7 +104,7 @@ impl Preferences {
     }
 }
 
-/// The file of the preferences, or none.
+/// Path of the file of preferences. None: preferences are neither read nor written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PreferencesFile(Option<PathBuf>);
 
@@ -116,26 +116,26 @@ struct PreferencesContents {
 }
 
 impl PreferencesFile {
-    /// The file in the platform's folder for settings; none if the platform has no such folder.
+    /// Returns the file in the platform's folder for settings. It has no path if the platform has no such folder.
     pub fn find() -> Self {
         let folders = ProjectDirs::from("", "", "snakes-and-stairs");
         Self(folders.map(|folders| folders.config_dir().join("studio.ron")))
     }
 
-    /// The file at this path.
+    /// Returns the file at a path.
     pub fn at(path: &Path) -> Self {
         Self(Some(path.to_owned()))
     }
 
-    /// No file: every window opens with the defaults.
+    /// Returns a file without a path: every window opens with the defaults.
     pub fn nowhere() -> Self {
         Self(None)
     }
 
-    /// Reads the preferences; none if the file does not exist yet.
+    /// Reads the preferences. None if the file does not exist.
     ///
     /// # Errors
-    /// The file exists but cannot be read, or a value in it is not allowed.
+    /// Fails if the file exists but cannot be read, or if a value in it is not allowed.
     pub fn load(&self) -> Result<Option<Preferences>, SaveError> {
         let Some(path) = self.0.as_deref().filter(|path| path.symlink_metadata().is_ok()) else {
             return Ok(None);
@@ -147,7 +147,7 @@ impl PreferencesFile {
         Ok(Some(preferences))
     }
 
-    /// Renames an unreadable file, so that it is not overwritten; returns its new path.
+    /// Renames an unreadable file, so that it is not overwritten. Returns its new path.
     pub fn put_aside(&self) -> Option<PathBuf> {
         let path = self.0.as_deref()?;
         let aside = path.with_extension("ron.unreadable");
@@ -157,7 +157,7 @@ impl PreferencesFile {
     /// Writes the preferences atomically.
     ///
     /// # Errors
-    /// The file or its folder cannot be written.
+    /// Fails if the file or its folder cannot be written.
     pub fn store(&self, preferences: &Preferences) -> Result<(), SaveError> {
         let Some(path) = &self.0 else { return Ok(()) };
         if let Some(folder) = path.parent() {

@@ -1,4 +1,4 @@
-//! Presets: named and described settings, as RON. The shipped ones are embedded in the program.
+//! Presets: named and described settings, as RON. The shipped presets are embedded in the program.
 
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -9,18 +9,18 @@ use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
 use crate::evolve::Settings;
 
-/// Named and described settings.
+/// Settings with a name and a description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preset {
-    /// A short name for the command line and for file names.
+    /// Short name for the command line and for file names.
     pub name: String,
-    /// A paragraph that describes it.
+    /// Paragraph that describes the preset.
     pub about: String,
-    /// All settings.
+    /// All settings of the preset.
     pub settings: Settings,
 }
 
-/// The whole file. Once released, it never changes: see `super::v5`.
+/// Contents of the file. Once released, this struct never changes: see `super::v5`.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PresetFile {
@@ -30,10 +30,10 @@ struct PresetFile {
     settings: Settings,
 }
 
-/// Format 2 differs in the numbers of the world: see [`super::engine_2`].
+/// Number of the format. Format 2 differs in the numbers of the world: see [`super::engine_2`].
 const FORMAT: u32 = 3;
 
-/// The preset that is used when none is named.
+/// Name of the preset that is used when none is named.
 pub const DEFAULT_PRESET: &str = "climb";
 
 const SHIPPED: &[(&str, &str)] = embedded!["presets";
@@ -65,23 +65,23 @@ const SHIPPED: &[(&str, &str)] = embedded!["presets";
     "generalist",
 ];
 
-/// The shipped presets, the default first.
+/// Parses the shipped presets, the default first.
 ///
 /// # Errors
-/// An embedded preset is broken; a test prevents this.
+/// Fails if an embedded preset is damaged, which a test prevents.
 pub fn shipped_presets() -> Result<Vec<Preset>, SaveError> {
     Preset::built_in()
 }
 
-/// The names of the shipped presets, the default first.
+/// Returns the names of the shipped presets, the default first.
 pub fn shipped_preset_names() -> Vec<&'static str> {
     Preset::built_in_names()
 }
 
-/// Loads a preset by the name of a shipped one, or by the path of a file.
+/// Loads a preset by the name of a shipped preset, or by the path of a file.
 ///
 /// # Errors
-/// There is no such preset or file, or a value in it is not allowed.
+/// Fails if no preset and no file have the name, or if a value in the file is not allowed.
 pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
     load_named(name_or_path)
 }
@@ -89,7 +89,7 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
 /// Writes a preset as readable text, atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_preset(path: &Path, preset: &Preset) -> Result<(), SaveError> {
     store_ron(path, &file_of(preset))
 }
@@ -122,16 +122,16 @@ fn file_of(preset: &Preset) -> PresetFile {
     PresetFile { format: FORMAT, name, about, settings }
 }
 
-/// Parses a preset; `path` is the file's name in errors.
+/// Parses a preset; errors name the file `path`.
 ///
 /// # Errors
-/// The text is damaged, or a value in it is not allowed.
+/// Fails if the text is damaged, or if a value in it is not allowed.
 pub fn parse_preset(path: &Path, text: &str) -> Result<Preset, SaveError> {
     #[derive(Deserialize)]
     struct PresetHeader {
         #[serde(default)]
         format: u32,
-        /// Champions and runs have one, presets have none.
+        /// Kind of the file. Champions and runs state a kind, presets do not.
         kind: Option<String>,
     }
     let invalid = SaveError::invalid(path);
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn the_report_preset_keeps_what_the_report_states() {
         let report = load_preset("report").expect("it is shipped").settings;
-        // It states 500 to 1,000 snakes per generation.
+        // The report states 500 to 1,000 snakes per generation.
         let stated = EvolutionSettings { population: 1000, ..Default::default() };
         assert_eq!(report.evolution, stated);
         assert_eq!(report.trial.stairs, Default::default());
@@ -195,14 +195,14 @@ mod tests {
         let report = &load_preset("report").expect("shipped").settings;
         let mut rng = stream(1, 1, 0, Purpose::Birth);
         let genome = report.genome.random_genome(report.trial.genome_shape(), &mut rng);
-        // Some differ only in controller, search and reward: `quick` has the world of `report`.
+        // Some presets differ only in controller, search and reward: `quick` has the world of `report`.
         let mut worlds: Vec<Trial> = Vec::new();
         for preset in presets {
             let (repeats, fitness) = (Repeats::default(), Fitness::default());
-            // The genome does not come far enough to tell stairs apart.
+            // Stairs are left out, because the genome does not come far enough to tell them apart.
             let stairs = Stairs::default();
             let mut trial = Trial { repeats, fitness, stairs, ..preset.settings.trial };
-            // It stays in the air of presets that differ in the engine alone, and does not feel which one it is.
+            // The engine is left out as well: in presets that differ only in the engine, the genome stays in the air and moves alike.
             trial.physics.engine = PhysicsEngine::Rapier;
             if !worlds.contains(&trial) {
                 worlds.push(trial);

@@ -1,4 +1,4 @@
-//! Lines of a run's logs: finished generations, and the evaluations of the current one.
+//! Lines of a run's logs: finished generations, and the evaluations of the current generation.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::world::Disqualification;
 pub const LOG_FILE: &str = "log.jsonl";
 pub const EVALUATIONS_FILE: &str = "evaluations.jsonl";
 
-/// An evaluation of the current generation.
+/// An evaluation of the current generation, as a line of the log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EvaluationRecord {
@@ -29,33 +29,32 @@ pub struct EvaluationRecord {
     pub recorded: Evaluation,
 }
 
-/// Counts the finished generations of a run's folder: the complete lines of its log, without parsing them.
+/// Counts the finished generations in a run's folder: the complete lines of its log, without parsing them.
 pub fn count_records(folder: &Path) -> Result<u32, SaveError> {
     let bytes = read_log_bytes(&folder.join(LOG_FILE))?;
     Ok(bytes.iter().filter(|byte| **byte == b'\n').count() as u32)
 }
 
-/// The finished generations of a run's folder.
+/// Reads the finished generations from a run's folder.
 pub fn read_records(folder: &Path, plan: &RunPlan) -> Result<Vec<GenerationRecord>, SaveError> {
     let path = folder.join(LOG_FILE);
     parse_records(&path, &read_log_bytes(&path)?, plan)
 }
 
-/// Reads the plan of the run in a folder after all its changes, and the log of its finished generations, without the
-/// champions.
+/// Reads the plan of the run in a folder after all its changes, and the log of its finished generations. Does not read the champions.
 ///
 /// # Errors
-/// The folder contains no run, another engine recorded it, or a file is damaged.
+/// Fails if the folder has no run, if another engine recorded the run, or if a file is damaged.
 pub fn load_log(folder: &Path) -> Result<(RunPlan, Vec<GenerationRecord>), SaveError> {
     let plan = load_changed_plan(folder)?;
     let records = read_records(folder, &plan)?;
     Ok((plan, records))
 }
 
-/// Parses finished generations; `path` is the log's name in errors, and `plan` is the plan after all changes.
+/// Parses finished generations. Errors name the log `path`; `plan` is the plan of the run after all its changes.
 ///
 /// # Errors
-/// A complete line is damaged, out of order, or beyond the end of the run.
+/// Fails if a complete line is damaged, is out of order, or is beyond the end of the run.
 pub fn parse_records(
     path: &Path,
     bytes: &[u8],
@@ -68,8 +67,8 @@ pub fn parse_records(
     Ok(records)
 }
 
-/// Reads the evaluations of the current generation in the order in which they were written. Damaged ones are ignored:
-/// they will be computed again.
+/// Reads the evaluations of the current generation in the order in which they were written. Returns none if the log is damaged: the
+/// evaluations are then computed again.
 pub fn read_evaluations(
     folder: &Path,
     generation: u32,
@@ -81,11 +80,10 @@ pub fn read_evaluations(
     Ok(parse_evaluations(&path, &bytes, generation, plan).unwrap_or_default())
 }
 
-/// Parses the evaluations of a generation; `path` is the log's name in errors. None are returned if the log belongs to
-/// another generation or run.
+/// Parses the evaluations of a generation; errors name the log `path`. Returns none if the log belongs to another generation or run.
 ///
 /// # Errors
-/// A complete line is damaged, or has a value that is not allowed.
+/// Fails if a complete line is damaged, or has a value that is not allowed.
 pub fn parse_evaluations(
     path: &Path,
     bytes: &[u8],
@@ -117,7 +115,7 @@ mod tests {
         GenerationRecord::of_test(1, 5)
     }
 
-    /// A log of this generation, read again.
+    /// Writes a log of one generation, and reads it.
     fn read_again(record: &GenerationRecord) -> Result<Vec<GenerationRecord>, SaveError> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join(LOG_FILE);

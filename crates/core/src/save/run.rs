@@ -13,8 +13,8 @@
 //! | `lock` | nothing; locked by the program that writes into the folder | while it does |
 //! | `lock-owner` | that program's process number and name | when it takes the lock |
 //!
-//! So a kill at any instant leaves a log whose last complete line has its checkpoint. Lost evaluations are computed
-//! again, with the same bits.
+//! A kill at any instant therefore leaves a log whose last complete line has its checkpoint. Lost evaluations are computed again, with the
+//! same bits.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -45,17 +45,17 @@ const MAX_CRASHED: usize = 30;
 /// The saved progress of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SavedProgress {
-    /// Its changes, the earliest first. If finished generations were lost, some changes may be in the future.
+    /// Changes of the run, the earliest first. If finished generations were lost, some changes may apply to future generations.
     pub changes: Vec<SettingChange>,
-    /// The finished generations, the first first.
+    /// Finished generations, in order.
     pub records: Vec<GenerationRecord>,
-    /// The champion of each finished generation; none if it had none or the file is missing.
+    /// Champion of each finished generation. None if the generation had none, or if the file is missing.
     pub champions: Vec<Option<Champion>>,
-    /// The state of the search; none before the first generation is finished.
+    /// State of the search. None before the first generation is finished.
     pub knowledge: Option<SearchState>,
     /// Known evaluations of the current generation, with the individuals' indices.
     pub evaluations: Vec<(u32, Evaluation)>,
-    /// The individuals' parents, as far as they were written; a run's result does not depend on them.
+    /// Parents of individuals, as far as they were written. The results of the run do not depend on them.
     pub lineage: Vec<LineageRecord>,
 }
 
@@ -64,39 +64,39 @@ pub struct SavedProgress {
 pub struct RunFolder {
     path: PathBuf,
     log: Log,
-    /// The log of the current generation's evaluations.
+    /// Log of the current generation's evaluations. None before the first evaluation of a generation.
     evaluations: Mutex<Option<EvaluationLog>>,
-    /// The plan that the run began with.
+    /// Plan with which the run began.
     plan: RunPlan,
     changes: Vec<SettingChange>,
-    /// The log of parents, and the last generation in it. None if it cannot be written.
+    /// Last generation in the log of parents, and the log. None if the log cannot be written.
     lineage: Option<(u32, Log)>,
     _lock: Lock,
 }
 
-/// The log of the current generation's evaluations.
+/// Log of the current generation's evaluations.
 #[derive(Debug)]
 struct EvaluationLog {
     generation: u32,
-    /// Fingerprint of the run's plan in that generation.
+    /// Fingerprint of the run's plan in the current generation.
     plan: String,
     log: Log,
 }
 
-/// The way to treat what a folder already contains of a run.
+/// Treatment of a run that a folder already has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExistingRun {
-    /// Continue it; if it is finished, nothing is left to do.
+    /// The run is continued. If it is finished, nothing is left to do.
     Keep,
-    /// Start over.
+    /// The run starts over.
     Discard,
 }
 
 impl RunFolder {
-    /// Opens the folder of a run, and creates it if it does not exist. `owner` is the name that other programs report.
+    /// Opens the folder of a run, and creates it if it does not exist. Other programs report `owner` as the owner's name.
     ///
     /// # Errors
-    /// Another program writes into the folder; the folder contains another run; a file is damaged or cannot be written.
+    /// Fails if another program writes into the folder, if the folder has another run, or if a file is damaged or cannot be written.
     pub fn open(
         path: &Path,
         plan: &RunPlan,
@@ -108,7 +108,7 @@ impl RunFolder {
         remove_unfinished(path);
         let file = path.join(RUN_FILE);
         refuse_link(&file).map_err(SaveError::unreadable(&file))?;
-        // A run that starts over replaces the plan without reading it.
+        // A run that starts over replaces the plan without reading the old one.
         if file.exists() && earlier == ExistingRun::Keep {
             let stored = load_plan(path)?;
             if stored != *plan {
@@ -119,7 +119,7 @@ impl RunFolder {
         }
         let log_path = path.join(LOG_FILE);
         if earlier == ExistingRun::Discard {
-            // First, so that files of the earlier run cannot be mistaken for this one's after a kill.
+            // The changes are removed first. After a kill, files of the earlier run could otherwise be mistaken for files of the new run.
             discard(&path.join(CHANGES_FILE))?;
         }
         let progress = match earlier {
@@ -141,7 +141,7 @@ impl RunFolder {
         };
         let next = progress.records.len() as u32 + 1;
         if progress.evaluations.is_empty() {
-            // The file belongs to another generation.
+            // An evaluations file without usable evaluations belongs to another generation.
             let _ = fs::remove_file(path.join(EVALUATIONS_FILE));
         } else {
             let log = Log::open(&path.join(EVALUATIONS_FILE), progress.evaluations.len())?;
@@ -154,18 +154,18 @@ impl RunFolder {
         Ok((folder, progress))
     }
 
-    /// The folder's path.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The file of a generation's champion.
+    /// Returns the path of a generation's champion.
     pub fn champion_path(&self, generation: u32) -> PathBuf {
         self.path.join(champion_file_name(generation))
     }
 
-    /// Logs an evaluation of the current generation, so that a resumed run need not compute it again. A failure is not
-    /// an error: the evaluation would only be computed again.
+    /// Logs an evaluation of the current generation, so that a resumed run need not compute it again. A failure is not an error, because
+    /// the evaluation can be computed again.
     pub fn note(&self, generation: u32, individual: u32, evaluation: &Evaluation) {
         let mut log = self.evaluations_log();
         if log.as_ref().is_none_or(|notes| notes.generation != generation) {
@@ -184,21 +184,20 @@ impl RunFolder {
         }
     }
 
-    /// Logs the parents of a generation that is about to be finished. A failure is not an error: the parents are then
-    /// unknown later.
+    /// Logs the parents of a generation that is about to be finished. A failure is not an error: the parents are then unknown later.
     pub fn note_lineage(&mut self, record: &LineageRecord) {
         let Some((last, log)) = &mut self.lineage else { return };
-        // A generation that could not be saved is offered again.
+        // A generation that could not be finished is logged again, but its parents only once.
         if record.generation > *last && log.append_lightly(record).is_ok() {
             *last = record.generation;
         }
     }
 
-    /// Writes a finished generation, and returns the champion's file. If that fails, the generation is not finished yet,
-    /// and writing may be tried again.
+    /// Writes a finished generation, and returns the path of the champion. If writing fails, the generation is not finished, and writing
+    /// may be tried again.
     ///
     /// # Errors
-    /// A file cannot be written.
+    /// Fails if a file cannot be written.
     pub fn finish_generation(
         &mut self,
         record: &GenerationRecord,
@@ -213,23 +212,23 @@ impl RunFolder {
         let plan = self.fingerprint(record.generation)?;
         store_checkpoint(&self.path, &plan, record.generation, run_hash, knowledge)?;
         self.log.append(record)?;
-        // The evaluations are no longer needed.
+        // The evaluations are not needed after the generation.
         self.evaluations_log().take();
         let _ = fs::remove_file(self.path.join(EVALUATIONS_FILE));
         remove_old_checkpoints(&self.path, record.generation);
         Ok(champion.map(|_| champion_path))
     }
 
-    /// Logs the change of a setting before the first generation that uses it. Known evaluations of that generation used
-    /// the old value, and are discarded.
+    /// Logs the change of a setting before the first generation that uses it. Known evaluations of that generation used the old value, and
+    /// are discarded.
     ///
     /// # Errors
-    /// The log cannot be written; then the change is not made.
+    /// Fails if the log cannot be written; the change is then not made.
     pub fn change(&mut self, change: &SettingChange) -> Result<(), SaveError> {
         let mut log = Log::open(&self.path.join(CHANGES_FILE), self.changes.len())?;
         log.append(&ChangeRecord::from(change))?;
         if self.changes.is_empty() {
-            // Best effort, so that the new file's name survives a power cut.
+            // The folder is flushed, so that the new file's name survives a power cut. Errors are ignored.
             #[cfg(unix)]
             let _ = fs::File::open(&self.path).and_then(|folder| folder.sync_all());
         }
@@ -238,12 +237,12 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The run's changes, the earliest first.
+    /// Returns the changes of the run, the earliest first.
     pub fn changes(&self) -> &[SettingChange] {
         &self.changes
     }
 
-    /// Fingerprint of the run's plan in a generation.
+    /// Returns the fingerprint of the run's plan in a generation.
     fn fingerprint(&self, generation: u32) -> Result<String, SaveError> {
         let plan = self.plan.in_generation(generation, &self.changes);
         let plan = plan.map_err(SaveError::invalid(&self.path.join(CHANGES_FILE)))?;
@@ -253,7 +252,7 @@ impl RunFolder {
     /// Saves a genome on which the program panicked, for debugging.
     ///
     /// # Errors
-    /// The file cannot be written, or [`MAX_CRASHED`] are saved already.
+    /// Fails if the file cannot be written, or if [`MAX_CRASHED`] genomes are already saved.
     pub fn keep_crashed(&self, crashed: &Champion) -> Result<PathBuf, SaveError> {
         let origin = &crashed.origin;
         let name = format!("crashed-{}-{}.ron", origin.generation, origin.individual);

@@ -1,19 +1,19 @@
-//! Names and fingerprints of runs: hashes over everything that decides a run's bits.
+//! Names and fingerprints of runs: hashes over everything that determines the bits of a run.
 
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::same_engine::engine_of;
 use crate::evolve::{RunPlan, SettingChange};
 
-/// The name of a run's folder: the preset, the seed, and eight hexadecimal digits that stand for everything else
-/// that decides the bits. So two folders of one name hold the same run, and no run overwrites another.
+/// Returns the name of a run's folder: the preset, the seed, and eight hexadecimal digits that stand for everything else that determines
+/// the bits. Folders with equal names therefore have the same run, and no run overwrites another.
 pub fn run_name(plan: &RunPlan) -> String {
     let plain = plan.preset.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-');
     let preset: String = plain.take(40).collect();
     format!("{preset}-seed{}-{}", plan.seed, settings_fingerprint(plan))
 }
 
-/// Eight hexadecimal digits that stand for a plan's settings, its founder and the engine.
+/// Returns eight hexadecimal digits that stand for a plan's settings, its founder and the engine.
 pub fn settings_fingerprint(plan: &RunPlan) -> String {
     let settings = ron::to_string(&plan.settings).unwrap_or_default();
     let founder = plan.founder.as_ref().map(|founder| {
@@ -25,7 +25,7 @@ pub fn settings_fingerprint(plan: &RunPlan) -> String {
     format!("{:08x}", xxh3_64(text.as_bytes()) as u32)
 }
 
-/// Sixteen hexadecimal digits that stand for everything that decides a run's bits, its changes included.
+/// Returns sixteen hexadecimal digits that stand for everything that determines the bits of a run, its changes included.
 pub fn fingerprint(plan: &RunPlan) -> String {
     let mut text = format!("{} {}", plan.seed, settings_fingerprint(plan));
     for SettingChange { generation, field, value } in plan.changes.made() {

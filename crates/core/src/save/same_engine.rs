@@ -1,11 +1,11 @@
-//! Whether results that a file records have the bits of this program on this machine.
+//! Comparison of engines: whether recorded results have the bits of this build of the program.
 
 use crate::check::Invalid;
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::world::PhysicsEngine;
 
-/// The engine of this program, as the results of a physics engine depend on it: those of *lanes* are the same on all processors, and
-/// are given the most frequent ones.
+/// Returns the engine of this program for runs with a physics engine. Results of *lanes* are equal on all processors, so their engine has
+/// the default processors.
 pub fn engine_of(physics: PhysicsEngine) -> Engine {
     let processors = match physics {
         PhysicsEngine::Rapier => Processors::THIS,
@@ -14,7 +14,7 @@ pub fn engine_of(physics: PhysicsEngine) -> Engine {
     Engine { version: ENGINE_VERSION, processors }
 }
 
-/// Whether results of a physics engine that `recorded` computed have the bits of this program on this machine.
+/// Returns whether the engine `recorded` computes the same bits with a physics engine as this build of the program.
 pub fn has_bits_of_this(recorded: Engine, physics: PhysicsEngine) -> bool {
     match physics {
         PhysicsEngine::Rapier => recorded == Engine::THIS,
@@ -22,7 +22,7 @@ pub fn has_bits_of_this(recorded: Engine, physics: PhysicsEngine) -> bool {
     }
 }
 
-/// Refuses a run that this program would continue with other bits.
+/// Refuses a run that this build of the program would continue with other bits.
 pub fn check_engine(recorded: Engine, physics: PhysicsEngine) -> Result<(), Invalid> {
     if has_bits_of_this(recorded, physics) {
         return Ok(());

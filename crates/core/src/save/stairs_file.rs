@@ -1,4 +1,4 @@
-//! Staircases as files: named and described, as RON. The built-in ones are embedded in the program.
+//! Files of staircases: named and described, as RON. The built-in stairs are embedded in the program.
 
 use std::path::Path;
 
@@ -11,18 +11,18 @@ use crate::check::{self, Invalid, quoted, within};
 use crate::schema;
 use crate::world::Stairs;
 
-/// A named and described staircase.
+/// A staircase with a name and a description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedStairs {
-    /// A short name for the command line and for file names.
+    /// Short name for the command line and for file names.
     pub name: String,
-    /// A sentence that describes it.
+    /// Sentence that describes the staircase.
     pub about: String,
-    /// The staircase.
+    /// Shape of the staircase.
     pub stairs: Stairs,
 }
 
-/// The whole file, whose header is checked before. Once released, it never changes.
+/// Contents of the file, whose kind and format are checked before. Once released, this struct never changes.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StairsFile {
@@ -50,28 +50,28 @@ const BUILT_IN: &[(&str, &str)] = embedded!["stairs";
     "over-the-top",
 ];
 
-/// The built-in stairs.
+/// Parses the built-in stairs.
 ///
 /// # Errors
-/// An embedded file is broken; a test prevents this.
+/// Fails if an embedded file is damaged, which a test prevents.
 pub fn built_in_stairs() -> Result<Vec<NamedStairs>, SaveError> {
     NamedStairs::built_in()
 }
 
-/// The names of the built-in stairs.
+/// Returns the names of the built-in stairs.
 pub fn built_in_stairs_names() -> Vec<&'static str> {
     NamedStairs::built_in_names()
 }
 
-/// Loads stairs by the name of built-in ones, or by the path of a file.
+/// Loads stairs by the name of built-in stairs, or by the path of a file.
 ///
 /// # Errors
-/// There are no such stairs and no such file, or a value in it is not allowed.
+/// Fails if no stairs and no file have the name, or if a value in the file is not allowed.
 pub fn load_stairs(name_or_path: &str) -> Result<NamedStairs, SaveError> {
     load_named(name_or_path)
 }
 
-/// Whether a text is that of stairs, perhaps damaged, and not of a champion or another file.
+/// Returns whether a text, perhaps damaged, states the kind of a file of stairs.
 pub fn is_stairs_file(text: &str) -> bool {
     Header::kind_of(text).is_some_and(|kind| kind == KIND)
 }
@@ -100,10 +100,10 @@ impl OwnKind for NamedStairs {
     }
 }
 
-/// Parses stairs; `path` is the file's name in errors.
+/// Parses stairs; errors name the file `path`.
 ///
 /// # Errors
-/// The text is damaged, or a value in it is not allowed.
+/// Fails if the text is damaged, or if a value in it is not allowed.
 pub fn parse_stairs(path: &Path, text: &str) -> Result<NamedStairs, SaveError> {
     Header::check(path, text, KIND, FORMAT)?;
     let StairsFile { name, about, stairs, .. } = parse(path, text)?;
@@ -132,7 +132,8 @@ mod tests {
         }
     }
 
-    /// The feature stairs are what their genome builds, so that both agree on what a missing step is.
+    /// The built-in stairs with features must be equal to the stairs that genomes build, so that, for example, a missing step means the
+    /// same in the two.
     #[test]
     fn built_in_stairs_with_features_are_those_of_their_genome() {
         let plain = || StairsGenome { steps: 8, ..StairsGenome::default() };

@@ -1,4 +1,4 @@
-//! The finished runs of a study as RON, and studies that users write.
+//! Finished runs of a study, as RON, and definitions of studies that users write.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -23,15 +23,15 @@ const FORMAT: u32 = 1;
 pub const MAX_STUDY_RUNS: usize = 10_000;
 /// Maximum size of a file that is read, in MiB.
 const LARGEST_MIB: u64 = 64;
-/// Maximum number of values of a run, and of numbers in one of them.
+/// Maximum number of values of a run, and of numbers in a list.
 const MOST_VALUES: usize = 10_000;
-/// Numbers of runs lie in this range.
+/// Range of all measured numbers.
 const NUMBERS: std::ops::RangeInclusive<f64> = -1.0e15..=1.0e15;
 
-/// Number of points of a learning curve: the budget is divided into this number of equal parts.
+/// Number of points of a learning curve. The budget is divided into as many equal parts.
 pub const CURVE_POINTS: usize = 100;
 
-/// The finished runs of a study.
+/// Finished runs of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudyRuns {
@@ -40,39 +40,39 @@ pub struct StudyRuns {
     engine: u32,
     #[serde(default, skip_serializing_if = "is_default")]
     processors: Processors,
-    /// The name of the study.
+    /// Name of the study.
     pub study: String,
-    /// The arms that have runs, in the order in which they were added.
+    /// Arms that have runs, in the order in which they were added.
     pub arms: Vec<StudiedArm>,
 }
 
-/// The runs of one arm.
+/// Runs of one arm of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudiedArm {
-    /// Its name.
+    /// Name of the arm.
     pub name: String,
-    /// The settings and the budget of all its runs.
+    /// Settings and budget of all runs of the arm.
     pub protocol: Protocol,
-    /// Its finished runs, in the order of their seeds.
+    /// Finished runs of the arm, in the order of their seeds.
     pub runs: Vec<StudiedRun>,
 }
 
-/// Settings, budget and stop rule of an arm: with a seed they decide a run. An arm continues only under an equal protocol.
+/// Settings, budget and stop rule of an arm. With a seed they determine a run. An arm continues only under an equal protocol.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Protocol {
-    /// Name of the preset from which its settings come.
+    /// Name of the preset from which the settings come.
     pub preset: String,
-    /// Fingerprint of its settings: see [`settings_fingerprint`](super::settings_fingerprint).
+    /// Fingerprint of the settings: see [`settings_fingerprint`](super::settings_fingerprint).
     pub settings: String,
-    /// The strategy.
+    /// Search strategy of the arm.
     pub strategy: StrategyKind,
-    /// The controller.
+    /// Kind of controller of the arm.
     pub controller: ControllerKind,
-    /// The fitness that was maximised.
+    /// Fitness that is maximised.
     pub fitness: Fitness,
-    /// Evaluations that a run may spend.
+    /// Number of evaluations that a run may spend.
     pub budget: u64,
     /// Whether a run ends with the generation that reaches the goal.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -113,35 +113,35 @@ impl Protocol {
     }
 }
 
-/// One run of an arm.
+/// A finished run of an arm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudiedRun {
-    /// The seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// The measured values by their names. What does not exist, such as the first landing of a run without one, is missing.
+    /// Measured values by their names. A value that does not exist, such as the first landing of a run without one, is missing.
     pub values: BTreeMap<String, StudyValue>,
-    /// Best fitness so far after each hundredth of the budget; empty where it was not recorded.
+    /// Best fitness so far after each hundredth of the budget; empty if it was not recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve: Vec<Option<f32>>,
-    /// Hash over the run.
+    /// Hash over the generations of the run.
     pub run_hash: String,
 }
 
-/// A measured value.
+/// A measured value of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum StudyValue {
-    /// A number.
+    /// A single number.
     Number(f64),
     /// A text.
     Text(String),
-    /// A list, such as a number for each generation.
+    /// A list of numbers, such as one for each generation.
     Numbers(Vec<Option<f64>>),
 }
 
 impl StudiedRun {
-    /// A value that is a number; none if the run has no such value.
+    /// Returns a value that is a number. None if the run has no such value.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.values.get(name)? {
             StudyValue::Number(number) => Some(*number),
@@ -149,7 +149,7 @@ impl StudiedRun {
         }
     }
 
-    /// A value that is a list; empty if the run has no such value.
+    /// Returns a value that is a list; empty if the run has no such value.
     pub fn numbers(&self, name: &str) -> &[Option<f64>] {
         match self.values.get(name) {
             Some(StudyValue::Numbers(numbers)) => numbers,
@@ -178,7 +178,7 @@ impl StudiedRun {
 }
 
 impl StudyRuns {
-    /// A study without runs.
+    /// Makes a study without runs.
     pub fn new(study: &str) -> Self {
         Self {
             kind: KIND.to_owned(),
@@ -190,17 +190,17 @@ impl StudyRuns {
         }
     }
 
-    /// An arm, if it has runs.
+    /// Returns an arm. None if it has no runs.
     pub fn arm(&self, name: &str) -> Option<&StudiedArm> {
         self.arms.iter().find(|arm| arm.name == name)
     }
 
-    /// The runs of an arm, in the order of their seeds.
+    /// Returns the runs of an arm, in the order of their seeds.
     pub fn of_arm(&self, name: &str) -> &[StudiedRun] {
         self.arm(name).map_or(&[], |arm| &arm.runs)
     }
 
-    /// Inserts a run in the order of the seeds, in the place of an earlier one with its seed. Earlier runs under another
+    /// Inserts a run in the order of the seeds, in place of an earlier run with the same seed. Earlier runs of the arm under another
     /// protocol are removed.
     pub fn add(&mut self, name: &str, protocol: &Protocol, run: StudiedRun) {
         let place = self.arms.iter().position(|arm| arm.name == name).unwrap_or_else(|| {
@@ -232,7 +232,7 @@ impl StudyRuns {
 /// Reads the runs of a study.
 ///
 /// # Errors
-/// The file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
+/// Fails if the file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
 pub fn load_study(path: &Path) -> Result<StudyRuns, SaveError> {
     let text = text_of(path, read_bytes(path, LARGEST_MIB)?)?;
     Header::check(path, &text, KIND, FORMAT)?;
@@ -244,7 +244,7 @@ pub fn load_study(path: &Path) -> Result<StudyRuns, SaveError> {
 /// Writes the runs of a study atomically.
 ///
 /// # Errors
-/// The file cannot be written.
+/// Fails if the file cannot be written.
 pub fn store_study(path: &Path, runs: &StudyRuns) -> Result<(), SaveError> {
     store_ron(path, runs)
 }
@@ -252,15 +252,15 @@ pub fn store_study(path: &Path, runs: &StudyRuns) -> Result<(), SaveError> {
 /// Reads the definition of a study that a user wrote. Optional values need no `Some`.
 ///
 /// # Errors
-/// The file is unreadable, or no RON of this type.
+/// Fails if the file is unreadable, or is not RON of the type `T`.
 pub fn load_definition<T: DeserializeOwned>(path: &Path) -> Result<T, SaveError> {
     parse_definition(path, &read_text(path)?)
 }
 
-/// The definition of a study from its text; `path` stands in errors.
+/// Parses the definition of a study; errors name the file `path`.
 ///
 /// # Errors
-/// It is no RON of this type.
+/// Fails if the text is not RON of the type `T`.
 pub fn parse_definition<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, SaveError> {
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
     options.from_str(text).map_err(|error| damaged(path, error))

@@ -1,11 +1,10 @@
-//! Format 5 of a saved champion, exactly as it stands in files.
+//! Format 5 of a saved champion, exactly as files have it.
 //!
-//! Nothing has been released yet, so this is the only format that is read. **From the first release on, every
-//! released format stays readable**: a struct that stands in a released file never changes. A change gets a new
-//! struct and a new format number in a module beside this one, and the old struct is translated into the new one
-//! when a file is read. The rule holds for what files contain as it is, too: [`Genome`], [`Trial`], [`Origin`],
-//! [`Evaluation`], [`SuiteResult`] and [`crate::evolve::Settings`]. To these, fields may be added without a
-//! new format if their defaults act as the program did without them: see [`crate::schema::is_default`].
+//! Nothing has been released yet, so this is the only format that is read. **From the first release on, every released format stays
+//! readable**: a struct of a released file never changes. A change gets a new struct and a new format number in a module beside this one,
+//! and the old struct is converted to the new one when a file is read. The rule also holds for types of the core that files contain
+//! directly: [`Genome`], [`Trial`], [`Origin`], [`Evaluation`], [`SuiteResult`] and [`crate::evolve::Settings`]. Fields may be added to
+//! these types without a new format if the default of a field acts as the program did without it: see [`crate::schema::is_default`].
 
 use serde::{Deserialize, Serialize};
 
@@ -20,15 +19,15 @@ use crate::score::{Evaluation, FITNESS_RANGE, Recording, SuiteResult, Trial};
 
 /// Maximum number of results of an exam.
 const MOST_RESULTS: usize = 100;
-/// The kind that every champion's file states.
+/// Kind that every champion's file states.
 pub const KIND: &str = "snakes-and-stairs champion";
-/// The number of this format.
+/// Number of this format.
 pub const FORMAT: u32 = 5;
 
 /// A champion with its recorded poses, if it has them, and the results of its exam.
 pub type ChampionParts = (Champion, Option<Recording>, Vec<SuiteResult>);
 
-/// The whole file.
+/// Contents of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChampionV5 {
@@ -49,7 +48,7 @@ pub struct ChampionV5 {
 }
 
 impl ChampionV5 {
-    /// The file of a champion that this engine found.
+    /// Makes the file of a champion that this engine found.
     pub fn new(champion: Champion, recording: Option<&Recording>, exam: &[SuiteResult]) -> Self {
         let Champion { genome, trial, evaluation, chosen_by, origin } = champion;
         Self {
@@ -67,7 +66,7 @@ impl ChampionV5 {
         }
     }
 
-    /// Translates and checks every value.
+    /// Converts and checks every value.
     pub fn into_parts(self) -> Result<ChampionParts, Invalid> {
         name("origin.preset", &self.origin.preset)?;
         let trial = match self.engine {

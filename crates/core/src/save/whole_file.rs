@@ -1,4 +1,4 @@
-//! Writing whole files: at every instant either the old or the complete new one exists.
+//! Atomic writing of files: at every instant either the old or the complete new file exists.
 
 use std::fs::{self, File};
 use std::io::{Error, ErrorKind, Write};
@@ -8,13 +8,13 @@ use tempfile::{NamedTempFile, PersistError};
 
 use super::SaveError;
 
-/// Writes a file atomically: at every instant either the old or the complete new one exists. The contents go into a
-/// temporary file in the same folder, are flushed to the disk, and then renamed.
+/// Writes a file atomically: at every instant either the old or the complete new file exists. The contents go into a temporary file in the
+/// same folder, are flushed to the disk, and then renamed.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     write_and(path, contents, |file| file.persist(path))
 }
 
-/// Writes a new file atomically; fails if a file of this name exists by then.
+/// Writes a new file atomically. Fails if a file with this name already exists.
 pub fn write_new(path: &Path, contents: &[u8]) -> Result<(), SaveError> {
     write_and(path, contents, |file| file.persist_noclobber(path))
 }
@@ -29,8 +29,7 @@ fn write_and(
     file.finish_with(put)
 }
 
-/// A file that is written piece by piece and appears under its name only when it is complete. Dropped before, it leaves
-/// nothing behind.
+/// A file that is written piece by piece, and gets its name only when it is complete. If this value is dropped before, nothing remains.
 #[derive(Debug)]
 pub struct UnfinishedFile {
     file: NamedTempFile,
@@ -38,29 +37,29 @@ pub struct UnfinishedFile {
 }
 
 impl UnfinishedFile {
-    /// Begins the file that will have this path.
+    /// Begins the file that will have the path `path`.
     ///
     /// # Errors
-    /// Its folder cannot be written.
+    /// Fails if the folder of the file cannot be written.
     pub fn create(path: &Path) -> Result<Self, SaveError> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(UNFINISHED);
-        // Readable by others as far as the user's umask allows; the library's default is private.
+        // Others may read the file as far as the user's umask allows; the default of the library is private.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder_of(path)).map_err(|error| unwritable(path, error))?;
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// The path of the temporary file, for another program that writes it.
+    /// Returns the path of the temporary file, for another program that writes it.
     pub fn temporary_path(&self) -> &Path {
         self.file.path()
     }
 
-    /// Flushes the file to the disk and gives it its name, in the place of an earlier file.
+    /// Flushes the file to the disk and gives it its name, in place of an earlier file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the file cannot be written.
     pub fn finish(self) -> Result<(), SaveError> {
         let path = self.path.clone();
         self.finish_with(|file| file.persist(path))
@@ -74,7 +73,7 @@ impl UnfinishedFile {
         let finish = || -> std::io::Result<()> {
             file.as_file().sync_all()?;
             put(file).map_err(|error| error.error)?;
-            // The file exists by now. Flushing the folder, so that its name survives a power cut, is best effort.
+            // The file exists now. The folder is flushed, so that the file's name survives a power cut; errors are ignored.
             #[cfg(unix)]
             let _ = File::open(folder_of(&path)).and_then(|folder| folder.sync_all());
             Ok(())
@@ -84,7 +83,7 @@ impl UnfinishedFile {
 }
 
 impl Write for UnfinishedFile {
-    // Through the inner file: errors of the temporary file itself would name that file.
+    // The inner file is used, because errors of the temporary file would contain the temporary name.
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.file.as_file_mut().write(bytes)
     }
@@ -94,17 +93,17 @@ impl Write for UnfinishedFile {
     }
 }
 
-/// The folder in which a file is.
+/// Returns the folder that contains a file.
 pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// The error that a file or folder cannot be written.
+/// Makes the error of an unwritable file or folder.
 fn unwritable(path: &Path, error: Error) -> SaveError {
     SaveError::Unwritable { path: path.to_owned(), source: without_temporary_name(error) }
 }
 
-/// An error of a temporary file or folder without its name, which the user does not know.
+/// Removes the temporary name, which the user does not know, from an error of a temporary file or folder.
 pub(super) fn without_temporary_name(error: Error) -> Error {
     if error.raw_os_error().is_some() || error.kind() == ErrorKind::Other {
         return error;
@@ -115,10 +114,10 @@ pub(super) fn without_temporary_name(error: Error) -> Error {
     }
 }
 
-/// Prefix of the names of files that are not complete yet.
+/// Prefix of the names of incomplete files.
 pub const UNFINISHED: &str = ".unfinished-";
 
-/// Removes the incomplete files that a kill left in a folder; the caller holds the folder's lock.
+/// Removes the incomplete files that a kill left in a folder. The caller must hold the folder's lock.
 pub fn remove_unfinished(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
@@ -128,17 +127,17 @@ pub fn remove_unfinished(folder: &Path) {
     }
 }
 
-/// Makes sure that files can be written into `folder`, and creates it if it does not exist.
+/// Checks that files can be written into `folder`, and creates it if it does not exist.
 pub fn prepare_folder(folder: &Path) -> Result<(), SaveError> {
     let unwritable = |error| unwritable(folder, error);
     let is_new = !folder.exists();
     fs::create_dir_all(folder).map_err(unwritable)?;
     if is_new {
-        // Best effort, so that the folder's name survives a power cut.
+        // The parent folder is flushed, so that the folder's name survives a power cut. Errors are ignored.
         #[cfg(unix)]
         let _ = folder.parent().map(File::open).map(|parent| parent.and_then(|p| p.sync_all()));
     }
-    // Permissions alone do not tell (read-only mounts, quotas), so try it. The file is removed when dropped.
+    // Permissions alone do not suffice (read-only mounts, quotas), so a file is created. It is removed when dropped.
     tempfile::tempfile_in(folder).map(drop).map_err(unwritable)
 }
 

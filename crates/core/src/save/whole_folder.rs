@@ -1,4 +1,4 @@
-//! Writing whole folders: a folder appears under its name only when all of its files are complete.
+//! Atomic writing of folders: a folder gets its name only when all of its files are complete.
 
 use std::fs;
 use std::io;
@@ -10,8 +10,7 @@ use super::SaveError;
 use super::picture::{Picture, encoded};
 use super::whole_file::{UNFINISHED, folder_of, without_temporary_name};
 
-/// A folder that is filled file by file and appears under its name only when it is complete. Dropped before, it leaves
-/// nothing behind.
+/// A folder that is filled file by file, and gets its name only when it is complete. If this value is dropped before, nothing remains.
 #[derive(Debug)]
 pub struct UnfinishedFolder {
     folder: TempDir,
@@ -19,10 +18,10 @@ pub struct UnfinishedFolder {
 }
 
 impl UnfinishedFolder {
-    /// Begins the folder that will have this path.
+    /// Begins the folder that will have the path `path`.
     ///
     /// # Errors
-    /// Something with this path exists, other than an empty folder, or the folder around it cannot be written.
+    /// Fails if something other than an empty folder has the path, or if the folder around it cannot be written.
     pub fn create(path: &Path) -> Result<Self, SaveError> {
         let unwritable = SaveError::unwritable(path);
         if !is_free(path) {
@@ -31,7 +30,7 @@ impl UnfinishedFolder {
         }
         let mut builder = tempfile::Builder::new();
         builder.prefix(UNFINISHED);
-        // Readable by others as far as the user's umask allows; the library's default is private.
+        // Others may read the folder as far as the user's umask allows; the default of the library is private.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
         let made = builder.tempdir_in(folder_of(path));
@@ -39,10 +38,10 @@ impl UnfinishedFolder {
         Ok(Self { folder, path: path.to_owned() })
     }
 
-    /// Adds a picture as a PNG file of this name.
+    /// Adds a picture as a PNG file with a name.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// Fails if the file cannot be written.
     pub fn store_picture(&self, name: &str, picture: &Picture) -> Result<(), SaveError> {
         let written =
             encoded(picture).and_then(|bytes| fs::write(self.folder.path().join(name), bytes));
@@ -52,11 +51,11 @@ impl UnfinishedFolder {
     /// Gives the folder its name.
     ///
     /// # Errors
-    /// It cannot be written, or something of its name exists by now.
+    /// Fails if the folder cannot be renamed, or if something other than an empty folder has the name by now.
     pub fn finish(self) -> Result<(), SaveError> {
         let Self { folder, path } = self;
         let finish = || -> io::Result<()> {
-            // A rename replaces an empty folder on Unix; elsewhere it must be gone before.
+            // On Unix a rename replaces an empty folder; on other systems the empty folder must be removed before.
             if path.is_dir() {
                 fs::remove_dir(&path)?;
             }
@@ -64,14 +63,14 @@ impl UnfinishedFolder {
         };
         let finished = finish().map_err(SaveError::unwritable(&path));
         if finished.is_ok() {
-            // Its temporary name is gone, so there is nothing left to remove.
+            // The temporary folder has been renamed, so nothing is left to remove.
             let _ = folder.keep();
         }
         finished
     }
 }
 
-/// Whether nothing but perhaps an empty folder has this path.
+/// Returns whether the path is free, or that of an empty folder.
 fn is_free(path: &Path) -> bool {
     match fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_none(),

@@ -1,4 +1,4 @@
-//! Operations on an entry that can be undone: rename, duplicate, delete, restore.
+//! Operations on a library entry that can be undone: rename, duplicate, delete, restore.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -14,52 +14,52 @@ use crate::save::lock::Lock;
 use crate::save::whole_file::prepare_folder;
 use crate::save::{EntryNotes, SaveError, SavesFolder};
 
-/// Folder for deleted entries within a folder of saves.
+/// Name of the folder for deleted entries within a folder of saves.
 pub const DELETED: &str = ".deleted";
 
-/// A completed operation on an entry.
+/// A completed operation on a library entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FileStep {
-    /// It was renamed.
+    /// The entry was renamed.
     Renamed {
-        /// Its former path.
+        /// Former path of the entry.
         from: PathBuf,
-        /// Its new path.
+        /// New path of the entry.
         to: PathBuf,
     },
-    /// It was deleted: moved into a hidden folder.
+    /// The entry was deleted: moved into a hidden folder.
     Deleted {
-        /// Its former path.
+        /// Former path of the entry.
         from: PathBuf,
-        /// Its path in the hidden folder.
+        /// Path of the entry in the hidden folder.
         kept: PathBuf,
     },
-    /// It was restored after it had been deleted.
+    /// The entry was restored after it had been deleted.
     Restored {
-        /// Its path before it was deleted.
+        /// Path of the entry before it was deleted.
         wanted: PathBuf,
-        /// Its path now; it differs from the former path if that was taken meanwhile.
+        /// Present path of the entry, which differs from the former path if that was taken meanwhile.
         to: PathBuf,
     },
-    /// A new copy was added.
+    /// A new copy of an entry was added.
     Added {
-        /// Its path.
+        /// Path of the copy.
         path: PathBuf,
     },
-    /// It got another name of its own, or other notes.
+    /// The entry got another name in its notes, or other notes.
     Noted {
-        /// Its place, which stays the same.
+        /// Place of the entry, which has not changed.
         place: SavePlace,
-        /// Name and notes before.
+        /// Name and notes of the entry before the operation.
         before: EntryNotes,
     },
 }
 
 impl FileStep {
-    /// Undoes this operation, and returns the one that redoes it.
+    /// Undoes this operation. Returns the operation that redoes it.
     ///
     /// # Errors
-    /// The entry cannot be moved back or no longer exists; then nothing has changed.
+    /// Fails if the entry cannot be moved back or no longer exists; nothing has changed then.
     pub fn undo(&self, saves: &SavesFolder) -> Result<Self, SaveError> {
         match self {
             Self::Renamed { from, to } => {
@@ -72,7 +72,7 @@ impl FileStep {
         }
     }
 
-    /// The entry's place now; none if it was deleted.
+    /// Returns the present place of the entry. None if the entry was deleted.
     pub fn place(&self) -> Option<SavePlace> {
         let path = match self {
             Self::Renamed { to, .. } | Self::Restored { to, .. } | Self::Added { path: to } => to,
@@ -87,10 +87,10 @@ impl FileStep {
     }
 }
 
-/// Renames a champion's file, or gives a run a name of its own: its folder's name says which run it is, and stays.
+/// Renames a champion's file, or gives a run a name in its notes. The run's folder, whose name identifies the run, is not renamed.
 ///
 /// # Errors
-/// The name is not allowed or taken; the entry is part of the program; the file cannot be renamed or written.
+/// Fails if the name is not allowed or is taken, if the entry is part of the program, or if the file cannot be renamed or written.
 pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
     let from = match place {
         SavePlace::Champion(from) => from,
@@ -101,7 +101,7 @@ pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
     };
     check_entry_name(name).map_err(SaveError::invalid(from))?;
     let to = from.with_file_name(format!("{name}.{ENDING}"));
-    // Notes that a removed file left behind belong to it.
+    // Notes of a removed file may remain. They must not become notes of the renamed champion.
     if notes_beside(&to).symlink_metadata().is_ok() {
         return Err(taken(&to));
     }
@@ -112,10 +112,10 @@ pub fn rename(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
 /// Copies a champion within the folder of saves, as "NAME copy", "NAME copy 2" and so on.
 ///
 /// # Errors
-/// The entry is a run; the file cannot be read, or the copy cannot be written.
+/// Fails if the entry is a run, if the file cannot be read, or if the copy cannot be written.
 pub fn duplicate(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveError> {
     let text = text_of_champion(place)?;
-    // Only if needed: preparing writes a file to test the folder, which is slow for ten thousand copies.
+    // The folder is prepared only if it does not exist, because preparing writes a test file, which is slow for ten thousand copies.
     if !saves.path().is_dir() {
         saves.prepare()?;
     }
@@ -124,11 +124,10 @@ pub fn duplicate(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, Sav
     add_copy(&text, place.path(), path)
 }
 
-/// Deletes an entry: moves it into a hidden folder of the saves, or of its own folder if that is on another disk.
-/// Undoing moves it back.
+/// Deletes an entry: moves it into a hidden folder of the saves, or of its own folder if that is on another disk. Undoing moves it back.
 ///
 /// # Errors
-/// A program writes into the run's folder; the entry is part of the program; it cannot be moved.
+/// Fails if a program writes into the run's folder, if the entry is part of the program, or if it cannot be moved.
 pub fn delete(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveError> {
     let path = place.path().ok_or_else(|| refused(place, "a champion's file or a run's folder"))?;
     move_away(saves, path)
@@ -136,7 +135,7 @@ pub fn delete(saves: &SavesFolder, place: &SavePlace) -> Result<FileStep, SaveEr
 
 fn move_away(saves: &SavesFolder, path: &Path) -> Result<FileStep, SaveError> {
     match put_into_bin(saves.path(), path) {
-        // Files cannot be moved between disks: an exported copy on another disk is deleted within its own folder.
+        // Files cannot be moved between disks, so an exported copy on another disk is moved within its own folder.
         Err(SaveError::Unwritable { source, .. }) if source.kind() == ErrorKind::CrossesDevices => {
             put_into_bin(path.parent().unwrap_or(Path::new(".")), path)
         }
@@ -149,13 +148,13 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     let is_folder = fs::symlink_metadata(path).map_err(SaveError::unreadable(path))?.is_dir();
     let lock = if is_folder { Some(Lock::take(path, "the library")?) } else { None };
     let bin = SavesFolder::within_run(folder, DELETED)?;
-    // Tested once when the folder is created; later the move itself fails if it cannot be written.
+    // The folder is tested only when it is created. If it cannot be written later, the move itself fails.
     if !bin.path().is_dir() {
         prepare_folder(bin.path())?;
     }
     let kept = free_path_like(path, is_folder, bin.path());
     if cfg!(windows) {
-        // Windows cannot move a folder in which a file is open.
+        // Windows cannot move a folder in which a file is open, so the lock is released first.
         drop(lock);
         move_entry(path, &kept)?;
     } else {
@@ -165,14 +164,14 @@ fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     Ok(FileStep::Deleted { from: path.to_owned(), kept })
 }
 
-/// A free path in `folder` for an entry with the name of `path`.
+/// Returns a free path in `folder` for an entry with the name of `path`.
 fn free_path_like(path: &Path, is_folder: bool, folder: &Path) -> PathBuf {
     let name = path.file_stem().filter(|_| !is_folder).or(path.file_name()).unwrap_or_default();
     let ending = path.extension().filter(|_| !is_folder).map(|ending| ending.to_string_lossy());
     free_path(folder, &name.to_string_lossy(), ending.as_deref())
 }
 
-/// Moves a deleted entry back; under the next free name if its own is taken by now.
+/// Moves a deleted entry back to its path, or to the next free name if the path is taken by now.
 fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
     let folder = wanted.parent().unwrap_or(Path::new("."));
     let is_folder = kept.is_dir();
@@ -202,7 +201,7 @@ mod tests {
     use crate::save::library::fixtures::{champion_in, names, run_in, saves};
     use crate::save::library::{list, read_entry};
 
-    /// The champions of the folder.
+    /// Returns the names of the champions in the folder.
     fn champions(saves: &SavesFolder) -> Vec<String> {
         names(&list(saves).expect("readable"), |place| matches!(place, SavePlace::Champion(_)))
     }
@@ -283,14 +282,14 @@ mod tests {
         let restored = deleted.undo(&saves).expect("restored");
         assert_eq!(restored.place().expect("there").name(), "a 2");
         assert_eq!(fs::read_to_string(folder.path().join("a.ron")).expect("there"), "another");
-        // Two of one name can both be deleted.
+        // Two entries with the same name can both be deleted.
         delete(&saves, &place).expect("deleted");
         let once_more = champion_in(&saves, "a");
         delete(&saves, &once_more).expect("deleted");
         assert_eq!(fs::read_dir(folder.path().join(DELETED)).expect("there").count(), 2);
     }
 
-    /// A folder on another disk than that of saves, where there is one.
+    /// Returns a folder on another disk than the folder of saves. None if there is no other disk.
     #[cfg(target_os = "linux")]
     fn on_another_disk(saves: &SavesFolder) -> Option<tempfile::TempDir> {
         use std::os::unix::fs::MetadataExt;
@@ -376,7 +375,7 @@ mod tests {
             fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("changed");
         };
         allow(0o555);
-        // Permissions do not stop the superuser.
+        // Permissions do not stop the superuser, so the test is skipped then.
         let is_stopped = fs::write(folder.path().join("probe"), "").is_err();
         if is_stopped {
             for result in [rename(&place, "b"), duplicate(&saves, &place), delete(&saves, &place)] {

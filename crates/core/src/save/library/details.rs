@@ -1,4 +1,4 @@
-//! The contents of a library entry: read one entry at a time, checked, never simulated.
+//! Contents of library entries: one entry at a time is read and checked, never simulated.
 
 use std::path::{Path, PathBuf};
 
@@ -17,80 +17,80 @@ use crate::save::{LoadedChampion, SaveError, exam_in_words, load_generation, par
 use crate::score::Fitness;
 use crate::world::PhysicsEngine;
 
-/// The contents of an entry.
+/// Contents of a library entry.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EntryDetails {
-    /// A champion's.
+    /// Contents of a champion's file.
     Champion(Box<ChampionDetails>),
-    /// A run's.
+    /// Contents of a run's folder.
     Run(Box<RunDetails>),
 }
 
 /// The contents of a champion's file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChampionDetails {
-    /// Its fitness.
+    /// Fitness of the champion.
     pub fitness: f32,
-    /// The kind of fitness that was maximised.
+    /// Kind of fitness that was maximised.
     pub rewarded: Fitness,
-    /// Its result in words.
+    /// Result of the champion in words.
     pub reached: String,
-    /// Steps that its middle limb had climbed at the end.
+    /// Number of steps that the middle limb had climbed at the end.
     pub climbed: u32,
     /// Number of steps of the staircase.
     pub steps: u32,
     /// Length of the trial, in simulated seconds.
     pub duration_s: f32,
-    /// The run that found it, and its generation and index there.
+    /// Run that found the champion, with its generation and index.
     pub origin: Origin,
-    /// The engine that found it.
+    /// Engine that found the champion.
     pub engine: Engine,
-    /// The physics engine of its trial.
+    /// Physics engine of the trial.
     pub physics: PhysicsEngine,
-    /// The controller of its joints.
+    /// Controller of the joints.
     pub controller: ControllerKind,
-    /// The results of its exam in one line, if the file has them.
+    /// Results of the exam in one line. None if the file has no results.
     pub exam: Option<String>,
-    /// The user's comment in the first line of the file.
+    /// Comment of the user in the first line of the file. None if there is none.
     pub note: Option<String>,
-    /// Its movement, seen from the side.
+    /// Movement of the champion, seen from the side.
     pub thumbnail: Thumbnail,
 }
 
 /// The contents of a run's folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDetails {
-    /// Name of its preset.
+    /// Name of the run's preset.
     pub preset: String,
-    /// Its seed.
+    /// Seed of the run.
     pub seed: u64,
-    /// The search strategy; unknown for a run of another engine.
+    /// Search strategy. None (unknown) for a run of another engine.
     pub strategy: Option<StrategyKind>,
-    /// The controller of the joints.
+    /// Controller of the joints.
     pub controller: ControllerKind,
-    /// The kind of fitness that was maximised.
+    /// Kind of fitness that was maximised.
     pub rewarded: Fitness,
     /// Number of finished generations.
     pub finished: u32,
-    /// Number of generations in total; unknown for a run of another engine.
+    /// Number of generations in total. None (unknown) for a run of another engine.
     pub generations: Option<u32>,
-    /// The fitness of its best champion, with the generation; the first is 1. Where a run chooses its champions on varied
-    /// trials, they say which is the best.
+    /// Generation of the best champion, from 1, and the champion's fitness. None if there is no champion. If the run chooses champions by
+    /// their fitness over varied trials, that fitness determines the best.
     pub best: Option<(u32, f32)>,
-    /// The best fitness of each generation in order; none where all were disqualified.
+    /// Best fitness of each generation, in order. None for a generation of which all individuals were disqualified.
     pub best_of_each: Vec<Option<f32>>,
-    /// The generations whose champions are saved, in order.
+    /// Generations whose champions are saved, in order.
     pub champions: Vec<u32>,
-    /// The reason why it cannot continue, if it cannot.
+    /// Reason why the run cannot continue. None if it can.
     pub ended: Option<String>,
-    /// The movement of its best champion, seen from the side.
+    /// Movement of the best champion, seen from the side.
     pub thumbnail: Thumbnail,
 }
 
 /// Reads the contents of an entry.
 ///
 /// # Errors
-/// The entry is unreadable, too large, damaged, a link, of another kind or format, or has a value out of range.
+/// Fails if the entry is unreadable, too large, damaged, a link, of another kind or format, or has a value out of range.
 pub fn read_entry(place: &SavePlace) -> Result<EntryDetails, SaveError> {
     match place {
         SavePlace::Run(folder) => run(folder),
@@ -98,10 +98,10 @@ pub fn read_entry(place: &SavePlace) -> Result<EntryDetails, SaveError> {
     }
 }
 
-/// Reads the champion of an entry. Of a run it is the champion of the best generation, whose number is returned too.
+/// Reads the champion of an entry. For a run, this is the champion of the best generation, whose number is also returned.
 ///
 /// # Errors
-/// As for [`read_entry`]; or the run has no champion yet.
+/// Fails as [`read_entry`] does, or if the run has no champion yet.
 pub fn load_entry(place: &SavePlace) -> Result<(LoadedChampion, Option<u32>), SaveError> {
     match place {
         SavePlace::Shipped(_) | SavePlace::Champion(_) => Ok((loaded_champion(place)?.0, None)),
@@ -116,9 +116,9 @@ pub fn load_entry(place: &SavePlace) -> Result<(LoadedChampion, Option<u32>), Sa
     }
 }
 
-/// The names and champions that are part of the program.
+/// Returns the names and champions that are part of the program.
 pub fn shipped_champions() -> Vec<(&'static str, LoadedChampion)> {
-    // A test checks that all are whole.
+    // A test checks that all shipped champions can be parsed.
     let parsed = |(name, text): &(&'static str, &str)| {
         Some((*name, parse_champion(Path::new(name), text).ok()?))
     };
@@ -130,10 +130,10 @@ fn no_champion(folder: &Path) -> SaveError {
     SaveError::Unreadable { path: folder.to_owned(), source }
 }
 
-/// The text of a champion.
+/// Returns the text of a champion's file.
 ///
 /// # Errors
-/// Its file cannot be read or is a link, or the entry is a run.
+/// Fails if the file cannot be read or is a link, or if the entry is a run.
 pub fn text_of_champion(place: &SavePlace) -> Result<String, SaveError> {
     let name = || format!("{:?}", place.name());
     let invalid = |source| SaveError::Invalid { path: path_in_errors(place), source };
@@ -146,7 +146,7 @@ pub fn text_of_champion(place: &SavePlace) -> Result<String, SaveError> {
     }
 }
 
-/// The path of an entry in errors; of a part of the program, its name.
+/// Returns the path of an entry for errors; for an entry that is part of the program, its name.
 pub fn path_in_errors(place: &SavePlace) -> PathBuf {
     place.path().map_or_else(|| place.name().into(), Path::to_owned)
 }
@@ -156,7 +156,7 @@ fn loaded_champion(place: &SavePlace) -> Result<(LoadedChampion, String), SaveEr
     Ok((parse_champion(&path_in_errors(place), &text)?, text))
 }
 
-/// The text of a champion's file, unless it is a link.
+/// Reads the text of a champion's file. Refuses a link.
 pub fn text_of_file(path: &Path) -> Result<String, SaveError> {
     refuse_link(path).map_err(SaveError::unreadable(path))?;
     read_text(path)
@@ -196,13 +196,14 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     champions.retain(|generation| *generation as usize <= records.len());
     let best_of = |record: &GenerationRecord| record.statistics.map(|of| of.best as f32);
     let best_of_each: Vec<Option<f32>> = records.iter().map(best_of).collect();
-    // As in the run: on a ladder, higher stairs come before greater fitness.
+    // Champions are ranked as in the run: on a ladder, higher stairs come before greater fitness.
     let rank = |record: &GenerationRecord| {
         let fitness = record.chosen_by.or(record.statistics.map(|of| of.best))?;
         Some([record.rung.map_or(0.0, |rung| f64::from(rung.rise_m)), fitness])
     };
     let ranked = records.iter().zip(1..).filter_map(|(of, number)| Some((number, rank(of)?)));
-    // Of equal ones, the first. Where stairs evolve, a run keeps only champions that are better than all before.
+    // Of champions with equal rank, the first is the best. Where stairs evolve, a run keeps only champions that are better than all before,
+    // so the last is the best.
     let best = match champions.last().filter(|_| records.iter().any(|of| of.stairs.is_some())) {
         Some(&last) => records.get(last as usize - 1).and_then(rank).map(|rank| (last, rank)),
         None => ranked.reduce(|best, next| if next.1 > best.1 { next } else { best }),
@@ -220,7 +221,7 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     let is_finished = plan.has_ended(&records);
     let ended = is_finished.then(|| "all its generations are finished".to_owned());
     let settings = &plan.settings;
-    // A run whose first generation is larger has fewer of them than planned.
+    // A finished run with large generations may have fewer of them than planned.
     let planned = settings.evolution.generations;
     let generations = if is_finished { records.len() as u32 } else { planned };
     Ok(EntryDetails::Run(Box::new(RunDetails {
@@ -239,7 +240,7 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     })))
 }
 
-/// The contents of a run that cannot continue with this engine, as far as its latest champion tells.
+/// Returns the contents of a run that cannot continue with this engine, as far as its latest champion has them.
 fn of_other_engine(
     folder: &Path,
     champions: Vec<u32>,

@@ -1,4 +1,4 @@
-//! Lists a folder of saves by names only.
+//! Listing of a folder of saves by names only.
 
 use std::collections::BTreeSet;
 use std::fs::{self, DirEntry};
@@ -17,29 +17,29 @@ use crate::save::{EntryNotes, SaveError, SavesFolder};
 /// A library entry, without its contents.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LibraryEntry {
-    /// Its place.
+    /// Place of the entry.
     pub place: SavePlace,
-    /// Size of its file, in bytes; for a run the size of its log, which grows with every generation.
+    /// Size of the champion's file or of the run's log, in bytes.
     pub bytes: u64,
-    /// Time of its last change since the beginning of 1970 (UTC); zero for a part of the program.
+    /// Time of the last change since the beginning of 1970 (UTC); zero for a part of the program.
     pub modified: Duration,
-    /// The user's name and notes, or why they cannot be read.
+    /// The user's name and notes, or the reason why they cannot be read.
     pub notes: Result<EntryNotes, String>,
 }
 
-/// Lists the champions and runs in a folder of saves by name, and the champions that are part of the program unless a
-/// file has the same name. A folder that does not exist is empty.
+/// Lists the champions and runs in a folder of saves by name, and the champions that are part of the program unless a file has the same
+/// name. If the folder does not exist, it counts as empty.
 ///
 /// # Errors
-/// The folder cannot be read.
+/// Fails if the folder cannot be read.
 pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
     let folder = saves.path();
     let unreadable = SaveError::unreadable(folder);
     let mut entries = match fs::read_dir(folder) {
-        // Entries that vanish meanwhile are left out.
+        // Entries that vanish during the listing are omitted.
         Ok(found) => {
             let found: Vec<DirEntry> = found.flatten().collect();
-            // Most champions have no notes; for those no file is looked for.
+            // The names of all files of notes are collected first, so that no file is searched for a champion without notes.
             let is_notes = |path: &PathBuf| path.extension().is_some_and(|of| of == NOTES_ENDING);
             let notes = found.iter().map(DirEntry::path).filter(is_notes).collect();
             found.iter().filter_map(|found| entry_of(found, &notes)).collect()
@@ -60,8 +60,8 @@ pub fn list(saves: &SavesFolder) -> Result<Vec<LibraryEntry>, SaveError> {
     Ok(entries)
 }
 
-/// The library entry of a file or folder, if it is one. Names that begin with a dot are hidden.
-/// `notes` are the files of champions' notes in the folder.
+/// Returns the library entry of a file or folder. None if it is neither a champion's file nor a run's folder, or if its name begins with a
+/// dot. `notes` are the paths of champions' notes in the folder.
 fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry> {
     let (name, path) = (found.file_name(), found.path());
     if name.as_encoded_bytes().starts_with(b".") {
@@ -71,7 +71,7 @@ fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry>
     if kind.is_dir() {
         path.join(RUN_FILE).symlink_metadata().ok()?;
         let own = found.metadata().ok()?;
-        // The folder's own time changes only with the names in it, the log's with every generation.
+        // The time of the folder changes only with the names in it, the time of the log with every generation.
         let log = path.join(LOG_FILE).symlink_metadata();
         let bytes = log.as_ref().map_or(0, fs::Metadata::len);
         let modified = log.map_or(Duration::ZERO, |log| modified(&log)).max(modified(&own));
@@ -82,7 +82,7 @@ fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry>
     if path.extension().is_none_or(|extension| extension != "ron") {
         return None;
     }
-    // A link is listed as itself; reading it gives an error.
+    // A link is listed, but reading its contents gives an error.
     let own = found.metadata().ok()?;
     let is_noted = notes.contains(&notes_beside(&path));
     let place = SavePlace::Champion(path);
@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(entries.iter().filter(|entry| entry.place == run).count(), 1);
         let a = entries.iter().find(|entry| entry.place.name() == "a").expect("listed");
         assert_eq!(a.bytes, 8);
-        // The year 2020 is past.
+        // The modification time is after the year 2019.
         assert!(a.modified > Duration::from_secs(1_577_836_800));
     }
 

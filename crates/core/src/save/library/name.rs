@@ -5,28 +5,28 @@ use std::path::{Path, PathBuf};
 use crate::check::{self, Invalid, quoted};
 use crate::save::notes::{MAX_NAME_CHARS, check_run_name};
 
-/// Maximum length of a name, in bytes: with a number and an extension it is still a valid file name on every system.
+/// Maximum length of a name, in bytes. With a number and an extension it is still a valid file name on every system.
 const MAX_NAME_BYTES: usize = 200;
-/// The extension of a champion's file.
+/// Extension of a champion's file.
 pub const ENDING: &str = "ron";
 
-/// The extension of the notes beside a champion's file. It is not that of champions, which the library lists.
+/// Extension of the notes beside a champion's file. It differs from that of champions, which the library lists.
 pub const NOTES_ENDING: &str = "about";
 
-/// The file of notes beside a champion's file.
+/// Returns the path of the notes beside a champion's file.
 pub fn notes_beside(champion: &Path) -> PathBuf {
     champion.with_extension(NOTES_ENDING)
 }
 
-/// Characters that cannot be in a file's name: those of paths, and those that Windows does not allow. Champions are shared
-/// between systems, so the same names are allowed on all of them.
+/// Characters that a file's name must not have: separators of paths, and characters that Windows does not allow. The same names are allowed
+/// on all systems, because champions are shared between them.
 const NOT_IN_NAMES: &str = "/\\<>:\"|?*";
 
-/// Checks a name: it must neither lead out of its folder nor hide in it, and a file on every system can have it.
+/// Checks a name: a file on every system can have it, and it can neither lead to another folder nor make a hidden file.
 ///
 /// # Errors
-/// The name is empty or too long, begins or ends with a dot, has a slash, another forbidden character or a control character in it,
-/// or is the name of a device of Windows.
+/// Fails if the name is empty or too long, begins or ends with a dot, has a slash, another forbidden character or a control character, or
+/// is the name of a device of Windows.
 pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     let invalid = |value: String, allowed: &str| Err(Invalid::new("name", value, allowed));
     check_run_name(name)?;
@@ -47,7 +47,7 @@ pub fn check_entry_name(name: &str) -> Result<(), Invalid> {
     check::no_device("name", name)
 }
 
-/// An allowed name that is as close as possible to any given name.
+/// Returns the allowed name that is most similar to `name`.
 pub fn plain_name(name: &str) -> String {
     let is_allowed = |c: &char| !c.is_control() && !NOT_IN_NAMES.contains(*c);
     let plain: String = name.chars().filter(is_allowed).collect();
@@ -62,7 +62,7 @@ pub fn plain_name(name: &str) -> String {
     }
 }
 
-/// A name with `added` appended; its own end is cut off if it would become too long.
+/// Returns a name with `added` appended. The end of the name is cut off if the result would be too long.
 pub fn shortened(name: &str, added: &str) -> String {
     let fits = |text: &str| {
         text.chars().count() + added.chars().count() <= MAX_NAME_CHARS
@@ -75,7 +75,7 @@ pub fn shortened(name: &str, added: &str) -> String {
     kept.trim_end_matches(|c: char| c == '.' || c.is_whitespace()).to_owned() + added
 }
 
-/// The first free path in a folder: the name, then the name with 2, 3 and so on.
+/// Returns the first free path in a folder: the name, then the name with 2, 3 and so on.
 pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
     let path = |number: u32| {
         let number = if number > 1 { format!(" {number}") } else { String::new() };
@@ -83,7 +83,7 @@ pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
         folder.join(ending.map_or(name.clone(), |ending| format!("{name}.{ending}")))
     };
     let is_free = |path: &Path| path.symlink_metadata().is_err();
-    // Notes that a removed file left behind belong to it.
+    // Notes of a removed file may remain. They must not become notes of a new file.
     let has_no_notes = |path: &PathBuf| ending.is_none() || is_free(&notes_beside(path));
     let mut free = (1..=u32::MAX).map(path).filter(|path| is_free(path) && has_no_notes(path));
     free.next().unwrap_or_else(|| path(0))

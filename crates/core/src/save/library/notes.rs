@@ -10,7 +10,7 @@ use crate::save::SaveError;
 use crate::save::notes::{EntryNotes, notes_in_run};
 use crate::save::whole_file::write_new;
 
-/// The file of an entry's notes; none for a part of the program.
+/// Returns the path of an entry's notes. None for a part of the program.
 fn notes_path(place: &SavePlace) -> Option<PathBuf> {
     match place {
         SavePlace::Shipped(_) => None,
@@ -19,19 +19,19 @@ fn notes_path(place: &SavePlace) -> Option<PathBuf> {
     }
 }
 
-/// Reads the name and notes of an entry; empty ones if it has none.
+/// Reads the name and notes of an entry. Returns empty notes if the entry has none.
 ///
 /// # Errors
-/// Their file is unreadable, damaged, a link, or of another kind or format.
+/// Fails if the file of notes is unreadable, damaged, a link, or of another kind or format.
 pub fn read_notes(place: &SavePlace) -> Result<EntryNotes, SaveError> {
     notes_path(place).map_or_else(|| Ok(EntryNotes::default()), |path| EntryNotes::load(&path))
 }
 
-/// Gives an entry another name and other notes. Without any, it has no file.
+/// Gives an entry another name and other notes. If name and notes are empty, their file is removed.
 ///
 /// # Errors
-/// The entry is part of the program or no longer exists; name or notes are not allowed; the present ones are damaged,
-/// and would be lost; the file cannot be written.
+/// Fails if the entry is part of the program or does not exist, if name or notes are not allowed, if the present notes are damaged and
+/// would be lost, or if the file cannot be written.
 pub fn set_notes(place: &SavePlace, notes: &EntryNotes) -> Result<FileStep, SaveError> {
     let Some(path) = notes_path(place) else {
         let source = Invalid::new("entry", "built-in", "a champion's file or a run's folder");
@@ -43,13 +43,13 @@ pub fn set_notes(place: &SavePlace, notes: &EntryNotes) -> Result<FileStep, Save
     Ok(FileStep::Noted { place: place.clone(), before })
 }
 
-/// Renames a run: gives it a name of its own, or none if `name` is empty. Its folder keeps its name.
+/// Gives a run a name in its notes, or none if `name` is empty. The folder is not renamed.
 ///
 /// # Errors
-/// As for [`set_notes`].
+/// Fails as [`set_notes`] does.
 pub fn name_run(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
     let EntryNotes { text, .. } = read_notes(place)?;
-    // The folder's name is what is shown without a name.
+    // The folder's name is not stored, because it is shown for a run without a name.
     let name = if name == place.name() { String::new() } else { name.to_owned() };
     set_notes(place, &EntryNotes { name, text })
 }
@@ -57,17 +57,17 @@ pub fn name_run(place: &SavePlace, name: &str) -> Result<FileStep, SaveError> {
 /// Changes the text of an entry's notes.
 ///
 /// # Errors
-/// As for [`set_notes`].
+/// Fails as [`set_notes`] does.
 pub fn set_notes_text(place: &SavePlace, text: &str) -> Result<FileStep, SaveError> {
     let EntryNotes { name, .. } = read_notes(place)?;
     set_notes(place, &EntryNotes { name, text: text.to_owned() })
 }
 
-/// Writes a copy of a champion's file, and of the notes beside the original if that is a file. Notes that cannot be read are
-/// left behind: the copy is whole without them.
+/// Writes a copy of a champion's file, and of the notes beside the original if the original is a file. Notes that cannot be read are not
+/// copied.
 ///
 /// # Errors
-/// The path is taken, or the copy cannot be written.
+/// Fails if the path is taken, or if the copy cannot be written.
 pub fn add_copy(text: &str, original: Option<&Path>, path: PathBuf) -> Result<FileStep, SaveError> {
     write_new(&path, text.as_bytes())?;
     let noted = original.map(|from| read_notes(&SavePlace::Champion(from.to_owned())));

@@ -1,20 +1,20 @@
-//! Where a library entry is: in the program, in a file or in a folder.
+//! Places of library entries: in the program, in a file or in a folder.
 
 use std::path::{Path, PathBuf};
 
-/// The place of a library entry.
+/// Place of a library entry.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SavePlace {
-    /// A champion that is part of the program, by name; read-only.
+    /// The name of a champion that is part of the program and cannot be changed.
     Shipped(&'static str),
-    /// A champion's file.
+    /// The path of a champion's file.
     Champion(PathBuf),
-    /// A run's folder.
+    /// The path of a run's folder.
     Run(PathBuf),
 }
 
 impl SavePlace {
-    /// Its name: that of the file without its extension, or that of the folder.
+    /// Returns the name of the entry: that of the file without its extension, or that of the folder.
     pub fn name(&self) -> String {
         let part = match self {
             Self::Shipped(name) => return (*name).to_owned(),
@@ -24,7 +24,7 @@ impl SavePlace {
         part.unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The path of its file or folder, if it has one.
+    /// Returns the path of the file or folder. None for a part of the program.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::Shipped(_) => None,
@@ -32,7 +32,7 @@ impl SavePlace {
         }
     }
 
-    /// The run's folder, if it is a run.
+    /// Returns the run's folder. None if the entry is not a run.
     pub fn run(&self) -> Option<&Path> {
         match self {
             Self::Run(path) => Some(path),

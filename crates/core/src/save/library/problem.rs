@@ -1,18 +1,18 @@
-//! The reason why an entry cannot be read, in few words for its row and in a sentence for its details.
+//! Reasons why a library entry cannot be read, in few words for its row and in a sentence for its details.
 
 use crate::save::SaveError;
 
-/// The reason why an entry cannot be read.
+/// Reason why a library entry cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EntryProblem {
-    /// A few words for a row of the list: "damaged".
+    /// A few words for a row of the list, such as "damaged".
     pub words: &'static str,
-    /// The whole reason, in one line.
+    /// Whole reason, in one line.
     pub message: String,
 }
 
 impl EntryProblem {
-    /// The problem of an entry that is damaged.
+    /// Makes the problem of a damaged entry.
     pub fn damaged(message: &str) -> Self {
         Self { words: "damaged", message: message.to_owned() }
     }

@@ -7,7 +7,7 @@ macro_rules! shipped {
     };
 }
 
-/// Their names, and their files' texts.
+/// Names and file texts of the champions that are part of the program.
 pub const SHIPPED: &[(&str, &str)] = shipped![
     "by-heart",
     "climber",
@@ -33,7 +33,7 @@ pub const SHIPPED: &[(&str, &str)] = shipped![
     "twister"
 ];
 
-/// The text of one of them.
+/// Returns the file text of a champion that is part of the program. None if no such champion has the name.
 pub fn shipped_text(name: &str) -> Option<&'static str> {
     SHIPPED.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }

@@ -1,17 +1,17 @@
-//! A small picture of a champion's movement from the side, as points for a later drawing.
+//! Thumbnails: small pictures of a champion's movement from the side, as points for a later drawing.
 
 use crate::evolve::Champion;
 use crate::score::{KeyframeHistory, Recording, Trial};
 use crate::world::{Pose, Vector};
 
-/// A champion's movement, seen from the side. All points are y and z, in metres.
+/// Movement of a champion, seen from the side. All points are y and z, in metres.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Thumbnail {
-    /// The outline of the stairs, from the first riser's foot to the end of the landing.
+    /// Outline of the stairs, from the first riser's foot to the end of the landing.
     pub stairs_m: Vec<[f32; 2]>,
-    /// The path of the middle limb; empty without a recording.
+    /// Path of the middle limb; empty without a recording.
     pub way_m: Vec<[f32; 2]>,
-    /// The parts at the end, head first, each with the index of its limb and its corners in order; empty without a recording.
+    /// Parts at the end, head first: the index of the limb, and the corners in order. Empty without a recording.
     pub parts_m: Vec<(usize, [[f32; 2]; 4])>,
 }
 
@@ -19,12 +19,12 @@ pub struct Thumbnail {
 const PATH_POINTS: usize = 20;
 
 impl Thumbnail {
-    /// The stairs of a trial, without a snake.
+    /// Makes a thumbnail of the stairs of a trial, without a snake.
     pub fn of_trial(trial: &Trial) -> Self {
         Self { stairs_m: stairs(trial), ..Self::default() }
     }
 
-    /// The stairs and the recorded motion of a champion.
+    /// Makes a thumbnail of the stairs and the recorded motion of a champion.
     pub fn of_champion(champion: &Champion, recording: Option<&Recording>) -> Self {
         let empty = Self::of_trial(&champion.trial);
         let Some(recording) = recording else { return empty };
@@ -49,7 +49,7 @@ impl Thumbnail {
         Self { way_m, parts_m, ..empty }
     }
 
-    /// The stairs and the simulated motion of a champion. It simulates up to one keyframe's distance.
+    /// Makes a thumbnail of the stairs and the simulated motion of a champion. Simulates at most the distance between two keyframes.
     pub fn of_history(champion: &Champion, history: &KeyframeHistory) -> Self {
         let empty = Self::of_trial(&champion.trial);
         let middles = history.middles_m();
@@ -79,7 +79,7 @@ fn side(at_m: Vector) -> [f32; 2] {
     [at_m.y, at_m.z]
 }
 
-/// A limb from the side: the largest of three cross-sections through its middle.
+/// Returns the corners of a part seen from the side: the largest of the three cross-sections through its middle.
 fn quad(pose: &Pose, [width_m, length_m, height_m]: [f32; 3]) -> [[f32; 2]; 4] {
     let half = |x, y, z| side(pose.rotation * Vector::new(x, y, z) / 2.0);
     let across = half(width_m, 0.0, 0.0);
@@ -88,7 +88,7 @@ fn quad(pose: &Pose, [width_m, length_m, height_m]: [f32; 3]) -> [[f32; 2]; 4] {
     let area = |[a, b]: [[f32; 2]; 2]| (a[0] * b[1] - a[1] * b[0]).abs();
     let cuts = [[along, up], [along, across], [across, up]];
     let [a, b] = cuts.into_iter().fold(cuts[0], |best, cut| {
-        // Only a clear gain counts, so that rounding errors do not choose the cross-section of a straight limb.
+        // Only a clear gain in area counts, so that rounding errors do not choose the cross-section of a straight limb.
         if area(cut) > area(best) * 1.01 { cut } else { best }
     });
     let [y, z] = side(pose.translation);

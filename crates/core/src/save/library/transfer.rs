@@ -1,4 +1,4 @@
-//! Exports and imports: copies out of and into the folder of saves that overwrite nothing.
+//! Exports and imports: copies out of and into the folder of saves that never overwrite a file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,19 +18,19 @@ use crate::save::{
     parse_stairs, run_name,
 };
 
-/// Folder for exported copies within a folder of saves, unless another is given.
+/// Name of the folder for exported copies within a folder of saves, unless another folder is given.
 pub const EXPORTS: &str = "exports";
 
-/// Maximum size of a run's file that is copied, in MiB; checkpoints are the largest, and stay below.
+/// Maximum size of a copied file, in MiB. Checkpoints are the largest files of a run, and are smaller.
 const LARGEST_MIB: u64 = 64;
-/// Maximum depth of folders that are copied: a run has its files in one folder, and figures in one below.
+/// Maximum depth of copied folders: a run has its files in one folder, and figures in a folder below.
 const DEEPEST: u32 = 1;
 
-/// Copies an entry out of the folder of saves; a run with its whole folder. `to` is a folder, which is created if it
-/// does not exist, or for a champion a file with the extension ".ron"; the default is a folder within the saves.
+/// Copies an entry out of the folder of saves; of a run, its whole folder. `to` is a folder, which is created if it does not exist, or for
+/// a champion a file with the extension ".ron". None: the folder `EXPORTS` within the saves.
 ///
 /// # Errors
-/// A program writes into the run's folder; a file cannot be read or written; the file's name is taken.
+/// Fails if a program writes into the run's folder, if a file cannot be read or written, or if the file's name is taken.
 pub fn export(
     saves: &SavesFolder,
     place: &SavePlace,
@@ -56,7 +56,7 @@ pub fn export(
 }
 
 fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
-    // A folder that cannot be written needs no lock; a program that holds the lock is reported.
+    // A folder that cannot be written needs no lock. If another program holds the lock, the error is reported.
     let lock = match Lock::take(run, "the library") {
         Err(error @ SaveError::InUse { .. }) => return Err(error),
         other => other.ok(),
@@ -69,12 +69,12 @@ fn export_run(run: &Path, to: &Path) -> Result<FileStep, SaveError> {
     rename_copy(copied, &path)
 }
 
-/// The entry at a path: a folder is a run, and so is the file `run.ron` in it, because dialogs for files choose no
-/// folders. Any other file is a champion.
+/// Returns the entry at a path. A folder is a run, and so is the file `run.ron` in it, because file dialogs cannot choose folders. Any
+/// other file is a champion.
 pub fn run_of_plan(path: &Path) -> SavePlace {
     let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == RUN_FILE));
     match folder {
-        // A name alone lies in the working directory.
+        // A path without a folder lies in the working directory.
         Some(folder) if folder.as_os_str().is_empty() => SavePlace::Run(PathBuf::from(".")),
         Some(folder) => SavePlace::Run(folder.to_owned()),
         None if path.is_dir() && !path.is_symlink() => SavePlace::Run(path.to_owned()),
@@ -82,11 +82,11 @@ pub fn run_of_plan(path: &Path) -> SavePlace {
     }
 }
 
-/// Copies a champion, a run or stairs from anywhere into the folder of saves, after it has been read and checked
-/// completely. A run may be given as its file `run.ron`; stairs join the user's own.
+/// Copies a champion, a run or stairs from any path into the folder of saves, after reading and checking it completely. A run may be given
+/// as its file `run.ron`; stairs are added to the user's own stairs.
 ///
 /// # Errors
-/// The entry is unreadable, damaged, a link or of another kind; the run exists already; the copy cannot be written.
+/// Fails if the entry is unreadable, damaged, a link or of another kind, if the run exists already, or if the copy cannot be written.
 pub fn import(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
     fs::symlink_metadata(from).map_err(SaveError::unreadable(from))?;
     if let SavePlace::Run(run) = run_of_plan(from) {
@@ -111,14 +111,14 @@ fn import_stairs(saves: &SavesFolder, from: &Path, text: &str) -> Result<FileSte
 }
 
 fn import_run(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
-    // Checked before anything is copied: the folder may be any folder, chosen by mistake.
+    // The plan is read before anything is copied, because the user may have chosen a wrong folder.
     let path = saves.path().join(run_name(&load_plan(from)?));
     if path.symlink_metadata().is_ok() {
         return Err(taken(&path));
     }
     saves.prepare()?;
     let copied = copy_folder(from, saves.path())?;
-    // Check the copy: the original may change meanwhile.
+    // The copy is checked, because the original may have changed meanwhile.
     let plan = load_plan(copied.path())?;
     SavedProgress::read(copied.path(), &plan)?;
     rename_copy(copied, &path)
@@ -127,13 +127,13 @@ fn import_run(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
 /// Gives a completely copied folder its final name.
 fn rename_copy(copied: tempfile::TempDir, path: &Path) -> Result<FileStep, SaveError> {
     move_new(copied.path(), path)?;
-    // Nothing is left under the temporary name.
+    // The temporary folder has been renamed, so dropping it removes nothing.
     drop(copied);
     Ok(FileStep::Added { path: path.to_owned() })
 }
 
-/// Copies a run's folder into another folder under a temporary name; the copy is removed when dropped. Links, hidden
-/// files and the lock are left out.
+/// Copies a run's folder into another folder under a temporary name. The copy is removed when dropped. Links, hidden files and the lock are
+/// omitted.
 fn copy_folder(from: &Path, into: &Path) -> Result<tempfile::TempDir, SaveError> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(UNFINISHED);
@@ -225,7 +225,7 @@ mod tests {
         let again = import(&saves, &copy).expect_err("it is there already").to_string();
         assert!(again.contains("not taken yet"), "{again}");
         let (_other, others) = super::super::fixtures::saves();
-        // A dialog for files chooses the file.
+        // A file dialog chooses the file `run.ron`.
         let step = import(&others, &copy.join("run.ron")).expect("imported");
         let imported = step.place().expect("there");
         assert_eq!(imported.name(), run.name());
