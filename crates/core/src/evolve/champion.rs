@@ -70,7 +70,7 @@ impl Champion {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
-    /// Name of the preset.
+    /// Name of the preset from which the run's settings come.
     pub preset: String,
     /// Seed of the run.
     pub seed: u64,

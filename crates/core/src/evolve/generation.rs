@@ -51,22 +51,22 @@ pub struct GenerationRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statistics {
-    /// Arithmetic mean.
+    /// Mean fitness.
     pub mean: f64,
     /// Greatest fitness.
     pub best: f64,
     /// Median; of an even number of individuals, the mean of the two middle values.
     pub median: f64,
-    /// Standard deviation of the whole population (divided by n).
+    /// Standard deviation of the fitness over all healthy individuals (divided by n).
     pub std: f64,
     /// Least fitness.
     pub worst: f64,
     /// Mean final y of the individuals' centres, in m, whatever the fitness measures.
     pub mean_centre_y_m: f64,
-    /// Lower quartile. None in logs of earlier versions of the program.
+    /// Lower quartile of the fitness. None in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_quartile: Option<f64>,
-    /// Upper quartile. None in logs of earlier versions of the program.
+    /// Upper quartile of the fitness. None in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_quartile: Option<f64>,
 }

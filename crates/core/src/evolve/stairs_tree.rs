@@ -15,11 +15,11 @@ pub struct StairsTree {
     pub rounds: u32,
     /// All stairs so far, archived ones included.
     pub nodes: Vec<StairsNode>,
-    /// The latest transfers of snakes between stairs, the earliest first.
+    /// Latest transfers of snakes between stairs, the earliest first.
     pub transfers: Vec<Transfer>,
 }
 
-/// A staircase and its agent: the snake that climbs it best.
+/// A staircase and its agent, which is the snake that climbs it best.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StairsNode {
@@ -139,7 +139,7 @@ impl StairsTree {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StairsCount {
-    /// Number of finished rounds.
+    /// Number of finished rounds of the run.
     pub rounds: u32,
     /// Number of all stairs so far.
     pub all: u32,

@@ -25,7 +25,7 @@ pub struct LoadedChampion {
     pub exam: Vec<SuiteResult>,
 }
 
-/// Reads a champion.
+/// Reads a champion from its file.
 ///
 /// # Errors
 /// Fails if the file is unreadable, too large, damaged, of another kind or format, or has a value out of range.

@@ -30,9 +30,9 @@ struct CheckpointV3 {
     engine: u32,
     #[serde(default, skip_serializing_if = "is_default")]
     processors: Processors,
-    /// Fingerprint of the run's plan.
+    /// Fingerprint of the plan of the checkpoint's run.
     plan: String,
-    /// Number of finished generations.
+    /// Number of finished generations of the run.
     generation: u32,
     /// Hash over the finished generations, which ties the checkpoint to its log.
     run_hash: String,
@@ -79,7 +79,7 @@ pub fn checkpoints(folder: &Path) -> Result<Vec<u32>, SaveError> {
 
 /// Removes the checkpoints that [`is_kept`] does not keep after `finished` generations.
 pub fn remove_old_checkpoints(folder: &Path, finished: u32) {
-    // A checkpoint that cannot be removed does no harm.
+    // Errors are ignored, because an old checkpoint does no harm.
     for generation in checkpoints(folder).unwrap_or_default() {
         if !is_kept(generation, finished) {
             let _ = fs::remove_file(checkpoint_path(folder, generation));

@@ -19,7 +19,7 @@ pub enum SaveError {
     Unreadable {
         /// Path of the file.
         path: PathBuf,
-        /// The system's reason.
+        /// Reason that the operating system gave.
         source: std::io::Error,
     },
     /// The file or its folder could not be written.
@@ -27,7 +27,7 @@ pub enum SaveError {
     Unwritable {
         /// Path of the file or folder.
         path: PathBuf,
-        /// The system's reason.
+        /// Reason that the operating system gave.
         source: std::io::Error,
     },
     /// The file is larger than any that this program writes.
@@ -43,9 +43,9 @@ pub enum SaveError {
     Damaged {
         /// Path of the file.
         path: PathBuf,
-        /// Line of the damage; the first is 1.
+        /// Line of the damage, counted from 1.
         line: usize,
-        /// Column of the damage; the first is 1.
+        /// Column of the damage, counted from 1.
         column: usize,
         /// Description of the damage.
         problem: String,
@@ -96,7 +96,7 @@ pub enum SaveError {
     Invalid {
         /// Path of the file.
         path: PathBuf,
-        /// The field, its value, and the allowed values.
+        /// Name of the field, its value, and the allowed values.
         source: Invalid,
     },
 }
@@ -147,7 +147,7 @@ pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     Ok(bytes)
 }
 
-/// Reads a small text file.
+/// Reads a text file of at most 1 MiB.
 ///
 /// # Errors
 /// Fails if the file cannot be read, is not text, or is larger than 1 MiB.

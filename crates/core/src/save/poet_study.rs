@@ -119,7 +119,7 @@ impl PoetStudy {
     }
 }
 
-/// Reads a study.
+/// Reads a study of POET from its file.
 ///
 /// # Errors
 /// Fails if the file is unreadable, damaged, of another kind, format or engine, or has a value out of range.
@@ -131,7 +131,7 @@ pub fn load_poet_study(path: &Path) -> Result<PoetStudy, SaveError> {
     Ok(study)
 }
 
-/// Writes a study atomically.
+/// Writes a study of POET atomically.
 ///
 /// # Errors
 /// Fails if the file cannot be written.

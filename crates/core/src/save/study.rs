@@ -74,7 +74,7 @@ pub struct Protocol {
     pub fitness: Fitness,
     /// Number of evaluations that a run may spend.
     pub budget: u64,
-    /// Whether a run ends with the generation that reaches the goal.
+    /// Whether a run ends with the generation in which it reaches the goal.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stops_at_goal: bool,
     /// The settings that differ from the preset's, as text by their dotted names; none in files of earlier versions. Equal fingerprints
@@ -134,7 +134,7 @@ pub struct StudiedRun {
 pub enum StudyValue {
     /// A single number.
     Number(f64),
-    /// A text.
+    /// A text, such as a joint tree of a creature.
     Text(String),
     /// A list of numbers, such as one for each generation.
     Numbers(Vec<Option<f64>>),

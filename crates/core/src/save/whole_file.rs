@@ -122,7 +122,7 @@ pub fn remove_unfinished(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED))
     {
-        // A file that cannot be removed does no harm.
+        // Errors are ignored, because an incomplete file does no harm.
         let _ = fs::remove_file(entry.path());
     }
 }

@@ -20,7 +20,7 @@ pub struct Setting {
     pub unit: &'static str,
     /// Unit in which panels show the setting. None: the unit of files.
     pub display: Option<DisplayUnit>,
-    /// Whether a panel shows it only among the advanced settings of its section.
+    /// Whether panels show the setting only among the advanced settings of its section.
     pub is_advanced: bool,
     /// Effect of the setting on the snake or on the search, as a sentence without its full stop.
     pub hint: &'static str,
@@ -33,13 +33,13 @@ pub struct Setting {
 /// Type and range of the values of a setting.
 #[derive(Debug, Clone, Copy)]
 pub enum SettingKind {
-    /// A number; if the range allows it, also a number for each part, or no value.
+    /// A single number; if the range allows it, also a number for each part, or no value.
     Number(NumberRange),
     /// A list of numbers.
     List(NumberRange),
     /// A name from the list that the function returns.
     Choice(fn() -> Vec<Choice>),
-    /// On or off.
+    /// A switch that is on or off.
     Switch,
     /// An optional group of settings that is absent; the text says how to add it.
     Absent(&'static str),

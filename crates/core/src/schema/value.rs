@@ -7,11 +7,11 @@ use super::{Choices, PerPart};
 /// A value of a setting.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SettingValue {
-    /// A number, in the setting's unit.
+    /// A number in the setting's unit.
     Number(f32),
     /// A whole number.
     Whole(u32),
-    /// On or off.
+    /// The state of a switch: true is on.
     Switch(bool),
     /// The name of a choice, as files spell it.
     Name(&'static str),

@@ -13,7 +13,7 @@ pub struct Section {
     pub about: &'static str,
 }
 
-/// A struct of settings.
+/// A struct of settings that a `Walk` can visit.
 pub trait SettingGroup {
     /// Visits every field with `walk`. Destructure `self` without `..`: a field without a row then does not compile.
     fn walk(&mut self, walk: &mut Walk<'_>);
@@ -88,7 +88,7 @@ pub fn walk(group: &mut dyn SettingGroup, visitor: &mut dyn SettingVisitor) {
 }
 
 impl Walk<'_> {
-    /// Puts the next settings of this group into a section.
+    /// Assigns the next settings of this group to a section.
     pub fn section(&mut self, section: Section) {
         self.state.section = section;
     }

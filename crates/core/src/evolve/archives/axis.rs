@@ -1,4 +1,4 @@
-//! The axes of an archive.
+//! Axes of archives, and their division into cells.
 
 use super::descriptor::Descriptor;
 
@@ -22,7 +22,7 @@ pub struct ArchiveAxis {
     pub range: [f64; 2],
     /// How the range is divided into cells.
     pub scale: AxisScale,
-    /// Number of cells.
+    /// Number of cells into which the axis is divided.
     pub cells: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Changes of settings during a run.
+//! Changes of settings while a run goes on.
 //!
 //! A change takes effect at the beginning of a generation. The plan at the start of a run and its changes together determine the bits of
 //! the run.
@@ -41,7 +41,7 @@ struct MutationRangeChange {
 
 /// Maximum number of changes of a run, more than anyone makes by hand.
 pub const MOST_CHANGES: usize = 2000;
-/// Maximum length of the text of a new value, in bytes.
+/// Maximum length, in bytes, of the text of a setting's new value.
 const LONGEST_VALUE: usize = 60;
 
 const UNKNOWN: &str = "There is no such setting.";

@@ -30,7 +30,7 @@ setting_group! {
                 .slider(0.1, 1.0)
                 .fixed(BEGUN);
 
-        /// Share of the way to the landing that a snake has to cover to succeed.
+        /// Share of the way to the landing that a snake has to cover to succeed on a rung.
         way: f32 = 0.85,
             number("Way of a success", 0.01..=1.0).advanced().used_if(*first_rise_m > 0.0)
                 .hint("Share of the way to the landing that a snake has to cover to succeed")

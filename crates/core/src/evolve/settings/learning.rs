@@ -46,7 +46,7 @@ setting_group! {
                 .hint("The learning rate is 1 over the number of visits to this power. At 0 it stays at 1")
                 .slider(0.0, 1.0);
 
-        /// Least learning rate.
+        /// Value below which the learning rate does not fall.
         rate_floor: f32 = 0.05,
             number("Least learning rate", 0.0..=1.0)
                 .hint("Below this value the learning rate does not fall: what is new always counts a little")
@@ -91,7 +91,7 @@ setting_group! {
         discount: f32 = 0.95,
             worth_of_the_future();
 
-        /// Learning rate.
+        /// Learning rate: how fast the predictions of rules follow experience.
         learning_rate: f32 = 0.05,
             number("Learning rate", 0.001..=1.0).advanced()
                 .hint("How fast the predictions of rules follow experience")
@@ -145,7 +145,7 @@ impl XcsRunSettings {
 setting_group! {
     /// Settings of ZCS.
     pub struct ZcsRunSettings in "ZCS": "Rules grow stronger with what their postures earn." {
-        /// Number of rules.
+        /// Number of rules in the classifier system.
         rules: u32 = 2000,
             whole("Rules", 12..=MOST_SYSTEM_RULES)
                 .hint("Number of rules. More rules distinguish more situations")
@@ -165,7 +165,7 @@ setting_group! {
                 .hint("How fast the strengths of rules follow experience")
                 .slider(0.01, 0.5);
 
-        /// Probability that the genetic algorithm runs after a decision.
+        /// Probability that the genetic algorithm makes new rules after a decision.
         ga_rate: f32 = 0.25,
             number("New rules per decision", 0.0..=1.0).advanced()
                 .hint("Probability that two rules have children after a decision")

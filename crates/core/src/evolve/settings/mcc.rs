@@ -60,7 +60,7 @@ setting_group! {
                 .hint("How many snakes a search on the first stairs has to find before coevolution begins; at most as many as their queue holds")
                 .slider(1.0, 100.0);
 
-        /// Rise of the first stairs, in m.
+        /// Rise of a step of the first stairs, in m.
         start_rise_m: f32 = 0.1,
             number("Rise at the start", 0.1..=1.2)
                 .unit("m")

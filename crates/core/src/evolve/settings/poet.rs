@@ -66,7 +66,7 @@ setting_group! {
                 .hint("Mutants on which the best snake covers a smaller share of the way are refused")
                 .slider(0.0, 1.0);
 
-        /// The greatest score of the best snake on stairs that are not too easy.
+        /// Greatest score of the best snake on stairs that are not too easy.
         too_easy_above: f32 = 0.85,
             number("Too easy above", 0.0..=1.1).advanced()
                 .hint("Mutants on which a snake covers a greater share of the way are refused")
@@ -84,7 +84,7 @@ setting_group! {
                 .hint("Varied trials in which the snakes of pairs are compared, so that none moves by luck")
                 .slider(0.0, 10.0);
 
-        /// Rise of the first stairs, in m.
+        /// Rise of a step of the first stairs, in m.
         root_rise_m: f32 = 0.1,
             number("First rise", 0.1..=1.2)
                 .unit("m")

@@ -103,7 +103,7 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.halving.check_size(evolution.population, size),
         ..StrategyInfo::PLAIN
     };
-    /// A genetic algorithm.
+    /// A genetic algorithm over real-valued genes, with self-adapted mutation steps.
     Ga = StrategyInfo {
         name: "ga",
         title: "Genetic algorithm",
@@ -115,7 +115,7 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
-    /// Covariance matrix adaptation.
+    /// CMA-ES: covariance matrix adaptation evolution strategy.
     CmaEs = StrategyInfo {
         name: "cma_es",
         title: "CMA-ES",
@@ -155,7 +155,7 @@ strategy_kinds! {
         color: [0x80, 0x80, 0x80],
         ..StrategyInfo::PLAIN
     };
-    /// NEAT, the evolution of networks that grow.
+    /// NEAT: evolution of networks that grow.
     Neat = StrategyInfo {
         name: "neat",
         title: "NEAT",
@@ -201,7 +201,7 @@ strategy_kinds! {
         check_size: |evolution, _| check_learners(evolution.population),
         ..StrategyInfo::PLAIN
     };
-    /// A genetic algorithm over bodies.
+    /// A genetic algorithm over bodies and their controllers.
     BodyGa = StrategyInfo {
         name: "body_ga",
         title: "Genetic algorithm of bodies",
@@ -239,7 +239,7 @@ strategy_kinds! {
         },
         ..StrategyInfo::PLAIN
     };
-    /// A CMA-ES for each number of blocks.
+    /// Islands: a CMA-ES for each number of blocks.
     Islands = StrategyInfo {
         name: "islands",
         title: "Islands",
@@ -291,7 +291,7 @@ strategy_kinds! {
         check_size: |evolution, size| evolution.mcc.check_size(size),
         ..StrategyInfo::PLAIN
     };
-    /// A genetic algorithm over graphs that grow into creatures.
+    /// A genetic algorithm over graphs that grow into creatures with branching bodies.
     CreatureGa = StrategyInfo {
         name: "creature_ga",
         title: "Genetic algorithm of creatures",

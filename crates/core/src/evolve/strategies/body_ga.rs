@@ -22,7 +22,7 @@ use crate::genome::{BodySpace, Genome};
 use crate::rng::Purpose;
 use crate::score::Evaluation;
 
-/// An individual of the last generation.
+/// An individual of the last generation, with its age.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyMember {

@@ -27,7 +27,7 @@ const STEPS: std::ops::RangeInclusive<f64> = 1.0e-4..=0.5;
 /// Learning rate of steps: a child's step is the inherited step times exp(rate · normal number).
 const LEARNING_RATE: f64 = 0.2;
 
-/// An individual of the last generation.
+/// An individual of the last generation, with its mutation step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GaMember {

@@ -26,7 +26,7 @@ pub enum EntryDetails {
     Run(Box<RunDetails>),
 }
 
-/// The contents of a champion's file.
+/// Contents of a champion's file, as the library shows them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChampionDetails {
     /// Fitness of the champion.
@@ -57,7 +57,7 @@ pub struct ChampionDetails {
     pub thumbnail: Thumbnail,
 }
 
-/// The contents of a run's folder.
+/// Contents of a run's folder, as the library shows them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDetails {
     /// Name of the run's preset.
@@ -70,7 +70,7 @@ pub struct RunDetails {
     pub controller: ControllerKind,
     /// Kind of fitness that was maximised.
     pub rewarded: Fitness,
-    /// Number of finished generations.
+    /// Number of finished generations of the run.
     pub finished: u32,
     /// Number of generations in total. None (unknown) for a run of another engine.
     pub generations: Option<u32>,
@@ -87,7 +87,7 @@ pub struct RunDetails {
     pub thumbnail: Thumbnail,
 }
 
-/// Reads the contents of an entry.
+/// Reads and checks the contents of an entry.
 ///
 /// # Errors
 /// Fails if the entry is unreadable, too large, damaged, a link, of another kind or format, or has a value out of range.

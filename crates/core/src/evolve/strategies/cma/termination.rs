@@ -29,7 +29,7 @@ pub enum StopReason {
     AxisWithoutEffect,
     /// One axis is more than 1e7 times as long as another (ConditionCov).
     Condition,
-    /// Numbers left the range of `f64`.
+    /// Numbers of the state left the range of `f64`.
     Numbers,
 }
 

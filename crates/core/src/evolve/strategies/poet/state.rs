@@ -67,7 +67,7 @@ pub struct Child {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields, bound(serialize = "S: Strategy", deserialize = "S: Deserialize<'de>"))]
 pub struct Pair<S> {
-    /// Index of the stairs.
+    /// Index of the pair's stairs in the run.
     pub node: u32,
     #[serde(serialize_with = "serialize_search")]
     pub search: S,
