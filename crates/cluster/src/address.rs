@@ -1,4 +1,4 @@
-//! The address of a server, and why a connection to it cannot be made.
+//! The address of a NATS server, and the error message when no connection to it can be made.
 
 use std::path::PathBuf;
 
@@ -7,35 +7,34 @@ use async_nats::{ConnectError, ConnectErrorKind, ServerAddr};
 use super::connection::{NO_RIGHT, one_line};
 use snakes_core::check::Invalid;
 
-/// How to reach a server.
+/// Address of a NATS server and the files that a connection to it needs.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BrokerOptions {
-    /// Its addresses, such as `nats://192.168.1.5:4222`; of a cluster several, separated by commas.
+    /// Address of the server, such as `nats://192.168.1.5:4222`. A cluster of servers has several, separated by commas.
     pub url: String,
-    /// A file with credentials: what `nsc` writes (`.creds`), or the seed of an NKey.
+    /// File with the credentials: a `.creds` file as `nsc` writes it, or the seed of an NKey. `None` connects without.
     pub creds: Option<PathBuf>,
-    /// A file with the certificate of the authority that signed the server's.
+    /// File with the certificate of the authority that signed the server's certificate. `None` uses the system's.
     pub tls_ca: Option<PathBuf>,
 }
 
 impl BrokerOptions {
-    /// Refuses what is no address, and one with a password: others can read the command line.
+    /// Checks each address. An address with a password is refused, because other users can read the command line.
     ///
     /// # Errors
-    /// The address is none, or has a password.
+    /// An address has the wrong form, or contains a user or a password.
     pub fn check(&self) -> Result<(), Invalid> {
         self.url.split(',').try_for_each(check_address)
     }
 
-    /// The flags that name this server on a command line, to be copied. Where a secret or a file of this computer is
-    /// needed, the flag has a word in its place.
+    /// Returns the flags that name this server on a command line, to be copied. `FILE` stands for the path of a file.
     pub fn flags(&self) -> String {
         let creds = if self.creds.is_some() { " --creds FILE" } else { "" };
         let tls_ca = if self.tls_ca.is_some() { " --tls-ca FILE" } else { "" };
         format!("--nats {}{creds}{tls_ca}", self.url)
     }
 
-    /// The hosts and ports, as they stand in messages.
+    /// Returns the hosts and ports of the addresses, as they appear in messages.
     fn places(&self) -> String {
         let place = |address: &str| match address.parse::<ServerAddr>() {
             Ok(address) => format!("{}:{}", address.host(), address.port()),
@@ -44,7 +43,7 @@ impl BrokerOptions {
         self.url.split(',').map(place).collect::<Vec<String>>().join(", ")
     }
 
-    /// Why the connection cannot be made, and what helps.
+    /// Returns the reason why the connection cannot be made, with advice where the reason is a known one.
     pub(super) fn why_unreachable(&self, error: &ConnectError) -> String {
         let problem = one_line(error);
         let advice = [
@@ -75,7 +74,7 @@ fn check_address(address: &str) -> Result<(), Invalid> {
     let refused =
         |shown: &str, allowed: String| Err(Invalid::new("--nats", format!("{shown:?}"), allowed));
     if let Some((_, host)) = address.rsplit_once('@') {
-        // The password stands in no message.
+        // The message leaves out the password.
         let allowed =
             "an address without user and password, which others could read (use --creds FILE)";
         return refused(&format!("…@{host}"), allowed.to_owned());
@@ -86,7 +85,7 @@ fn check_address(address: &str) -> Result<(), Invalid> {
     if host.filter(is_one).is_some() {
         return Ok(());
     }
-    // An offer: this host in the right form.
+    // Suggests the same host in the right form.
     let host = address.rsplit_once("://").map_or(address, |(_, host)| host);
     let host = host.trim_end_matches('/');
     let better = if host.contains(':') { host.to_owned() } else { format!("{host}:4222") };

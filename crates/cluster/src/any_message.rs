@@ -1,4 +1,4 @@
-//! Reading a message of any kind, as the fuzz target and its test do.
+//! Reading a message of any kind, for the fuzz target and its test.
 
 use super::compute::Shared;
 use super::hello::{RunNotice, WorkerNotice};
@@ -7,11 +7,11 @@ use super::wire::{ResultBatch, TaskKind, WireError, WorkBatch, parse_line};
 use snakes_core::genome::Genome;
 use snakes_core::score::ExamCondition;
 
-/// Reads bytes as a message of each kind, and each line as a task, an outcome and something shared. Returns the kinds
-/// that they are.
+/// Tries to read bytes as a message of each kind, and their lines as tasks, outcomes, trials or genomes. Returns the
+/// names of the kinds that could be read.
 ///
 /// # Errors
-/// They are of no kind. The error is that of the last one.
+/// The bytes could be read as no kind of message. The error is that of the last attempt.
 pub fn kinds_of_message(bytes: &[u8]) -> Result<Vec<&'static str>, WireError> {
     let mut kinds = Vec::new();
     let mut last = Ok(());
@@ -47,7 +47,7 @@ mod tests {
     use snakes_core::{ENGINE_VERSION, Processors};
     use snakes_lab::run::evaluate_caught;
 
-    /// Messages of every kind, by name.
+    /// Returns messages of every kind, each with the name of its kind.
     fn examples() -> Vec<(String, Vec<u8>)> {
         let mut examples = Vec::new();
         for preset in ["climb", "senses", "q-learning", "xcs"] {

@@ -19,36 +19,36 @@ use super::names::{
 };
 use snakes_core::save::load_text;
 
-/// A connection. It is made again whenever it is lost.
+/// A connection to a NATS server. It reconnects whenever it is lost.
 #[derive(Debug)]
 pub struct Broker {
     options: BrokerOptions,
     connection: Arc<ServerConnection>,
     runtime: Handle,
-    /// Present until this is dropped.
+    /// The runtime of the connection. It is `None` only while the broker is dropped.
     owned_runtime: Option<Runtime>,
     client: Client,
     jetstream: Context,
 }
 
-/// The messages that are fetched.
+/// Which messages a consumer fetches.
 #[derive(Debug, Clone)]
 pub enum PullSource {
-    /// Batches for workers with this proof.
+    /// Batches for workers whose engine has this proof.
     Work(String),
-    /// Results of this run.
+    /// Results of the run with this name.
     Results(String),
 }
 
-/// How long a server may take to answer.
+/// Longest time that a server may take to answer.
 const ANSWER_WAIT: Duration = Duration::from_secs(5);
-/// Maximum number of waiting requests for work: one for each thread in the room.
+/// Maximum number of requests for work that wait on the server at the same time.
 const MOST_WAITING: i64 = 20_000;
-/// Maximum number of batches that workers have at the same time.
+/// Maximum number of batches that workers have fetched but not yet acknowledged.
 const MOST_OUTSTANDING: i64 = 20_000;
 
 impl Broker {
-    /// Connects, and makes the streams that are not there yet.
+    /// Connects to the server, and creates the streams that do not exist yet.
     ///
     /// # Errors
     /// The server cannot be reached, refuses the credentials, or has no JetStream.
@@ -78,22 +78,22 @@ impl Broker {
         Ok(broker)
     }
 
-    /// The address.
+    /// Returns the address of the server.
     pub fn url(&self) -> &str {
         &self.options.url
     }
 
-    /// The flags that name this server on a command line.
+    /// Returns the flags that name this server on a command line.
     pub(super) fn flags(&self) -> String {
         self.options.flags()
     }
 
-    /// The state of the connection.
+    /// Returns the state of the connection.
     pub(super) fn connection(&self) -> &ServerConnection {
         &self.connection
     }
 
-    /// The runtime of the connection.
+    /// Returns the handle of the connection's runtime.
     pub(super) fn runtime(&self) -> &Handle {
         &self.runtime
     }
@@ -106,24 +106,24 @@ impl Broker {
         &self.jetstream
     }
 
-    /// The largest message that the server takes, in bytes.
+    /// Returns the largest payload of a message that the server accepts, in bytes.
     pub(super) fn largest_message(&self) -> usize {
-        // The remaining 4 KiB of a message are for headers.
+        // 4 KiB of a message are reserved for its headers.
         self.client.server_info().max_payload.saturating_sub(4096)
     }
 
-    /// Makes the streams that are not there.
+    /// Creates the streams of batches and of results if they do not exist.
     pub(super) async fn make_streams(&self) -> Result<(), Trouble> {
         self.work_stream().await?;
         self.result_stream().await.map(drop)
     }
 
-    /// The stream of batches, which is made if it is not there.
+    /// Returns the stream of batches. Creates it if it does not exist.
     pub(super) async fn work_stream(&self) -> Result<Stream, Trouble> {
         self.stream(WORK_STREAM, WORK_SUBJECTS).await
     }
 
-    /// The stream of results, which is made if it is not there.
+    /// Returns the stream of results. Creates it if it does not exist.
     pub(super) async fn result_stream(&self) -> Result<Stream, Trouble> {
         self.stream(RESULT_STREAM, RESULT_SUBJECTS).await
     }
@@ -142,14 +142,14 @@ impl Broker {
         Ok(self.jetstream.get_or_create_stream(config).await?)
     }
 
-    /// Begins to listen to the notices of workers and of runs.
+    /// Subscribes to the notices of workers (first) and of runs (second).
     pub(super) async fn notices(&self) -> Result<(Subscriber, Subscriber), Trouble> {
         let workers = self.client.subscribe(WORKER_NOTICES).await?;
         Ok((workers, self.client.subscribe(RUN_NOTICES).await?))
     }
 
-    /// A consumer, and whether it had to be made because it was not there. All workers with the same proof share one, and
-    /// each run has its own.
+    /// Returns the consumer for these messages, and whether it was missing and had to be created. All workers with the
+    /// same proof share a consumer. Each run has a consumer for its results.
     pub(super) async fn consumer(
         &self,
         source: &PullSource,
@@ -173,7 +173,7 @@ impl Broker {
 }
 
 impl Drop for Broker {
-    /// A task on the runtime may hold the broker last, and must not wait for its own end.
+    /// Shuts the runtime down without waiting: the broker may be dropped by a task on this same runtime.
     fn drop(&mut self) {
         if let Some(runtime) = self.owned_runtime.take() {
             runtime.shutdown_background();
@@ -199,7 +199,7 @@ async fn connect(
         };
     }
     if let Some(path) = &options.tls_ca {
-        // The client's own error does not name the file.
+        // The client's own error would not name the file.
         if !load_text(path)?.contains("-----BEGIN CERTIFICATE-----") {
             return Err(ClusterError::NoCertificate(path.clone()));
         }
@@ -228,7 +228,7 @@ async fn connect(
 }
 
 impl PullSource {
-    /// The consumer with this name.
+    /// Returns the settings of the consumer with this name.
     fn config(&self, name: &str) -> pull::Config {
         let config = pull::Config {
             durable_name: Some(name.to_owned()),

@@ -9,7 +9,7 @@ use snakes_core::genome::Genome;
 use snakes_core::score::{ExamCondition, Trial};
 use snakes_lab::run::{evaluate_caught, examine_caught};
 
-/// The trial or the genome that all tasks of a batch have in common, read and checked.
+/// The trial or the genome that all tasks of a batch share, read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shared {
     /// The trial in which genomes are scored.
@@ -18,19 +18,21 @@ pub enum Shared {
     Genome(Box<Genome>),
 }
 
-/// Computes outcomes. The program has one implementation, [`Simulator`]; tests have slower and wrong ones.
+/// Computes the outcomes of tasks. The program itself uses only [`Simulator`]; tests use slower and wrong
+/// implementations.
 pub trait Compute: Debug + Send + Sync {
-    /// The outcome of a task.
+    /// Returns the outcome of a task, given what its batch shares.
     fn outcome(&self, shared: &Shared, task: &str) -> Outcome;
 }
 
-/// Simulates the task.
+/// Computes the outcome of a task by simulation.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Simulator;
 
 impl Shared {
-    /// Reads what a batch of this kind shares. Text that this program would write in another way holds something that it
-    /// does not know, and is refused: the coordinator's hash of it is not this program's.
+    /// Reads the trial or the genome that a batch of this kind shares. The text must be exactly the text that this
+    /// program would write. Otherwise it contains something unknown to this program, and its hash would not be this
+    /// program's hash.
     ///
     /// # Errors
     /// The text is damaged, a value is not allowed, or it comes from another version.
@@ -77,7 +79,7 @@ fn simulated(shared: &Shared, task: &str) -> Result<Outcome, WireError> {
     })
 }
 
-/// The outcome of a task of which only the texts are known.
+/// Returns the outcome of a task, given as text together with the text that its batch shares.
 pub fn outcome_of_texts(
     compute: &Arc<dyn Compute>,
     kind: TaskKind,

@@ -1,5 +1,5 @@
-//! The state of a connection, and what is said about it: a line when it is lost, a line when it is there again, and a line
-//! for a request that the server refuses again and again.
+//! The state of a connection, and the messages about it: a line when the connection is lost, a line when it is made
+//! again, and a line for a request that keeps failing.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,9 +14,9 @@ use snakes_lab::run::headless::say;
 /// Why a request to the server failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trouble {
-    /// No answer came. A connection that is lost without a sign looks like this, too.
+    /// No answer came. A connection that is lost without notice looks the same.
     NoAnswer,
-    /// The server refused, in its words.
+    /// The server refused the request. Holds the server's message.
     Refused(String),
 }
 
@@ -24,7 +24,7 @@ pub enum Trouble {
 #[derive(Debug)]
 pub struct ServerConnection {
     url: String,
-    /// Number of times that the connection was made again.
+    /// Number of times that the connection was made again after a loss.
     renewals: watch::Sender<u64>,
     state: Mutex<ConnectionState>,
 }
@@ -32,9 +32,9 @@ pub struct ServerConnection {
 #[derive(Debug, Default)]
 struct ConnectionState {
     is_lost: bool,
-    /// The server's latest message about rights, since the connection was made.
+    /// The latest message about rights since the connection was made, which is not repeated.
     told: Option<String>,
-    /// Requests that fail, by their task.
+    /// Requests that currently fail, by the name of their task.
     failing: BTreeMap<&'static str, Failing>,
 }
 
@@ -44,11 +44,12 @@ struct Failing {
     is_told: bool,
 }
 
-/// A request that was refused for this long is told to the user: the next one often succeeds.
+/// The user is told of a request that has been refused for this long. A shorter refusal often ends by itself.
 const PATIENCE_WITH_REFUSALS: Duration = Duration::from_secs(3);
-/// A request without an answer for this long is told to the user, unless the connection turns out to be lost by then.
+/// The user is told of a request that has had no answer for this long, unless the connection is known to be lost by
+/// then.
 const PATIENCE_WITH_SILENCE: Duration = Duration::from_secs(20);
-/// Parts of messages that mean that no answer came, because the server ends, begins, or cannot be reached.
+/// Parts of error messages which show that no answer came because the server stops, starts, or cannot be reached.
 const NO_ANSWER: [&str; 7] = [
     "timed out",
     "broken pipe",
@@ -60,7 +61,7 @@ const NO_ANSWER: [&str; 7] = [
 ];
 
 impl Trouble {
-    /// The trouble behind an error of the client.
+    /// Classifies an error of the NATS client.
     pub fn of(error: &dyn std::error::Error) -> Self {
         let words = one_line(error);
         match NO_ANSWER.iter().any(|part| words.contains(part)) {
@@ -86,22 +87,22 @@ impl fmt::Display for Trouble {
 }
 
 impl ServerConnection {
-    /// The state of a connection that is made for the first time.
+    /// Creates the state of a connection before it is made for the first time.
     pub fn new(url: &str) -> Self {
         Self { url: url.to_owned(), renewals: watch::Sender::new(0), state: Mutex::default() }
     }
 
-    /// Whether the connection is lost, as far as is known.
+    /// Returns whether the connection is known to be lost.
     pub fn is_lost(&self) -> bool {
         self.state().is_lost
     }
 
-    /// Changes each time that the connection was made again.
+    /// Returns a receiver that is notified each time the connection is made again.
     pub fn renewals(&self) -> watch::Receiver<u64> {
         self.renewals.subscribe()
     }
 
-    /// The client tells of an event.
+    /// Handles an event of the NATS client, and prints a line if the event is new to the user.
     pub fn on_event(&self, event: &Event) {
         if let Some(line) = self.line(event) {
             say(&format!("{}: {line}", self.url));
@@ -112,7 +113,7 @@ impl ServerConnection {
         let mut state = self.state();
         match event {
             Event::Disconnected => {
-                // Requests fail from now on, which needs no lines of its own.
+                // Requests fail while the connection is lost; they need no lines of their own.
                 state.failing.clear();
                 let is_news = !std::mem::replace(&mut state.is_lost, true);
                 is_news.then(|| "connection lost; waiting for the server".to_owned())
@@ -128,7 +129,7 @@ impl ServerConnection {
             Event::ServerError(ServerError::AuthorizationViolation) => {
                 state.tell_once(NO_RIGHT.to_owned())
             }
-            // Other errors of the server end the connection, which is an event of its own.
+            // Other errors of the server end the connection, which causes a separate event.
             Event::ServerError(ServerError::Other(words)) if words.contains("ermissions") => {
                 state.tell_once(format!("the server says: {words}"))
             }
@@ -139,7 +140,7 @@ impl ServerConnection {
         }
     }
 
-    /// A request failed, and is repeated. `task` names it in a few words.
+    /// Records that a request failed and will be repeated. `task` describes the failure in a few words.
     pub fn failed(&self, task: &'static str, trouble: &Trouble) {
         if self.is_to_be_told(task, trouble, Instant::now()) {
             say(&format!("{}: {task}: {trouble}; trying again", self.url));
@@ -160,7 +161,7 @@ impl ServerConnection {
         is_due && !std::mem::replace(&mut failing.is_told, true)
     }
 
-    /// A request succeeded.
+    /// Records that a request succeeded.
     pub fn succeeded(&self, task: &'static str) {
         let failing = self.state().failing.remove(task);
         if failing.is_some_and(|failing| failing.is_told) {
@@ -173,11 +174,11 @@ impl ServerConnection {
     }
 }
 
-/// The error that the server refuses the credentials.
+/// Error message for credentials that the server refuses.
 pub const NO_RIGHT: &str = "the server refuses the credentials (--creds FILE)";
 
 impl ConnectionState {
-    /// The line, unless it was the last one.
+    /// Returns the line, or `None` if it equals the line before.
     fn tell_once(&mut self, line: String) -> Option<String> {
         let is_news = self.told.as_ref() != Some(&line);
         self.told = Some(line.clone());
@@ -185,7 +186,7 @@ impl ConnectionState {
     }
 }
 
-/// An error with its causes, on one line.
+/// Returns an error and its causes as one line.
 pub fn one_line(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();

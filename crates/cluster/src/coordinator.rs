@@ -1,4 +1,4 @@
-//! A coordinator: evaluates on the workers of a server, and on threads of its own if it is told to.
+//! A coordinator: evaluates on the workers of a server, and optionally on threads of its own.
 
 mod actor;
 mod common;
@@ -29,37 +29,38 @@ use snakes_core::score::{ExamCondition, ExamEnd, Trial};
 use snakes_lab::run::headless::say;
 use snakes_lab::run::{Cancelled, EvaluationResult, Evaluator, Job, RunControl, WorkersError};
 
-/// Evaluates on the workers of a server.
+/// An evaluator that uses the workers of a server.
 pub struct Coordinator {
     inner: Arc<Inner>,
-    /// Whether this evaluator makes one run of several: see [`Evaluator::with_workers`].
+    /// Whether this evaluator is used for a single run instead of several at the same time: see
+    /// [`Evaluator::with_workers`].
     is_single: bool,
 }
 
 struct Inner {
     commands: tokio::sync::mpsc::UnboundedSender<CoordinatorCommand>,
     next_call: AtomicU64,
-    /// Whether as many workers as expected have been there.
+    /// Whether as many workers as expected were present at some time.
     has_begun: AtomicBool,
     common: Arc<Common>,
-    /// The coordinator's thread, and its own threads that compute.
+    /// The coordinator's thread, and its threads that compute.
     threads: Vec<thread::JoinHandle<()>>,
     options: CoordinatorOptions,
-    /// The flags that name the server.
+    /// Command-line flags that name the server.
     flags: String,
 }
 
-/// Maximum number of calls of one batch at the same time.
+/// Maximum number of calls that one batch of jobs has open at the same time.
 const MOST_CALLS: usize = 32;
-/// Interval at which a waiting call looks at its control.
+/// Interval at which a waiting call checks whether it is paused or cancelled.
 const CONTROL_INTERVAL: Duration = Duration::from_millis(50);
-/// How long the end of a run waits for checks of its last results.
+/// Longest time that the end of a run waits for the checks of its last results.
 const LONGEST_CHECK: Duration = Duration::from_secs(60);
-/// How long a coordinator waits for workers before it says so.
+/// How long a coordinator waits for workers before it tells the user.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 impl Coordinator {
-    /// Connects the run with the workers on a server.
+    /// Connects a run to the workers of a server.
     ///
     /// # Errors
     /// The name of the run is not allowed, or the server refuses the run.
@@ -100,15 +101,16 @@ impl Coordinator {
         self.inner.common.status().clone()
     }
 
-    /// Says that workers are missing, and the command that starts one.
+    /// Tells the user that workers are missing, with the command that starts a worker.
     fn say_that_it_waits(&self, present: &str) {
         say(&format!("{present}; waiting (start one with: snakes worker {})", self.inner.flags));
     }
 
-    /// Waits until there are as many workers as the run expects. Says how many there are, if that takes long.
+    /// Waits until as many workers are present as the run expects. If this takes long, tells the user how many are
+    /// present.
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was.
+    /// [`Cancelled`], if `control` was cancelled.
     fn wait_for_workers(&self, control: &RunControl) -> Result<(), Cancelled> {
         let expected = self.inner.options.expect_workers;
         let (began, mut told) = (Instant::now(), None);
@@ -126,8 +128,8 @@ impl Coordinator {
         }
     }
 
-    /// Has tasks computed, and calls `report` with the index and the outcome of each. One that no worker can compute is
-    /// left out.
+    /// Has tasks computed, and calls `report` with the index and the outcome of each. No outcome is reported for tasks
+    /// that remain when the coordinator's thread ends.
     fn call(
         &self,
         kind: TaskKind,
@@ -179,7 +181,7 @@ impl Coordinator {
                     (waits_since, has_said) = (Instant::now(), false);
                     report(index, outcome);
                 }
-                // The coordinator's thread has ended: its caller computes the rest.
+                // The coordinator's thread has ended. The caller of the evaluator computes the remaining tasks.
                 Err(RecvTimeoutError::Disconnected) => return Ok(()),
                 Err(RecvTimeoutError::Timeout) => {
                     let Status { workers, .. } = self.status();
@@ -195,7 +197,7 @@ impl Coordinator {
     }
 
     fn send(&self, command: CoordinatorCommand) {
-        // It fails only after the coordinator's thread has ended, which the caller notices by itself.
+        // Sending fails only after the coordinator's thread has ended, which the caller detects by itself.
         let _ = self.inner.commands.send(command);
     }
 }
@@ -216,7 +218,8 @@ impl Drop for Inner {
 }
 
 impl Evaluator for Coordinator {
-    /// Opens a call for each trial, several at the same time, so that workers need not wait for the last job of a trial.
+    /// Opens a call for each trial. Several calls are open at the same time, so that workers need not wait for the last
+    /// job of a trial.
     fn evaluate_jobs(
         &self,
         trials: &[Trial],
@@ -243,7 +246,7 @@ impl Evaluator for Coordinator {
                 calls => thread::scope(|scope| {
                     let running: Vec<_> =
                         calls.iter().map(|&call| scope.spawn(move || evaluate(call))).collect();
-                    // A call that panicked has reported nothing, and its genomes are evaluated by the caller.
+                    // A call that panicked may have reported nothing. Its caller then evaluates the missing genomes.
                     running.into_iter().try_for_each(|call| call.join().unwrap_or(Ok(())))
                 })?,
             }
@@ -268,7 +271,7 @@ impl Evaluator for Coordinator {
 
     fn workers(&self) -> usize {
         let threads = self.status().threads + self.inner.options.local_threads;
-        // Several runs at the same time: while one chooses its champion, the others use the workers.
+        // With several runs at the same time, workers stay busy while a run chooses its champion.
         if self.is_single { 1 } else { (2 * threads).clamp(4, 64) }
     }
 
@@ -293,7 +296,7 @@ impl Evaluator for Coordinator {
     }
 
     fn fault(&self) -> Option<String> {
-        // The last results may still be being checked.
+        // Checks of the last results may still be in progress.
         let began = Instant::now();
         loop {
             let Status { taint, audits, .. } = self.status();

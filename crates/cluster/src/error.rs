@@ -1,50 +1,50 @@
-//! Errors of the connection to a server and of the work through it. Each message is one line.
+//! Errors of the connection to a server and of the work on it. Each message is one line.
 
 use std::path::PathBuf;
 
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 
-/// The cluster cannot be used.
+/// Why the cluster cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ClusterError {
-    /// An address, a name or a file is not allowed.
+    /// An address, a name or a value is not allowed.
     #[error(transparent)]
     Invalid(#[from] Invalid),
     /// A file with credentials or a certificate cannot be read.
     #[error(transparent)]
     File(#[from] SaveError),
-    /// A file has no credentials.
+    /// A file contains no credentials.
     #[error("{}: neither credentials nor the seed of an NKey: {problem}", path.display())]
     Credentials {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The reason.
+        /// What is wrong with the file.
         problem: String,
     },
-    /// A file has no certificate.
+    /// A file contains no certificate. Holds its path.
     #[error("{}: has no certificate in PEM format", .0.display())]
     NoCertificate(PathBuf),
-    /// No connection to the server.
+    /// The server cannot be reached.
     #[error("{url}: cannot connect: {problem}")]
     Unreachable {
-        /// The address.
+        /// Address of the server.
         url: String,
-        /// The reason.
+        /// Reason of the failure.
         problem: String,
     },
-    /// The server has no queue.
+    /// The server has no JetStream, which keeps the queues.
     #[error("{url}: the server has no JetStream; start it with: nats-server -js")]
     NoJetStream {
-        /// The address.
+        /// Address of the server.
         url: String,
     },
     /// The server refused a request.
     #[error("{url}: {task} failed: {problem}")]
     Refused {
-        /// The address.
+        /// Address of the server.
         url: String,
-        /// The request.
+        /// Name of the request, in a few words.
         task: &'static str,
         /// The server's answer.
         problem: String,
@@ -55,22 +55,22 @@ pub enum ClusterError {
          Stairs and the same kind of processor on all machines"
     )]
     OtherEngine {
-        /// The run.
+        /// Name of a run with another engine.
         run: String,
-        /// The machine of its coordinator.
+        /// Name of the computer on which the run's coordinator works.
         host: String,
-        /// Its engine.
+        /// Engine of the run.
         wanted: String,
-        /// The engine of this program.
+        /// Engine of this program.
         own: String,
     },
-    /// The machine cannot compute what every worker must.
+    /// This machine failed the check of the engine that every worker must pass. Holds the reason.
     #[error("the check of the engine failed: {0}")]
     NoProof(String),
-    /// The system refused a thread or a runtime.
+    /// The operating system could not start a thread or a runtime.
     #[error("threads: cannot be started: {0}")]
     Threads(#[from] std::io::Error),
-    /// The worker was told to stop in an unexpected way.
+    /// A thread of the worker panicked.
     #[error("a worker thread ended unexpectedly")]
     ThreadEnded,
 }

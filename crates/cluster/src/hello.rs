@@ -1,4 +1,4 @@
-//! Notices that workers and coordinators send about themselves once a second.
+//! Notices that workers and coordinators send once a second about themselves.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,38 +8,38 @@ use snakes_core::check::{hash_of, within};
 use snakes_core::schema::Choices;
 use snakes_core::{ENGINE_VERSION, Processors};
 
-/// The largest notice, in bytes.
+/// Maximum size of a notice, in bytes.
 const LARGEST_NOTICE: usize = 4096;
 
-/// Notice of a worker about itself.
+/// Notice of a worker, sent once a second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WorkerNotice {
     /// Format of the messages.
     pub format: u32,
-    /// Its name, which no other worker has.
+    /// Name of the worker, which no other worker has.
     pub worker: String,
-    /// Name of its computer.
+    /// Name of the worker's computer.
     pub host: String,
-    /// Version of its engine.
+    /// Version of the worker's engine.
     pub engine: u32,
-    /// Its processors.
+    /// Kind of the worker's processors.
     pub processors: Processors,
-    /// The hash of its bits in some short cases.
+    /// Proof of the worker's engine: a hash of the bits that it computes in some short cases.
     pub proof: String,
-    /// Number of its threads.
+    /// Number of the worker's threads, from 1 to 1024.
     pub threads: u32,
-    /// Number of its evaluations since it started.
+    /// Number of the worker's evaluations since it started.
     pub evaluations: u64,
-    /// Evaluations per second, over the last five seconds.
+    /// Evaluations per second over the last five seconds.
     pub per_s: f32,
-    /// Number of batches that it received after another worker had had them.
+    /// Number of batches that the worker received after the server had delivered them before.
     pub redelivered: u64,
-    /// Whether it has been stopped and leaves.
+    /// Whether the worker was stopped, so that this notice is its last.
     pub leaves: bool,
 }
 
-/// Notice of a coordinator about its run.
+/// Notice of a coordinator about its run, sent once a second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunNotice {
@@ -47,33 +47,33 @@ pub struct RunNotice {
     pub format: u32,
     /// Name of the run.
     pub run: String,
-    /// Name of its computer.
+    /// Name of the coordinator's computer.
     pub host: String,
-    /// Version of its engine.
+    /// Version of the coordinator's engine.
     pub engine: u32,
-    /// Its processors.
+    /// Kind of the coordinator's processors.
     pub processors: Processors,
-    /// The hash of its bits in some short cases.
+    /// Proof of the coordinator's engine: a hash of the bits that it computes in some short cases.
     pub proof: String,
     /// Number of tasks without a result.
     pub pending: u64,
     /// Number of results so far.
     pub results: u64,
-    /// Workers that were set aside because they sent other bits.
+    /// Names of the workers that were set aside because they sent other bits.
     pub set_aside: Vec<String>,
 }
 
-/// An engine in words, with its proof.
+/// Describes an engine and its proof in words.
 fn engine_words(engine: u32, processors: Processors, proof: &str) -> String {
     format!("engine {engine} on {} ({proof})", processors.choice().name)
 }
 
-/// The engine of this program in words.
+/// Describes the engine of this program in words.
 pub fn own_engine(proof: &str) -> String {
     engine_words(ENGINE_VERSION, Processors::THIS, proof)
 }
 
-/// The name of this computer, as far as it may stand in messages.
+/// Returns the name of this computer, at most 40 characters; all but letters and digits become hyphens.
 pub fn host_name() -> String {
     let name = gethostname::gethostname();
     let plain = name.to_string_lossy();
@@ -82,13 +82,13 @@ pub fn host_name() -> String {
     if plain.is_empty() { "computer".to_owned() } else { plain }
 }
 
-/// A name for a worker of this computer that no other worker has.
+/// Returns a random name for a worker of this computer, which no other worker has.
 pub fn unique_name() -> String {
     format!("{}-{:08x}", host_name(), random_number() as u32)
 }
 
-/// A number that differs between processes, for what cannot change a result: the keys of the standard library's hashes are
-/// random.
+/// Returns a number that differs between processes, from the random keys of the standard library's hashes. It is used
+/// only where it cannot change a result.
 pub fn random_number() -> u64 {
     use std::hash::{BuildHasher, RandomState};
     RandomState::new().hash_one(std::process::id())
@@ -98,7 +98,7 @@ impl WorkerNotice {
     /// Reads a notice and checks every value.
     ///
     /// # Errors
-    /// It is damaged, too large, or a value is not allowed.
+    /// The notice is damaged, too large, or a value is not allowed.
     pub fn read(bytes: &[u8]) -> Result<Self, WireError> {
         let notice: Self = parse_line(text_of(bytes)?)?;
         check_name("worker", &notice.worker)?;
@@ -109,7 +109,7 @@ impl WorkerNotice {
         Ok(notice)
     }
 
-    /// Its engine in words.
+    /// Describes the worker's engine in words.
     pub fn engine_words(&self) -> String {
         engine_words(self.engine, self.processors, &self.proof)
     }
@@ -119,7 +119,7 @@ impl RunNotice {
     /// Reads a notice and checks every value.
     ///
     /// # Errors
-    /// It is damaged, too large, or a value is not allowed.
+    /// The notice is damaged, too large, or a value is not allowed.
     pub fn read(bytes: &[u8]) -> Result<Self, WireError> {
         let notice: Self = parse_line(text_of(bytes)?)?;
         check_name("run", &notice.run)?;
@@ -129,7 +129,7 @@ impl RunNotice {
         Ok(notice)
     }
 
-    /// Its engine in words.
+    /// Describes the coordinator's engine in words.
     pub fn engine_words(&self) -> String {
         engine_words(self.engine, self.processors, &self.proof)
     }
@@ -147,7 +147,7 @@ pub(crate) mod tests {
     use super::*;
     use crate::wire::{WIRE_FORMAT, line_of};
 
-    /// A notice of a worker with the engine of this program.
+    /// Returns a notice of a worker with the engine of this program.
     pub fn notice(worker: &str, threads: u32, proof: &str) -> WorkerNotice {
         WorkerNotice {
             format: WIRE_FORMAT,

@@ -1,22 +1,22 @@
-//! The values that were used last, by hash.
+//! A cache of the values that were used last, by hash.
 
 use std::sync::{Mutex, PoisonError};
 
-/// Values by hash, of which the ones that were kept or asked for last stay.
+/// Values by hash. When the cache is full, the value that was used least recently is removed.
 #[derive(Debug)]
 pub struct Latest<T> {
     most: usize,
-    /// The latest at the end.
+    /// Hashes and values, the most recently used last.
     kept: Mutex<Vec<(u64, T)>>,
 }
 
 impl<T: Clone> Latest<T> {
-    /// No values; there will be at most this number.
+    /// Creates an empty cache for at most this number of values.
     pub fn new(most: usize) -> Self {
         Self { most, kept: Mutex::default() }
     }
 
-    /// Keeps a value, in the place of the oldest one if there are too many.
+    /// Keeps a value. If the cache is full, it replaces the value that was used least recently.
     pub fn keep(&self, hash: u64, value: T) {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         kept.retain(|(of, _)| *of != hash);
@@ -26,7 +26,7 @@ impl<T: Clone> Latest<T> {
         kept.push((hash, value));
     }
 
-    /// The value with this hash.
+    /// Returns the value with this hash, if it is kept, and marks it as used.
     pub fn get(&self, hash: u64) -> Option<T> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let at = kept.iter().position(|(of, _)| *of == hash)?;

@@ -1,11 +1,11 @@
-//! One run on many machines: evaluations travel through a NATS server, and results come back in any order.
+//! One run on many machines: tasks and results travel through a NATS server, in any order.
 //!
 //! A coordinator is an [`snakes_lab::run::Evaluator`]: it publishes genomes in batches, and an experiment puts the results in
 //! the order of the individuals, so the run ends with the hash of a run on one machine. Workers pull batches. The server
 //! keeps the queue (JetStream): it delivers a batch again that no worker acknowledged.
 //!
-//! A task is named by the hash of its content. What is delivered twice, computed twice, or left by a coordinator that was
-//! killed therefore counts once, and for the same task only.
+//! A task is named by the hash of its content. A result that is delivered or computed twice, or was computed for a
+//! coordinator that was killed, therefore counts once, and for the right task only.
 
 mod address;
 mod any_message;

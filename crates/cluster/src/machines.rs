@@ -13,32 +13,32 @@ use super::hello::{RunNotice, WorkerNotice};
 use super::names::{NOTICE_INTERVAL, check_name, result_subject, work_subject, worker_consumer};
 use snakes_core::check::{Invalid, quoted};
 
-/// How long notices are listened to: each machine sends two in this time.
+/// Time during which notices are collected. Each machine sends two notices in this time.
 const LISTENING: Duration = Duration::from_millis(2 * NOTICE_INTERVAL.as_millis() as u64 + 200);
 
-/// Numbers of messages that wait on the server for one run.
+/// Numbers of batches and results that wait on the server for one run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct RunQueue {
-    /// Batches that no worker has finished.
+    /// Number of batches that no worker has finished.
     pub batches: u64,
-    /// Results that no coordinator has fetched.
+    /// Number of results that no coordinator has fetched.
     pub results: u64,
 }
 
-/// The machines on a server.
+/// The machines on a server, and their queues.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Machines {
-    /// The workers, by name.
+    /// Latest notices of the workers, by name.
     pub workers: BTreeMap<String, WorkerNotice>,
-    /// The runs with a coordinator, by name.
+    /// Latest notices of the runs that have a coordinator, by name.
     pub runs: BTreeMap<String, RunNotice>,
-    /// The queues, by the name of the run.
+    /// Queues, by the name of the run.
     pub queues: BTreeMap<String, RunQueue>,
-    /// Number of batches that workers have, by the proof of their engine.
+    /// Number of batches that workers have fetched but not acknowledged, by the proof of their engine.
     pub in_work: BTreeMap<String, u64>,
 }
 
-/// Listens for two seconds, and asks for the queues.
+/// Listens to notices for two seconds, then reads the queues from the server.
 ///
 /// # Errors
 /// The server refuses a request.
@@ -90,7 +90,7 @@ async fn queues(broker: &Broker, machines: &mut Machines) -> Result<(), Trouble>
             *count += messages as u64;
         }
     }
-    // A run that was killed leaves a consumer, even if nothing waits.
+    // A run that was killed leaves a consumer, even if no message waits.
     let consumers: Vec<String> = streams[1].consumer_names().try_collect().await?;
     let abandoned = consumers.into_iter().filter(|run| !machines.runs.contains_key(run));
     for run in abandoned.collect::<Vec<String>>() {
@@ -105,7 +105,7 @@ async fn queues(broker: &Broker, machines: &mut Machines) -> Result<(), Trouble>
     Ok(())
 }
 
-/// Removes what waits for a run. Returns the numbers of batches and results that were removed.
+/// Removes the batches and results that wait for a run. Returns how many were removed.
 ///
 /// # Errors
 /// The server has no such run, or refuses the request.

@@ -1,4 +1,4 @@
-//! Names on the server: streams, subjects and consumers.
+//! Names on the NATS server: streams, subjects and consumers.
 
 use std::time::Duration;
 
@@ -8,49 +8,49 @@ use snakes_core::check::{Invalid, quoted};
 pub const WORK_STREAM: &str = "SNAKES_WORK";
 /// The stream of results that wait for their coordinator.
 pub const RESULT_STREAM: &str = "SNAKES_RESULTS";
-/// All subjects of the first stream.
+/// Pattern of all subjects of batches.
 pub const WORK_SUBJECTS: &str = "snakes.work.>";
-/// All subjects of the second stream.
+/// Pattern of all subjects of results.
 pub const RESULT_SUBJECTS: &str = "snakes.result.>";
-/// The subject on which each worker tells of itself once a second.
+/// Subject on which each worker sends a notice once a second.
 pub const WORKER_NOTICES: &str = "snakes.worker";
-/// The subject on which each coordinator tells of its run once a second.
+/// Subject on which each coordinator sends a notice once a second.
 pub const RUN_NOTICES: &str = "snakes.run";
 
-/// Interval of the notices.
+/// Interval between two notices of a worker or a coordinator.
 pub const NOTICE_INTERVAL: Duration = Duration::from_secs(1);
-/// A machine that has been silent for this long is gone.
+/// A worker that sent no notice for this long is considered gone.
 pub const SILENCE: Duration = Duration::from_secs(5);
-/// The server delivers a batch again that was neither acknowledged nor reported to be in progress for this long.
+/// The server delivers a batch again if it was neither acknowledged nor reported to be in progress for this long.
 pub const ACKNOWLEDGEMENT_WAIT: Duration = Duration::from_secs(6);
 /// Interval at which a worker reports that a batch is in progress.
 pub const PROGRESS_INTERVAL: Duration = Duration::from_millis(1500);
-/// How long a request for a message stays on the server. After a restart of the server the next one arrives there.
+/// How long a request for messages stays on the server. A restarted server forgets it, but receives the next request.
 pub const PULL_WAIT: Duration = Duration::from_secs(2);
-/// Messages that nobody fetched are removed after this time.
+/// The server removes messages that nobody fetched for this long.
 pub const MESSAGE_AGE: Duration = Duration::from_secs(24 * 3600);
 
-/// The subject of a run's batches. Only workers that proved the same engine receive them.
+/// Returns the subject of a run's batches. Only workers with this proof receive them.
 pub fn work_subject(proof: &str, run: &str) -> String {
     format!("snakes.work.{proof}.{run}")
 }
 
-/// The subject of a run's results.
+/// Returns the subject of a run's results.
 pub fn result_subject(run: &str) -> String {
     format!("snakes.result.{run}")
 }
 
-/// The subject on which a coordinator answers with what the tasks of a batch share.
+/// Returns the subject on which a coordinator sends the trial or the genome that tasks share.
 pub fn shared_subject(run: &str, hash: &str) -> String {
     format!("snakes.shared.{run}.{hash}")
 }
 
-/// The subject on which a worker checks the result of another.
+/// Returns the subject on which a worker receives requests to check a result of another worker.
 pub fn audit_subject(worker: &str) -> String {
     format!("snakes.audit.{worker}")
 }
 
-/// The consumer that all workers with this proof share.
+/// Returns the name of the consumer that all workers with this proof share.
 pub fn worker_consumer(proof: &str) -> String {
     format!("workers-{proof}")
 }
@@ -58,7 +58,7 @@ pub fn worker_consumer(proof: &str) -> String {
 /// Checks the name of a run or of a worker, which becomes part of a subject: 1 to 100 letters, digits and hyphens.
 ///
 /// # Errors
-/// Another name.
+/// The name has another form.
 pub fn check_name(field: &str, name: &str) -> Result<(), Invalid> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-';
     if (1..=100).contains(&name.len()) && name.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! The outcome of a task, as it stands in messages.
+//! The outcome of a task, and its form in messages.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,17 +9,17 @@ use snakes_core::score::{Evaluation, ExamEnd, Scored};
 use snakes_core::world::Disqualification;
 use snakes_lab::run::EvaluationResult;
 
-/// The longest message of a panic, in bytes.
+/// Maximum length of a panic's message, in bytes.
 const LONGEST_MESSAGE: usize = 4000;
 
 /// The outcome of a task.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// The outcome of a genome in a trial.
+    /// Score of a genome in a trial, or the message of a panic.
     Scored(EvaluationResult),
-    /// The outcome of a condition of an exam.
+    /// End of an exam under one condition.
     Examined(ExamEnd),
-    /// The worker could not read the task.
+    /// The task could not be read, or the task or its result is too large. Holds the reason.
     Refused(String),
 }
 
@@ -42,7 +42,7 @@ struct ScoredLine {
 }
 
 impl Outcome {
-    /// The outcome as a line. Equal lines have equal bits: a number is written with the digits that decide it.
+    /// Returns the outcome as a line of JSON. Numbers are written exactly, so equal lines mean equal bits.
     pub fn line(self) -> String {
         let short = |text: String| text.chars().take(LONGEST_MESSAGE / 4).collect::<String>();
         line_of(&match self {
@@ -60,7 +60,7 @@ impl Outcome {
     /// Reads an outcome and checks every value.
     ///
     /// # Errors
-    /// It is damaged, or a value is not allowed.
+    /// The line is damaged, or a value is not allowed.
     pub fn read(line: &str) -> Result<Self, WireError> {
         let short = |message: String| -> Result<String, Invalid> {
             within("length of the message", message.len(), 0..=LONGEST_MESSAGE)?;
@@ -84,10 +84,10 @@ impl Outcome {
         })
     }
 
-    /// Whether this is an outcome of such a task.
+    /// Checks that the outcome belongs to a task of this kind.
     ///
     /// # Errors
-    /// It is of the other kind.
+    /// The outcome belongs to a task of the other kind.
     pub fn check_kind(&self, kind: super::wire::TaskKind) -> Result<(), WireError> {
         use super::wire::TaskKind::{Examine, Score};
         match (self, kind) {
@@ -127,7 +127,7 @@ mod tests {
             let outcome = scored(&genome, &settings.trial);
             let read = Outcome::read(&outcome.clone().line()).expect("read");
             assert_eq!(read, outcome, "{preset}");
-            // The genome and the trial travel as JSON, too.
+            // Genome and trial must survive JSON as well.
             let again: Genome = parse_line(&line_of(&genome)).expect("read");
             assert_eq!(again.hash(), genome.hash(), "{preset}");
             let trial: Trial = parse_line(&line_of(&settings.trial)).expect("read");

@@ -1,4 +1,4 @@
-//! The bytes of a message: text, compressed if it is long.
+//! The bytes of a message: text, which is compressed if it is long.
 
 use std::io::{Read, Write};
 
@@ -8,15 +8,15 @@ use flate2::write::ZlibEncoder;
 
 use super::wire::WireError;
 
-/// Text from this size on is compressed: tables and rules that were learned become several times smaller. The time that
-/// shorter text would take is worth more than its bytes.
+/// Size from which text is compressed, in bytes. Learned tables and rules become several times smaller. Compressing
+/// shorter text would cost more time than it saves.
 const COMPRESSED_FROM: usize = 64 * 1024;
-/// The largest text of a message, in bytes.
+/// Maximum size of a message's text, in bytes.
 pub const LARGEST_TEXT: usize = 32 * 1024 * 1024;
-/// The first byte of compressed text; the text itself begins with a brace.
+/// First byte of compressed text. Plain text begins with a brace instead.
 const COMPRESSED: u8 = 0x78;
 
-/// The bytes of a text.
+/// Encodes a text as the bytes of a message.
 pub fn pack(text: String) -> Vec<u8> {
     if text.len() < COMPRESSED_FROM {
         return text.into_bytes();
@@ -29,10 +29,10 @@ pub fn pack(text: String) -> Vec<u8> {
     }
 }
 
-/// The text of a message.
+/// Decodes the bytes of a message into text.
 ///
 /// # Errors
-/// It is no text, or longer than any that is sent.
+/// The bytes are no text, or more than `LARGEST_TEXT`.
 pub fn unpack(bytes: &[u8]) -> Result<String, WireError> {
     let bytes = if bytes.first() == Some(&COMPRESSED) {
         let mut text = Vec::new();

@@ -1,4 +1,4 @@
-//! The proof of an engine: a hash that only machines have that compute the same bits and speak the same format.
+//! The proof of an engine: a hash that only machines share which compute the same bits and use the same message format.
 
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -7,10 +7,10 @@ use super::wire::{WIRE_FORMAT, hex};
 use snakes_lab::run::verify::Trajectories;
 use snakes_lab::run::{LocalPool, RunControl};
 
-/// Computes the proof, within a second or two.
+/// Computes the proof of this machine's engine, which takes a second or two.
 ///
 /// # Errors
-/// This machine computes other bits than the reference machine, or there is no reference for it.
+/// This machine computes other bits than the reference, or its kind of processor has no reference.
 pub fn proof() -> Result<String, ClusterError> {
     let failed = |error: &dyn std::fmt::Display| ClusterError::NoProof(error.to_string());
     let pool = LocalPool::new(1).map_err(|error| failed(&error))?;

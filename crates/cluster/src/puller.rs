@@ -1,5 +1,5 @@
-//! Fetching messages. A server that has lost its store has neither streams nor consumers, and leaves requests without an
-//! answer: they are made again after each new connection, and when a request is refused or not answered.
+//! Fetching messages from a stream. A server that has lost its store has no streams and no consumers, and does not
+//! answer requests. After each new connection and each failed request, consumers are therefore looked up again.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -18,34 +18,34 @@ use super::names::PULL_WAIT;
 pub enum Pulled {
     /// A message.
     Message(Box<Message>),
-    /// No message for some seconds.
+    /// No message arrived for some seconds.
     Nothing,
-    /// The server has lost what it stored: the consumer had to be made again.
+    /// The server has lost its store: the consumer had to be created again.
     StoreLost,
 }
 
-/// Fetches messages, from one request after the other.
+/// Fetches messages with one request after another.
 pub struct Puller {
     broker: Arc<Broker>,
     source: PullSource,
     most: usize,
     renewals: watch::Receiver<u64>,
-    /// None until it is known that the server has it.
+    /// The consumer, or `None` until the server has confirmed that it exists.
     consumer: Option<PullConsumer>,
     request: Option<(Instant, Batch)>,
 }
 
-/// The server ends a request after [`PULL_WAIT`]. If it has not done so this much later, it does not know the consumer.
+/// The server ends a request after [`PULL_WAIT`]. If it is this much later, it does not know the consumer.
 const ANSWER_MARGIN: Duration = Duration::from_secs(2);
 
 impl Puller {
-    /// Fetches from `source`, up to `most` messages with a request. The consumer must have been made before.
+    /// Creates a puller that fetches from `source`, up to `most` messages per request. The consumer must exist.
     pub fn new(broker: &Arc<Broker>, source: PullSource, most: usize) -> Self {
         let renewals = broker.connection().renewals();
         Self { broker: Arc::clone(broker), source, most, renewals, consumer: None, request: None }
     }
 
-    /// The next message, if one comes soon.
+    /// Returns the next message, or `Pulled::Nothing` if none arrives soon.
     pub async fn next(&mut self) -> Result<Pulled, Trouble> {
         let is_lost = self.consumer.is_none() && self.find_consumer().await?;
         if is_lost {
@@ -58,7 +58,7 @@ impl Puller {
         pulled
     }
 
-    /// Finds the consumer or makes it. Returns whether it had to be made.
+    /// Finds or creates the consumer. Returns whether it had to be created.
     async fn find_consumer(&mut self) -> Result<bool, Trouble> {
         self.renewals.mark_unchanged();
         let (consumer, is_new) = self.broker.consumer(&self.source).await?;
@@ -78,7 +78,7 @@ impl Puller {
         };
         let end = *since + PULL_WAIT + ANSWER_MARGIN;
         tokio::select! {
-            // Messages that have arrived come first: the server would deliver them again only after a while.
+            // Messages that have already arrived come first: the server would deliver them again only after a while.
             biased;
             message = messages.next() => match message {
                 Some(Ok(message)) => Ok(Pulled::Message(Box::new(message))),

@@ -1,4 +1,4 @@
-//! Storing messages on the server, whatever happens to it.
+//! Storing messages on the server, even across restarts and lost connections.
 
 use std::time::Duration;
 
@@ -7,11 +7,11 @@ use async_nats::jetstream::message::PublishMessage;
 
 use super::broker::Broker;
 
-/// Pause before the server is asked again after it refused a request.
+/// Pause before a request that failed is repeated.
 pub const RETRY_PAUSE: Duration = Duration::from_millis(500);
 
-/// Publishes a message until the server has stored it, however long that takes. The server stores messages with the same
-/// `id` once. `task` says in a few words what fails, if it does.
+/// Publishes a message repeatedly until the server has stored it, however long this takes. The server stores messages
+/// with the same `id` only once. `task` describes the failure in a few words, for the user.
 pub async fn publish_until_stored(
     broker: &Broker,
     task: &'static str,
@@ -26,7 +26,7 @@ pub async fn publish_until_stored(
             async { broker.jetstream().send_publish(subject.to_owned(), message).await?.await };
         let stored = tokio::select! {
             stored = publish => stored,
-            // The answer to a message of the connection before may never come.
+            // An answer through the lost connection may never come.
             _ = renewals.changed() => continue,
         };
         let Err(error) = stored else {
@@ -34,7 +34,7 @@ pub async fn publish_until_stored(
             return;
         };
         if error.kind() == PublishErrorKind::StreamNotFound {
-            // The next attempt says whether this helped.
+            // The next attempt shows whether creating the streams helped.
             let _ = broker.make_streams().await;
         }
         broker.connection().failed(task, &error.into());

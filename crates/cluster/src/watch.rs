@@ -1,5 +1,5 @@
-//! Watches a server from a thread of its own, for a window that must not wait: connects, lists the machines again and
-//! again, and starts the coordinator of the run that the window evolves.
+//! Watches a server on a separate thread, for a window that must not wait: connects, lists the machines repeatedly, and
+//! starts the coordinator of the run that the window evolves.
 
 use std::sync::Arc;
 use std::thread;
@@ -17,59 +17,60 @@ use super::machines::{Machines, machines};
 use super::proof::proof;
 use snakes_lab::run::Evaluator;
 
-/// A server that is watched. Dropping this ends the connection in the background.
+/// Handle of a watched server. Dropping it ends the connection in the background.
 #[derive(Debug)]
 pub struct ServerWatch {
     wanted: Sender<Option<WatchedRun>>,
     news: Receiver<WatchNews>,
-    /// Disconnected when the thread has ended.
+    /// Becomes disconnected when the thread has ended.
     end: Receiver<()>,
 }
 
-/// A run that is to be computed on the workers.
+/// A run that is to be evaluated on the workers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WatchedRun {
-    /// Its name: letters, digits and hyphens. On the server it gets a suffix, so that two windows never share a queue.
+    /// Name of the run: letters, digits and hyphens. The server sees it with a random suffix, so that two windows never
+    /// share a queue.
     pub name: String,
-    /// Number of threads of this computer that compute, too.
+    /// Number of threads of this computer that compute as well.
     pub local_threads: usize,
 }
 
-/// News from a watch.
+/// News from a watched server.
 #[derive(Debug, Clone)]
 pub enum WatchNews {
     /// The server is connected.
     Connected {
-        /// The proof of the engine of this program.
+        /// Proof of this program's engine.
         proof: String,
     },
     /// The machines on the server.
     Listed(Machines),
-    /// The server did not answer, and why, in a line. It is asked again.
+    /// The server did not answer. Holds the reason as one line. The request is repeated.
     NoAnswer(String),
     /// A coordinator was started.
     Coordinates {
-        /// The run that was asked for.
+        /// The requested run.
         run: WatchedRun,
-        /// The run's name on the server.
+        /// Name of the run on the server.
         name: String,
-        /// Evaluates on the workers.
+        /// Evaluator that uses the workers.
         evaluator: Arc<dyn Evaluator>,
     },
-    /// The server cannot be used, and why, in a line. No more news follow.
+    /// The server cannot be used. Holds the reason as one line. No further news follow.
     Failed(String),
 }
 
-/// Pause between two lists; a list takes two seconds.
+/// Pause between two lists of machines. Making a list takes two seconds.
 const PAUSE: Duration = Duration::from_millis(50);
-/// Pause after a request that failed.
+/// Pause after a failed request.
 const RETRY_PAUSE: Duration = Duration::from_secs(1);
 
 impl ServerWatch {
-    /// Begins to connect.
+    /// Starts the thread, which connects to the server.
     ///
     /// # Errors
-    /// The thread could not be started.
+    /// The operating system could not start the thread.
     pub fn start(server: BrokerOptions) -> std::io::Result<Self> {
         let (wanted, asked) = unbounded();
         let (sender, news) = unbounded();
@@ -87,18 +88,19 @@ impl ServerWatch {
         Ok(Self { wanted, news, end })
     }
 
-    /// Asks for a coordinator of this run in place of the one before, or for none. [`WatchNews::Coordinates`] answers.
+    /// Requests a coordinator for this run, which replaces the one before; `None` only removes it.
+    /// [`WatchNews::Coordinates`] is the answer.
     pub fn coordinate(&self, run: Option<WatchedRun>) {
-        // Sending fails only after the thread has failed, which is in the news.
+        // Sending fails only after the thread has failed, which was reported as `WatchNews::Failed`.
         let _ = self.wanted.send(run);
     }
 
-    /// The next news, if there are any.
+    /// Returns the next news, or `None` if there are none.
     pub fn poll(&self) -> Option<WatchNews> {
         self.news.try_recv().ok()
     }
 
-    /// Ends the connection, and waits at most this long until that is done.
+    /// Ends the connection, and waits for this at most as long as `wait`.
     pub fn end_within(self, wait: Duration) {
         let Self { wanted, news, end } = self;
         drop((wanted, news));
@@ -106,19 +108,20 @@ impl ServerWatch {
     }
 }
 
-/// The state of the thread.
+/// State of the thread that watches a server.
 struct Watcher {
     server: BrokerOptions,
     asked: Receiver<Option<WatchedRun>>,
     news: Sender<WatchNews>,
-    /// The run that is asked for, and its coordinator once that is started.
+    /// The requested run, with its coordinator once that has started.
     current: Option<(WatchedRun, Option<Arc<Coordinator>>)>,
-    /// Earlier coordinators that a run may still use. The last reference is dropped here, because that takes time.
+    /// Earlier coordinators that a run may still use. Their last references are dropped on this thread, because that
+    /// takes time.
     replaced: Vec<Arc<Coordinator>>,
 }
 
 impl Watcher {
-    /// Watches until the [`ServerWatch`] is dropped.
+    /// Connects and lists the machines until the [`ServerWatch`] is dropped.
     fn watch(&mut self) -> Result<(), ClusterError> {
         let broker = Broker::connect(&self.server, "studio")?;
         let proof = proof()?;
@@ -142,7 +145,8 @@ impl Watcher {
         Ok(())
     }
 
-    /// Takes over what was asked for. False if the [`ServerWatch`] was dropped.
+    /// Takes over the latest requested run, waiting for at most `pause`. Returns `false` if the [`ServerWatch`] was
+    /// dropped.
     fn take_orders(&mut self, pause: Duration) -> bool {
         let mut wait = pause;
         loop {
@@ -161,7 +165,7 @@ impl Watcher {
         }
     }
 
-    /// Starts the coordinator that is asked for, if it is not there yet.
+    /// Starts the coordinator of the requested run, if it has not started yet.
     fn coordinate(&mut self, proof: &str) -> Result<(), ClusterError> {
         let Some((run, coordinator @ None)) = &mut self.current else { return Ok(()) };
         let name = format!("{}-{:08x}", run.name, random_number() as u32);
@@ -184,10 +188,10 @@ impl Watcher {
         self.replaced.retain(|coordinator| Arc::strong_count(coordinator) > 1);
     }
 
-    /// Waits until no run uses a coordinator any more.
+    /// Waits until no run uses a coordinator.
     fn end(mut self) {
         self.replaced.extend(self.current.take().and_then(|(_, coordinator)| coordinator));
-        // News that nobody has received refer to them, too.
+        // News that nobody received refer to coordinators, too.
         drop((self.news, self.asked));
         while !self.replaced.is_empty() {
             self.replaced.retain(|coordinator| Arc::strong_count(coordinator) > 1);

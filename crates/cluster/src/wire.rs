@@ -1,4 +1,4 @@
-//! Batches of tasks, and batches of results: a head as a line of JSON, then a line for each task or result.
+//! Messages with batches of tasks or of results: a head as a line of JSON, then a line for each task or result.
 
 use std::sync::Arc;
 
@@ -10,18 +10,19 @@ use super::names::check_name;
 use super::packing::{pack, unpack};
 use snakes_core::check::{Invalid, hash_of, within};
 
-/// The number of the messages' format. A worker of another format does not receive them: see [`super::proof`].
+/// Version of the message format. A worker with another format has another proof, so it receives no such messages: see
+/// [`super::proof`].
 pub const WIRE_FORMAT: u32 = 1;
 /// Maximum number of tasks in a batch.
 pub const MOST_TASKS: usize = 256;
 
-/// A message that cannot be read.
+/// Why a message cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WireError {
-    /// The text is longer than any that is sent.
+    /// The message is longer than the format allows.
     #[error("the message is too large")]
     TooLarge,
-    /// The text is damaged or of another kind.
+    /// The message is damaged or of another kind. Holds the reason.
     #[error("the message is damaged: {0}")]
     Damaged(String),
     /// A value is not allowed.
@@ -29,22 +30,22 @@ pub enum WireError {
     Invalid(#[from] Invalid),
 }
 
-/// The kind of a batch's tasks.
+/// Kind of the tasks in a batch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TaskKind {
-    /// A task is a genome, and the batch shares its trial.
+    /// Scoring: each task is a genome, and the batch shares a trial.
     Score,
-    /// A task is a condition of an exam, and the batch shares the genome.
+    /// Exam: each task is a condition, and the batch shares a genome.
     Examine,
 }
 
-/// One task.
+/// A task, or the outcome of a task, as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TaskText {
-    /// Hash of everything that decides its result: see [`task_key`].
+    /// Hash of everything that decides the task's result: see [`task_key`].
     pub key: u64,
-    /// Its own part as JSON, on one line.
+    /// The genome, the condition or the outcome as JSON, on one line.
     pub text: Arc<str>,
 }
 
@@ -53,13 +54,13 @@ pub struct TaskText {
 pub struct WorkBatch {
     /// Name of the run.
     pub run: String,
-    /// Number of the batch in the run.
+    /// Number of the batch in its run. Checks have the number 0.
     pub batch: u64,
-    /// The kind of its tasks.
+    /// Kind of the tasks.
     pub kind: TaskKind,
-    /// Hash of what its tasks share, for which a worker asks the coordinator.
+    /// Hash of the trial or the genome that the tasks share. A worker requests it from the coordinator.
     pub shared: u64,
-    /// The tasks.
+    /// Tasks of the batch, at most `MOST_TASKS`.
     pub tasks: Vec<TaskText>,
 }
 
@@ -70,11 +71,11 @@ pub struct ResultBatch {
     pub run: String,
     /// Number of the batch in the run.
     pub batch: u64,
-    /// Name of the worker.
+    /// Name of the worker that computed the batch.
     pub worker: String,
-    /// The time that it took, in s.
+    /// Time that the computation took, in s.
     pub elapsed_s: f64,
-    /// The key of each task and its outcome as JSON, on one line.
+    /// Key and outcome of each task. The outcome is JSON on one line.
     pub outcomes: Vec<TaskText>,
 }
 
@@ -100,7 +101,7 @@ struct ResultHead {
     keys: Vec<String>,
 }
 
-/// Hash of what the tasks of a batch share.
+/// Returns the hash of the trial or the genome that the tasks of a batch share.
 pub fn shared_hash(kind: TaskKind, text: &str) -> u64 {
     let mut hash = Xxh3Default::new();
     hash.update(&[kind as u8]);
@@ -108,7 +109,7 @@ pub fn shared_hash(kind: TaskKind, text: &str) -> u64 {
     hash.digest()
 }
 
-/// Hash of everything that decides the result of a task.
+/// Returns the hash of everything that decides the result of a task: its text, and the hash of what it shares.
 pub fn task_key(shared: u64, text: &str) -> u64 {
     let mut hash = Xxh3Default::new();
     hash.update(&shared.to_le_bytes());
@@ -116,25 +117,25 @@ pub fn task_key(shared: u64, text: &str) -> u64 {
     hash.digest()
 }
 
-/// A hash as 16 hexadecimal digits.
+/// Formats a hash as 16 hexadecimal digits.
 pub fn hex(hash: u64) -> String {
     format!("{hash:016x}")
 }
 
-/// A value as a line of JSON. Only a map whose keys are no text could fail, and there is none.
+/// Writes a value as a line of JSON. Only a map whose keys are not text would fail, and no message contains such a map.
 pub fn line_of<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }
 
-/// Reads a line of JSON.
+/// Reads a value from a line of JSON.
 pub fn parse_line<T: DeserializeOwned>(line: &str) -> Result<T, WireError> {
-    // The text of the error quotes names from the message.
+    // The error's text quotes names from the message, which may contain control characters.
     let damaged = |error: serde_json::Error| error.to_string().replace(char::is_control, " ");
     serde_json::from_str(line).map_err(|error| WireError::Damaged(damaged(error)))
 }
 
 impl WorkBatch {
-    /// The bytes of the message.
+    /// Encodes the batch as the bytes of a message.
     pub fn encode(&self) -> Vec<u8> {
         let head = WorkHead {
             format: WIRE_FORMAT,
@@ -147,10 +148,10 @@ impl WorkBatch {
         pack(joined(line_of(&head), &self.tasks))
     }
 
-    /// Reads the bytes of a message.
+    /// Reads a batch from the bytes of a message.
     ///
     /// # Errors
-    /// It is damaged, too large, or of another format.
+    /// The message is damaged, too large, or of another format.
     pub fn decode(bytes: &[u8]) -> Result<Self, WireError> {
         let text = unpack(bytes)?;
         let (head, lines) = split(&text)?;
@@ -168,7 +169,7 @@ impl WorkBatch {
 }
 
 impl ResultBatch {
-    /// The bytes of the message.
+    /// Encodes the results as the bytes of a message.
     pub fn encode(&self) -> Vec<u8> {
         let head = ResultHead {
             format: WIRE_FORMAT,
@@ -181,10 +182,11 @@ impl ResultBatch {
         pack(joined(line_of(&head), &self.outcomes))
     }
 
-    /// Reads the bytes of a message. The outcomes are read later, when it is known of which kind they are.
+    /// Reads results from the bytes of a message. Their outcomes stay text, which is read when the kind of the tasks is
+    /// known.
     ///
     /// # Errors
-    /// It is damaged, too large, or of another format.
+    /// The message is damaged, too large, or of another format.
     pub fn decode(bytes: &[u8]) -> Result<Self, WireError> {
         let text = unpack(bytes)?;
         let (head, lines) = split(&text)?;
@@ -211,7 +213,7 @@ fn joined(head: String, tasks: &[TaskText]) -> String {
     text
 }
 
-/// The head and the other lines.
+/// Splits a message into its head and the lines of its tasks.
 fn split(text: &str) -> Result<(&str, Vec<&str>), WireError> {
     let mut lines = text.split('\n');
     let head = lines.next().unwrap_or_default();

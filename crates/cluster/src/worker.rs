@@ -27,16 +27,16 @@ use shared_cache::SharedCache;
 use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::say;
 
-/// How a worker works.
+/// Options of a worker.
 #[derive(Debug, Clone)]
 pub struct WorkerOptions {
-    /// Its name, which no other worker has: letters, digits and hyphens.
+    /// Name of the worker, which no other worker has: letters, digits and hyphens.
     pub name: String,
-    /// Number of its threads.
+    /// Number of threads that compute.
     pub threads: usize,
-    /// The proof of its engine: see [`super::proof`].
+    /// Proof of the worker's engine: see [`super::proof`].
     pub proof: String,
-    /// Computes the outcomes.
+    /// Computes the outcomes of tasks.
     pub compute: Arc<dyn Compute>,
 }
 
@@ -52,18 +52,18 @@ struct Workplace {
     activity: WorkerActivity,
 }
 
-/// Maximum number of trials and genomes that are kept.
+/// Maximum number of shared trials and genomes that are kept.
 const MOST_SHARED: usize = 64;
-/// How long a stopped worker waits for its threads: then their batches are left to the server, which delivers them again.
+/// Longest time that a stopped worker waits for its threads. After it, the server delivers their batches to other
+/// workers.
 const LONGEST_END: Duration = Duration::from_millis(1200);
-/// How long a stopped worker tries to tell the server something.
+/// Longest time that a stopped worker tries to send something to the server.
 const LAST_WORDS: Duration = Duration::from_millis(300);
-/// Interval at which it is looked whether the worker was stopped.
+/// Interval at which a thread checks whether the worker was stopped.
 const STOP_INTERVAL: Duration = Duration::from_millis(30);
 
-/// Works until `control` is cancelled. A batch in progress is then returned to the queue after its current evaluation. A
-/// worker that is stopped ends within two seconds, also if its server does not answer. Returns the number of its
-/// evaluations.
+/// Works until `control` is cancelled. The batch in progress then returns to the queue after its current evaluation. A
+/// stopped worker ends within two seconds, even if its server does not answer. Returns the number of its evaluations.
 ///
 /// # Errors
 /// The first request for work is refused, or all coordinators on the server compute with another engine.
@@ -101,7 +101,7 @@ pub fn work(
     }
     let ended = joined(workers, control);
     audits.abort();
-    // The notices end with the last one, which says that this worker leaves.
+    // The task of the notices ends after its last notice, which says that this worker leaves.
     let foreign = runtime.block_on(async {
         let foreign = tokio::time::timeout(LAST_WORDS, notices).await;
         let _ = tokio::time::timeout(LAST_WORDS, place.broker.client().flush()).await;
@@ -114,7 +114,7 @@ pub fn work(
     }
 }
 
-/// Waits until all threads have ended; after the worker was stopped, not for long. Returns the number of those that
+/// Waits until all threads have ended, but after the worker was stopped at most `LONGEST_END`. Returns how many
 /// panicked.
 fn joined(mut threads: Vec<thread::JoinHandle<()>>, control: &RunControl) -> usize {
     let (mut panicked, mut stopped) = (0, None);
@@ -135,7 +135,8 @@ fn joined(mut threads: Vec<thread::JoinHandle<()>>, control: &RunControl) -> usi
 }
 
 impl Workplace {
-    /// The output of a future; none if the worker was stopped, and the future does not end within `grace` after that.
+    /// Returns the output of a future, or `None` if the worker was stopped and the future does not end within `grace`
+    /// after that.
     fn unless_stopped<T>(&self, grace: Duration, future: impl Future<Output = T>) -> Option<T> {
         self.broker.runtime().block_on(async {
             tokio::select! {
@@ -147,7 +148,7 @@ impl Workplace {
     }
 }
 
-/// Ends so long after the worker was stopped.
+/// Completes when the worker was stopped and `grace` has passed since.
 async fn stopped(control: &RunControl, grace: Duration) {
     while !control.is_cancelled() {
         tokio::time::sleep(STOP_INTERVAL).await;
@@ -155,7 +156,7 @@ async fn stopped(control: &RunControl, grace: Duration) {
     tokio::time::sleep(grace).await;
 }
 
-/// One thread of a worker.
+/// Runs one thread of a worker: fetches and computes batches until the worker is stopped.
 fn work_loop(place: &Workplace) {
     const TASK: &str = "no work can be fetched";
     let connection = place.broker.connection();
@@ -197,7 +198,7 @@ fn do_batch(place: &Workplace, message: &Message) {
         place.broker.runtime().spawn(async move {
             loop {
                 tokio::time::sleep(PROGRESS_INTERVAL).await;
-                // A lost report is followed by another one.
+                // A lost report is harmless: the next one follows.
                 let _ = message.ack_with(AckKind::Progress).await;
             }
         })
@@ -207,17 +208,17 @@ fn do_batch(place: &Workplace, message: &Message) {
     place.activity.end();
     let stored = results.is_some_and(|results| store(place, &results));
     reporter.abort();
-    // A batch that is returned soon reaches another worker.
+    // The pause lets a batch that cannot be computed wait; a stopped worker returns its batch without delay.
     let pause = (!place.control.is_cancelled()).then_some(RETRY_PAUSE);
     acknowledge(place, message, if stored { AckKind::Ack } else { AckKind::Nak(pause) });
 }
 
 fn acknowledge(place: &Workplace, message: &Message, kind: AckKind) {
-    // Without an acknowledgement the batch is delivered again, which costs time but changes nothing.
+    // Without an acknowledgement the batch is delivered again, which costs time but changes no result.
     let _ = place.unless_stopped(LAST_WORDS, message.ack_with(kind));
 }
 
-/// The results of a batch; none if the worker was stopped, or the coordinator cannot be reached.
+/// Computes the results of a batch. Returns `None` if the worker was stopped, or the coordinator cannot be reached.
 fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
     let shared = match place.cache.get(work.shared) {
         Some(known) => known,
@@ -242,7 +243,8 @@ fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
     })
 }
 
-/// Stores results that are larger than a message may be. The coordinator computes what is too large by itself.
+/// Stores results that exceed the largest message, in parts. A single result that is too large is reported as refused;
+/// the coordinator's process then computes it.
 fn store_in_parts(place: &Workplace, results: &ResultBatch) -> bool {
     let part =
         |outcomes: &[TaskText]| ResultBatch { outcomes: outcomes.to_vec(), ..results.clone() };
@@ -260,7 +262,7 @@ fn store_in_parts(place: &Workplace, results: &ResultBatch) -> bool {
     }
 }
 
-/// Stores results on the server, however long that takes. False if the worker was stopped before it could.
+/// Stores results on the server, however long this takes. Returns `false` if the worker was stopped before.
 fn store(place: &Workplace, results: &ResultBatch) -> bool {
     let (subject, bytes) = (result_subject(&results.run), results.encode());
     if bytes.len() > place.broker.largest_message() {

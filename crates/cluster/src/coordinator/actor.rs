@@ -1,4 +1,5 @@
-//! The input and output of a coordinator: one thread that feeds the ledger and does what it says.
+//! Input and output of a coordinator: one thread that passes events to the ledger and carries out the actions it
+//! returns.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -32,35 +33,35 @@ use snakes_lab::run::headless::say;
 pub enum CoordinatorCommand {
     /// A call of the evaluator begins.
     Open {
-        /// Its number.
+        /// Number of the call.
         call: CallId,
-        /// The kind of its tasks.
+        /// Kind of its tasks.
         kind: TaskKind,
-        /// Hash of what they share.
+        /// Hash of the trial or the genome that its tasks share.
         shared: u64,
-        /// The tasks, by index.
+        /// Texts of its tasks, by index.
         tasks: Vec<Arc<str>>,
-        /// Takes the index and the outcome of each.
+        /// Receives the index and the outcome of each task.
         sender: Sender<(usize, Outcome)>,
     },
-    /// It holds or continues.
+    /// A call is paused (`true`) or continues (`false`).
     Pause(CallId, bool),
-    /// It ends.
+    /// A call ends.
     Close(CallId),
-    /// A thread of the coordinator asks for a task.
+    /// A computing thread of the coordinator requests a task.
     TakeLocal(Sender<Option<LocalTask>>),
-    /// It computed one.
+    /// A computing thread of the coordinator has computed the task with this key.
     Local(u64, Outcome),
-    /// A check was answered with this outcome, or not at all.
+    /// The checker of a task answered with this outcome, or did not answer (`None`).
     Audited(u64, Option<Arc<str>>),
     /// The coordinator ends.
     End,
 }
 
-/// A task for a thread of the coordinator: key, kind, hash of what it shares, text.
+/// A task for a thread of the coordinator: its key, its kind, the hash of what it shares with others, and its text.
 pub type LocalTask = (u64, TaskKind, u64, Arc<str>);
 
-/// See the module.
+/// The input and output of a coordinator: see the module.
 pub struct Actor {
     broker: Arc<Broker>,
     options: CoordinatorOptions,
@@ -69,23 +70,23 @@ pub struct Actor {
     common: Arc<Common>,
     commands: UnboundedSender<CoordinatorCommand>,
     news: Receiver<News>,
-    /// When a message last came from the server.
+    /// Time of the last message from the server.
     heard: Instant,
     tasks: Vec<JoinHandle<()>>,
 }
 
-/// Interval at which late batches and silent workers are looked for.
+/// Interval at which the coordinator looks for late batches and silent workers.
 const TICK: Duration = Duration::from_millis(250);
-/// If nothing was heard from the server for this long, the silence of the workers is not theirs. This run's own notices
-/// come back each second.
+/// If nothing at all arrived from the server for this long, silent workers are not blamed: even this run's own notices,
+/// sent each second, did not come back.
 const DEAFNESS: Duration = NOTICE_INTERVAL.saturating_mul(3);
-/// How long a worker may take to answer a check, besides the time of its evaluation.
+/// Longest time that a worker may take to answer a check, including its evaluation.
 const AUDIT_WAIT: Duration = Duration::from_secs(20);
-/// Maximum number of messages that wait for the ledger.
+/// Maximum number of messages from the server that wait for the ledger.
 const MOST_WAITING: usize = 1024;
 
 impl Actor {
-    /// Makes the run's consumer and removes batches of a predecessor.
+    /// Creates the run's consumer, and removes the batches of an earlier coordinator of the same run.
     ///
     /// # Errors
     /// The server refuses the run.
@@ -99,12 +100,13 @@ impl Actor {
             let stream = broker.work_stream().await?;
             stream.purge().filter(work_subject(&options.proof, &options.run)).await?;
             broker.consumer(&PullSource::Results(options.run.clone())).await?;
-            // Before this run tells of itself: workers answer.
+            // Subscribes before this run sends its first notice, because workers answer to it.
             broker.notices().await
         });
         let (workers, runs) =
             prepared.map_err(|trouble: Trouble| broker.refused("the run", &trouble))?;
-        // The numbers of a predecessor's batches are far away. Neither number can change a result.
+        // Batch numbers start at random, far from those of an earlier coordinator. Neither they nor the generator can
+        // change a result.
         let seed = random_number();
         let rng = ChaCha8Rng::seed_from_u64(seed);
         let ledger = Ledger::new(
@@ -136,7 +138,7 @@ impl Actor {
             match action {
                 LedgerAction::Publish(batch) => self.publish(batch),
                 LedgerAction::Deliver(call, index, outcome) => {
-                    // A call that was cancelled does not listen any more.
+                    // A call that was cancelled receives nothing.
                     if let Some(sender) = self.calls.get(&call) {
                         let _ = sender.send((index, outcome));
                     }
@@ -269,7 +271,7 @@ impl Actor {
     }
 }
 
-/// Runs a coordinator until it is told to end. Then its batches and its consumer are removed from the server.
+/// Runs a coordinator until the command to end arrives. Then removes its batches, results and consumer from the server.
 pub fn run_actor(
     broker: &Broker,
     mut actor: Actor,
@@ -298,7 +300,7 @@ pub fn run_actor(
     });
 }
 
-/// Removes what the run leaves on the server.
+/// Removes the batches, results and consumer of the run from the server.
 async fn clean_up(actor: &Actor) {
     if let Ok(stream) = actor.broker.work_stream().await {
         let subject = work_subject(&actor.options.proof, &actor.options.run);

@@ -1,56 +1,56 @@
-//! State that the calls of a coordinator share with its thread and with its own threads that compute.
+//! State that the calls of a coordinator share with its thread and its computing threads.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::compute::Compute;
 use crate::latest::Latest;
 
-/// How a coordinator works.
+/// Options of a coordinator.
 #[derive(Debug, Clone)]
 pub struct CoordinatorOptions {
-    /// The name of its run: letters, digits and hyphens. The same run has the same name when it is continued.
+    /// Name of the run: letters, digits and hyphens. A continued run keeps its name.
     pub run: String,
-    /// The proof of its engine: see [`crate::proof`].
+    /// Proof of the coordinator's engine: see [`crate::proof`].
     pub proof: String,
-    /// Number of workers that it waits for before it begins.
+    /// Number of workers that the coordinator waits for before it begins.
     pub expect_workers: usize,
-    /// Number of its own threads that compute, too.
+    /// Number of threads of the coordinator that compute as well.
     pub local_threads: usize,
-    /// Computes outcomes on this computer.
+    /// Computes outcomes on this machine.
     pub compute: Arc<dyn Compute>,
 }
 
-/// State of the coordinator, for the calls that wait.
+/// State of a coordinator, as the waiting calls see it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Status {
     /// Number of workers whose results may count.
     pub workers: usize,
-    /// Number of their threads.
+    /// Number of threads of these workers.
     pub threads: usize,
     /// Number of results that are being checked.
     pub audits: usize,
-    /// Why earlier results cannot be trusted any more.
+    /// Why results that were already delivered may be wrong; `None` while there is no doubt.
     pub taint: Option<String>,
 }
 
-/// Maximum number of texts that are kept after the calls that used them.
+/// Maximum number of shared texts that are kept.
 const MOST_SHARED: usize = 256;
 
-/// See the module.
+/// State that calls and threads of a coordinator share: see the module.
 #[derive(Debug)]
 pub struct Common {
     status: Mutex<Status>,
-    /// Texts that tasks share, by hash: the latest ones.
+    /// Texts of the trials and genomes that were used last, by hash.
     pub texts: Latest<Arc<str>>,
 }
 
 impl Common {
-    /// The state of a coordinator that has not begun.
+    /// Creates the state of a coordinator that has not begun.
     pub fn new() -> Self {
         Self { status: Mutex::default(), texts: Latest::new(MOST_SHARED) }
     }
 
-    /// State of the coordinator.
+    /// Locks the state of the coordinator.
     pub fn status(&self) -> MutexGuard<'_, Status> {
         self.status.lock().unwrap_or_else(PoisonError::into_inner)
     }

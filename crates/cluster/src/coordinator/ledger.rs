@@ -1,6 +1,6 @@
-//! The state of a coordinator: tasks without a result, batches on their way, workers, and checks of their results.
+//! The state of a coordinator: tasks without a result, batches in transit, workers, and checks of their results.
 //!
-//! The ledger does no input and no output. It is told what happened, and says what is to be done.
+//! The ledger does no input or output. Its methods take events, and return the actions to be carried out.
 
 mod audits;
 mod batches;
@@ -24,24 +24,25 @@ use batches::LOST_AFTER;
 use staff::Staff;
 use staff::Standing;
 
-/// Maximum number of results that were made for a predecessor and are kept until they are asked for.
+/// Maximum number of results that are kept although no call has requested them yet. They come from an earlier
+/// coordinator.
 const MOST_EARLY: usize = 4096;
 
 /// The number of a call of the evaluator.
 pub type CallId = u64;
 
-/// A step that the ledger asks for.
+/// An action that the ledger requests.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LedgerAction {
     /// Publish a batch.
     Publish(WorkBatch),
-    /// Give an outcome to a call: its index there.
+    /// Report an outcome to a call: the number of the call, the task's index in it, the outcome.
     Deliver(CallId, usize, Outcome),
-    /// Compute a task once more, to compare.
+    /// Compute a task once more, to compare the outcomes.
     Audit(AuditTask),
-    /// Tell the user.
+    /// Print a line for the user.
     Say(String),
-    /// A worker sent wrong results after right ones: what was delivered earlier may be wrong.
+    /// A worker sent wrong results after right ones, so that delivered results may be wrong. Holds the message.
     Taint(String),
 }
 
@@ -51,53 +52,53 @@ struct Pending {
     text: Arc<str>,
     kind: TaskKind,
     shared: u64,
-    /// The calls that wait for it, with their indices.
+    /// The calls that wait for this task, each with the task's index in the call.
     waiting: Vec<(CallId, usize)>,
-    /// Number of batches on their way that hold it.
+    /// Number of batches in transit and of the coordinator's threads that hold this task.
     copies: u8,
 }
 
 impl Pending {
-    /// The order to compute the task with this key once more.
+    /// Returns the check that computes the task with this key once more.
     fn audit(&self, key: u64, checker: Checker) -> AuditTask {
         let task = TaskText { key, text: Arc::clone(&self.text) };
         AuditTask { kind: self.kind, shared: self.shared, task, checker }
     }
 }
 
-/// A batch on its way.
+/// A batch in transit: published, but without results so far.
 #[derive(Debug)]
 struct OnItsWay {
     keys: Vec<u64>,
     since: Instant,
 }
 
-/// See the module.
+/// The state of a coordinator: see the module.
 #[derive(Debug)]
 pub struct Ledger {
     run: String,
     proof: String,
     largest_message: usize,
     tasks: BTreeMap<u64, Pending>,
-    /// Tasks that no batch holds, in order.
+    /// Keys of the tasks that no batch holds, in order.
     queue: VecDeque<u64>,
     batches: BTreeMap<u64, OnItsWay>,
     next_batch: u64,
-    /// The calls that hold their tasks back.
+    /// Paused calls, whose tasks are held back.
     paused: BTreeSet<CallId>,
     staff: Staff,
     audits: Audits,
-    /// Results that no call has asked for yet.
+    /// Results that no call has requested yet, by key: the worker's name and the outcome's text.
     early: BTreeMap<u64, (String, Arc<str>)>,
-    /// Mean time of an evaluation on a worker, in s; none before the first result.
+    /// Moving average of the time of an evaluation on a worker, in s. `None` before the first result.
     evaluation_s: Option<f64>,
     results: u64,
     rng: ChaCha8Rng,
 }
 
 impl Ledger {
-    /// An empty ledger. `first_batch` keeps the numbers of batches apart from those of a predecessor, and `rng` chooses
-    /// the results that are checked: it cannot change a result.
+    /// Creates an empty ledger. `first_batch` separates its batch numbers from those of an earlier coordinator. `rng`
+    /// chooses the results that are checked, and cannot change a result.
     pub fn new(
         run: &str,
         proof: &str,
@@ -123,27 +124,27 @@ impl Ledger {
         }
     }
 
-    /// Number of tasks without a result.
+    /// Returns the number of tasks without a result.
     pub fn pending(&self) -> usize {
         self.tasks.len()
     }
 
-    /// Number of results that were delivered.
+    /// Returns the number of results that were delivered.
     pub fn results(&self) -> u64 {
         self.results
     }
 
-    /// Number of results that are being checked.
+    /// Returns the number of results that are being checked.
     pub fn audits(&self) -> usize {
         self.audits.len()
     }
 
-    /// The workers.
+    /// Returns the workers.
     pub fn staff(&self) -> &Staff {
         &self.staff
     }
 
-    /// A call begins: its tasks, whose index is their place in `texts`.
+    /// Begins a call with these tasks. The index of a task is its position in `texts`.
     pub fn open(
         &mut self,
         call: CallId,
@@ -163,13 +164,13 @@ impl Ledger {
             self.queue.push_back(key);
         }
         let mut actions = Vec::new();
-        // Results that were made for a coordinator that was killed.
+        // Uses results that were computed for an earlier coordinator of this run.
         let early: Vec<u64> =
             self.early.keys().filter(|key| self.tasks.contains_key(key)).copied().collect();
         for key in early {
             if let Some((worker, line)) = self.early.remove(&key) {
                 actions.extend(self.take(&worker, vec![TaskText { key, text: line }], now));
-                // No batch is needed for it, unless its worker turns out to be wrong.
+                // Such a task needs no batch, unless its worker turns out to be wrong.
                 self.queue.retain(|queued| *queued != key);
             }
         }
@@ -177,7 +178,7 @@ impl Ledger {
         actions
     }
 
-    /// A call holds or continues.
+    /// Pauses or continues a call.
     pub fn pause(&mut self, call: CallId, is_paused: bool, now: Instant) -> Vec<LedgerAction> {
         match is_paused {
             true => self.paused.insert(call),
@@ -186,7 +187,7 @@ impl Ledger {
         self.publish(now)
     }
 
-    /// A call ends, also before it has all its results.
+    /// Ends a call, even if results are missing.
     pub fn close(&mut self, call: CallId) {
         self.paused.remove(&call);
         for pending in self.tasks.values_mut() {
@@ -198,7 +199,7 @@ impl Ledger {
         self.batches.retain(|_, batch| batch.keys.iter().any(|key| tasks.contains_key(key)));
     }
 
-    /// A worker told of itself.
+    /// Handles a notice of a worker.
     pub fn on_notice(&mut self, notice: WorkerNotice, now: Instant) -> Vec<LedgerAction> {
         let lines = self.staff.on_notice(notice, &self.proof, now);
         let mut actions: Vec<_> = lines.into_iter().map(LedgerAction::Say).collect();
@@ -207,7 +208,7 @@ impl Ledger {
         actions
     }
 
-    /// Results arrived.
+    /// Handles results that arrived.
     pub fn on_results(&mut self, results: ResultBatch, now: Instant) -> Vec<LedgerAction> {
         let batch = self.batches.remove(&results.batch);
         if batch.is_some() {
@@ -221,24 +222,24 @@ impl Ledger {
         actions
     }
 
-    /// The server has lost what it stored: the batches on their way are sent again.
+    /// Sends all batches in transit again, because the server has lost its store.
     pub fn on_store_lost(&mut self, now: Instant) -> Vec<LedgerAction> {
         let lost = std::mem::take(&mut self.batches);
         let line =
             format!("the server has lost what it stored: {} batches are sent again", lost.len());
-        // Each is put in front of the others.
+        // Each task goes to the front of the queue, so the last one is released first.
         self.release(lost.into_values().rev().flat_map(|batch| batch.keys.into_iter().rev()));
         let mut actions = vec![LedgerAction::Say(line)];
         actions.extend(self.publish(now));
         actions
     }
 
-    /// No worker could be heard until now.
+    /// Restarts the silence of all workers, because the server itself could not be heard.
     pub fn excuse_silence(&mut self, now: Instant) {
         self.staff.excuse_silence(now);
     }
 
-    /// Time passed: late batches are sent again, silent workers forgotten.
+    /// Handles the passing of time: sends late batches again, and forgets silent workers.
     pub fn on_tick(&mut self, now: Instant) -> Vec<LedgerAction> {
         let mut actions = Vec::new();
         for (line, keys) in self.staff.forget_silent(now) {
@@ -256,7 +257,8 @@ impl Ledger {
         actions
     }
 
-    /// A thread of the coordinator is free: a task for it.
+    /// Takes a task from the end of the queue for a thread of the coordinator. Returns its key, kind, hash of what it
+    /// shares, and text.
     pub fn take_for_local(&mut self) -> Option<(u64, TaskKind, u64, Arc<str>)> {
         let place = self.queue.iter().rposition(|key| !self.is_held(*key))?;
         let key = self.queue.remove(place)?;
@@ -265,19 +267,20 @@ impl Ledger {
         Some((key, pending.kind, pending.shared, Arc::clone(&pending.text)))
     }
 
-    /// A batch is larger than the server takes: its tasks stay for the coordinator.
+    /// Refuses the tasks of a batch that is larger than the server accepts. The coordinator's caller computes them.
     pub fn on_too_large(&mut self, batch: &WorkBatch) -> Vec<LedgerAction> {
         self.batches.remove(&batch.batch);
         let refused = || Outcome::Refused("the task is larger than the server takes".to_owned());
         batch.tasks.iter().flat_map(|task| self.deliver(task.key, refused())).collect()
     }
 
-    /// Takes outcomes of a worker: holds them until it is proven, delivers them if it is.
+    /// Takes outcomes from a worker. Those of a proven worker are delivered; those of a new worker are held until it is
+    /// proven.
     fn take(&mut self, worker: &str, outcomes: Vec<TaskText>, now: Instant) -> Vec<LedgerAction> {
         let mut actions = Vec::new();
         for outcome in outcomes {
             if !self.tasks.contains_key(&outcome.key) {
-                // Computed twice, or asked for by a predecessor.
+                // The task was computed twice, or belongs to an earlier coordinator.
                 if self.early.len() < MOST_EARLY && self.results == 0 {
                     self.early.insert(outcome.key, (worker.to_owned(), outcome.text));
                 }
@@ -286,7 +289,7 @@ impl Ledger {
             match self.staff.standing(worker) {
                 Standing::Proven => actions.extend(self.accept(worker, outcome)),
                 Standing::New => self.staff.hold(worker, outcome, now),
-                // Its batch was taken from the queue, and returns there.
+                // The task was taken from the queue for a batch, and returns there when the batch is released.
                 Standing::Foreign | Standing::SetAside => {}
             }
         }
@@ -294,7 +297,7 @@ impl Ledger {
         actions
     }
 
-    /// Accepts an outcome of a proven worker, and chooses one in a hundred for a check.
+    /// Accepts an outcome of a proven worker, and chooses one in a hundred to be checked.
     fn accept(&mut self, worker: &str, outcome: TaskText) -> Vec<LedgerAction> {
         let Some(pending) = self.tasks.get(&outcome.key) else { return Vec::new() };
         let TaskText { key, text: line } = outcome;
@@ -316,7 +319,7 @@ impl Ledger {
         actions
     }
 
-    /// Gives the outcome of a task to the calls that wait for it.
+    /// Reports the outcome of a task to the calls that wait for it.
     pub fn deliver(&mut self, key: u64, outcome: Outcome) -> Vec<LedgerAction> {
         let Some(pending) = self.tasks.remove(&key) else { return Vec::new() };
         self.results += 1;
@@ -325,17 +328,18 @@ impl Ledger {
         each.map(|(call, index)| LedgerAction::Deliver(call, index, outcome.clone())).collect()
     }
 
-    /// The first result of a worker that has not been checked is computed once more here, before any of them counts.
+    /// For each new worker with results, has the coordinator compute one of them again, before any of the worker's
+    /// results count.
     fn start_first_audits(&mut self) -> Vec<LedgerAction> {
         let mut actions = Vec::new();
         for (worker, held) in self.staff.to_be_proven(&mut self.rng) {
             let Some(pending) = self.tasks.get(&held.key) else {
-                // Another worker was faster.
+                // Another worker delivered this task first.
                 self.staff.drop_held(&worker, held.key);
                 continue;
             };
             let audit = pending.audit(held.key, Checker::Coordinator);
-            // If this task is being checked already, another one will be, soon.
+            // If this task is being checked already, another task of the worker is chosen at one of the next calls.
             if let Some(audit) = self.audits.start(audit, &worker, held.text) {
                 self.staff.begin_proof(&worker);
                 actions.push(LedgerAction::Audit(audit));
@@ -344,7 +348,7 @@ impl Ledger {
         actions
     }
 
-    /// The answer to an audit: the outcome that the checker computed, none if it did not answer.
+    /// Handles the answer to a check: the outcome that the checker computed, or `None` if it did not answer.
     pub fn on_audit(
         &mut self,
         key: u64,
@@ -376,7 +380,7 @@ impl Ledger {
         actions
     }
 
-    /// Sets a worker aside: nothing that it sends counts any more, and what is held of it is computed again.
+    /// Sets a worker aside: its results count from now on for nothing, and its held results are computed again.
     fn set_aside(&mut self, worker: &str, reason: &str) -> Vec<LedgerAction> {
         let Some(member) = self.staff.set_aside(worker) else { return Vec::new() };
         for outcome in &member.held {

@@ -1,4 +1,4 @@
-//! The coordinator's own threads that compute, too.
+//! The coordinator's own threads that compute.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use super::actor::CoordinatorCommand;
 use super::common::Common;
 use crate::compute::{Compute, outcome_of_texts};
 
-/// Pause before the next question after there was no task.
+/// Pause of an idle thread before it requests a task again.
 const IDLE_PAUSE: Duration = Duration::from_millis(10);
 
 /// Computes tasks until the coordinator ends.

@@ -1,4 +1,4 @@
-//! Traffic with the server: results, notices, and requests for trials and genomes.
+//! Traffic of a coordinator with the server: results, notices, and requests for trials and genomes.
 
 use std::sync::Arc;
 
@@ -17,18 +17,18 @@ use crate::wire::ResultBatch;
 use snakes_core::check::hash_of;
 use snakes_lab::run::headless::say;
 
-/// Maximum number of results that are fetched at once.
+/// Maximum number of results that are fetched with one request.
 const MOST_FETCHED: usize = 256;
 
 /// A message that arrived from the server.
 pub enum News {
     /// Results of a batch.
     Results(ResultBatch),
-    /// A worker told of itself.
+    /// A notice of a worker.
     Notice(WorkerNotice),
-    /// A notice of a run: the connection works.
+    /// A notice of any run, which shows that the connection works.
     ServerIsHeard,
-    /// The server has lost what it stored.
+    /// The server has lost its store.
     StoreLost,
 }
 
@@ -49,7 +49,7 @@ pub async fn fetch_results(broker: Arc<Broker>, run: String, news: Sender<News>)
                     Ok(_) => {}
                     Err(error) => say(&format!("a result is ignored: {error}")),
                 }
-                // Without an acknowledgement the results arrive again, and count once.
+                // Without an acknowledgement the results arrive again, but count only once.
                 let _ = message.ack().await;
             }
             Ok(Pulled::Nothing) => broker.connection().succeeded(TASK),
@@ -66,8 +66,8 @@ pub async fn fetch_results(broker: Arc<Broker>, run: String, news: Sender<News>)
     }
 }
 
-/// Hears what workers tell of themselves, and the notices of runs. This run's own come back, too, so that they show each
-/// second whether the server can be heard.
+/// Receives the notices of workers and of runs. The run's own notices come back as well, so they show each second that
+/// the server can be heard.
 pub async fn hear_notices(mut workers: Subscriber, mut runs: Subscriber, news: Sender<News>) {
     loop {
         let heard = tokio::select! {
@@ -84,7 +84,7 @@ pub async fn hear_notices(mut workers: Subscriber, mut runs: Subscriber, news: S
     }
 }
 
-/// Answers workers that ask for what tasks share.
+/// Answers workers that request the trial or the genome that tasks share.
 pub async fn answer_shared(broker: Arc<Broker>, run: String, common: Arc<Common>) {
     let subject = shared_subject(&run, "*");
     let Ok(mut requests) = broker.client().subscribe(subject).await else { return };

@@ -1,12 +1,12 @@
-//! Messages of a worker to its user: the runs for which it computes, and that it waits.
+//! Messages of a worker to its user: for which runs it computes, and that it waits for work.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Maximum number of runs whose computers are remembered.
+/// Maximum number of runs that are remembered.
 const MOST_RUNS: usize = 256;
-/// A worker without a batch for this long waits. Between two generations it waits much less.
+/// A worker without a batch for this long counts as waiting. The gap between two generations is much shorter.
 const WAITS_AFTER: Duration = Duration::from_secs(10);
 
 /// The activity of a worker's threads.
@@ -15,20 +15,20 @@ pub struct WorkerActivity(Mutex<ActivityState>);
 
 #[derive(Debug, Default)]
 struct ActivityState {
-    /// The computers of the runs that tell of themselves.
+    /// Names of the computers of the runs, by the name of the run, from the runs' notices.
     hosts: BTreeMap<String, String>,
-    /// Runs for which batches were computed.
+    /// Names of the runs for which batches were computed.
     computed: BTreeSet<String>,
-    /// Runs of which the user was told.
+    /// Names of the runs that were reported to the user.
     told: BTreeSet<String>,
-    /// Number of batches in work.
+    /// Number of batches that are being computed.
     busy: usize,
-    /// When the last batch ended.
+    /// When the last batch ended; `None` before the first.
     ended: Option<Instant>,
 }
 
 impl WorkerActivity {
-    /// A run told of itself.
+    /// Records the notice of a run.
     pub fn hear(&self, run: &str, host: &str) {
         let mut state = self.state();
         if state.hosts.len() < MOST_RUNS || state.hosts.contains_key(run) {
@@ -36,7 +36,7 @@ impl WorkerActivity {
         }
     }
 
-    /// A thread begins with a batch.
+    /// Records that a thread begins a batch.
     pub fn begin(&self, run: &str) {
         let mut state = self.state();
         state.busy += 1;
@@ -45,15 +45,15 @@ impl WorkerActivity {
         }
     }
 
-    /// A thread has computed a batch.
+    /// Records that a thread has computed a batch.
     pub fn end(&self) {
         let mut state = self.state();
         state.busy = state.busy.saturating_sub(1);
         state.ended = Some(Instant::now());
     }
 
-    /// The news since the last call, in a line: that this worker computes for a run, or that it has nothing to compute
-    /// any more.
+    /// Returns the news since the last call as a line: that this worker computes for another run, or that it waits for
+    /// work.
     pub fn news(&self, now: Instant, evaluations: u64) -> Option<String> {
         let mut state = self.state();
         let waits = state.busy == 0
@@ -64,7 +64,7 @@ impl WorkerActivity {
             state.hosts.clear();
             return Some(format!("waiting for work; {evaluations} evaluations so far"));
         }
-        // A run without a notice yet has one within a second.
+        // A run without a notice so far sends one within a second.
         let untold = state.computed.difference(&state.told);
         let new =
             untold.filter_map(|run| Some((run.clone(), state.hosts.get(run)?.clone()))).next();

@@ -1,4 +1,4 @@
-//! Messages of a worker beside its batches: notices once a second, and answers to requests to check a result.
+//! Messages of a worker besides its batches: a notice once a second, and answers to requests to check a result.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -15,8 +15,8 @@ use crate::wire::{WIRE_FORMAT, WorkBatch, line_of};
 use snakes_core::{ENGINE_VERSION, Processors};
 use snakes_lab::run::headless::say;
 
-/// Tells of this worker once a second, and listens to coordinators. Ends when the worker is stopped, or with an error when
-/// all coordinators compute with another engine.
+/// Sends a notice of this worker once a second, and listens to coordinators. Returns when the worker is stopped, with
+/// an error if it stops because all coordinators compute with another engine.
 pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
     let client = place.broker.client();
     let mut heard = client.subscribe(RUN_NOTICES).await.ok();
@@ -39,7 +39,7 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
             }
             _ = ticks.tick() => {
                 let evaluations = place.evaluations.load(Relaxed);
-                // While the connection is lost, that is the news.
+                // A lost connection is reported elsewhere and needs no further lines.
                 let news = (!place.broker.connection().is_lost())
                     .then(|| place.activity.news(Instant::now(), evaluations));
                 if let Some(line) = news.flatten() {
@@ -52,7 +52,7 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
                 let Ok(notice) = RunNotice::read(&message.payload) else { continue };
                 place.activity.hear(&notice.run, &notice.host);
                 if latest_run.as_ref() != Some(&notice.run) {
-                    // A coordinator that has just begun learns at once that this worker is there.
+                    // A notice is sent at once, so that a new coordinator learns early of this worker.
                     latest_run = Some(notice.run.clone());
                     ticks.reset_immediately();
                 }
@@ -100,18 +100,18 @@ fn own_notice(place: &Workplace, per_s: f32, leaves: bool) -> WorkerNotice {
     }
 }
 
-/// Counts over the last seconds, to find the evaluations per second.
+/// Times and numbers of evaluations within the last seconds, from which the rate is computed.
 #[derive(Debug, Default)]
 struct RecentRate(VecDeque<(Instant, u64)>);
 
-/// The time over which the rate is found.
+/// Time span over which the rate is averaged.
 const RATE_WINDOW: Duration = Duration::from_secs(5);
 
 impl RecentRate {
-    /// The evaluations per second over the last five seconds, given their number since the start.
+    /// Adds the number of evaluations since the start. Returns the evaluations per second over the last five seconds.
     fn update(&mut self, now: Instant, evaluations: u64) -> f32 {
         self.0.push_back((now, evaluations));
-        // The last one before the window is its beginning.
+        // The latest entry before the window marks its beginning.
         while self.0.get(1).is_some_and(|(at, _)| now.duration_since(*at) >= RATE_WINDOW) {
             self.0.pop_front();
         }
@@ -131,7 +131,7 @@ pub async fn answer_audits(place: Arc<Workplace>) {
         };
         let at_work = Arc::clone(&place);
         let results = tokio::task::spawn_blocking(move || compute(&at_work, &work)).await;
-        // A request without an answer goes to another worker.
+        // If a request has no answer, the coordinator's machine makes the check.
         if let Ok(Some(results)) = results {
             let _ = place.broker.client().publish(reply, results.encode().into()).await;
         }

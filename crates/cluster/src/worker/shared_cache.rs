@@ -1,4 +1,4 @@
-//! Trials and genomes that the tasks of recent batches share: fetched from the coordinator once.
+//! Cache of the trials and genomes that recent batches share. Each is fetched once from its coordinator.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -11,21 +11,22 @@ use crate::packing::unpack;
 use crate::wire::{WorkBatch, hex, shared_hash};
 use snakes_lab::run::headless::say;
 
-/// How long a coordinator may take to answer.
+/// Longest time that a coordinator may take to answer.
 const ANSWER_WAIT: Duration = Duration::from_secs(3);
 
-/// The trials and genomes that were used last.
+/// The trials and genomes that were used last, by hash.
 pub type SharedCache = Latest<Arc<Shared>>;
 
 impl SharedCache {
-    /// The trial or the genome that the tasks of a batch share, from its coordinator; none if that does not answer, or sends something else.
+    /// Fetches the trial or the genome that the tasks of a batch share from the coordinator. Returns `None` if there is
+    /// no valid answer.
     pub async fn fetch(&self, broker: &Broker, work: &WorkBatch) -> Option<Arc<Shared>> {
         let subject = shared_subject(&work.run, &hex(work.shared));
         let request = async_nats::Request::new().timeout(Some(ANSWER_WAIT));
         let answer = broker.client().send_request(subject, request).await;
         let bytes = answer.ok()?.payload;
         let read = unpack(&bytes).and_then(|text| {
-            // The coordinator's hash is of its own text, so equal hashes mean an equal trial.
+            // The coordinator hashed its own text, so an equal hash means an equal trial or genome.
             let is_it = shared_hash(work.kind, &text) == work.shared;
             is_it.then(|| Shared::read(work.kind, &text)).transpose()
         });
@@ -35,7 +36,7 @@ impl SharedCache {
                 self.keep(work.shared, Arc::clone(&shared));
                 Some(shared)
             }
-            // A coordinator that has ended answers with nothing.
+            // A coordinator that does not know the hash answers with another text.
             Ok(None) => None,
             Err(error) => {
                 say(&format!("run {}: its trial cannot be used: {error}", work.run));

@@ -5,60 +5,61 @@ use std::sync::Arc;
 
 use crate::wire::{TaskKind, TaskText};
 
-/// One in so many results of a worker that has been proven is checked.
+/// One in this number of results of a proven worker is checked.
 pub const ONE_IN: u32 = 100;
 
 /// Which machine computes a task once more.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Checker {
-    /// Another worker.
+    /// Another worker, by name.
     Worker(String),
-    /// This machine, whose bits decide.
+    /// The coordinator's machine, whose bits decide.
     Coordinator,
 }
 
 /// A task that is computed once more.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AuditTask {
-    /// Its kind.
+    /// Kind of the task.
     pub kind: TaskKind,
-    /// Hash of what it shares with others.
+    /// Hash of the trial or the genome that the task shares with others.
     pub shared: u64,
-    /// The task.
+    /// Key and text of the task.
     pub task: TaskText,
-    /// Which machine computes it.
+    /// Machine that computes the task.
     pub checker: Checker,
 }
 
 /// The finding of a check.
 #[derive(Debug, PartialEq)]
 pub enum Finding {
-    /// The outcomes are equal: this worker is as it should be.
+    /// The outcomes are equal. Holds the name of the checked worker.
     Equal(String),
-    /// The check is to be repeated by this machine.
+    /// The coordinator's machine must repeat the check, because the outcomes differ or the other worker did not answer.
     Repeat(AuditTask),
-    /// The named workers sent other bits than this machine.
+    /// The named workers sent other bits than the coordinator's machine computed.
     Wrong(Vec<String>),
 }
 
 #[derive(Debug)]
 struct Audit {
     task: AuditTask,
-    /// The workers' outcomes, the suspect's first.
+    /// Outcomes of the workers, by name. The first is the outcome that is checked.
     lines: Vec<(String, Arc<str>)>,
 }
 
-/// The checks that are not finished.
+/// The unfinished checks, by the key of the task.
 #[derive(Debug, Default)]
 pub struct Audits(BTreeMap<u64, Audit>);
 
 impl Audits {
-    /// Number of checks.
+    /// Returns the number of unfinished checks.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Begins to check what a worker sent. Returns the check to be made; none if this task is being checked.
+    /// Begins to check an outcome of a worker. Returns the check to carry out, or `None` if the task is being checked
+    /// already.
     pub fn start(&mut self, task: AuditTask, worker: &str, line: Arc<str>) -> Option<AuditTask> {
         let key = task.task.key;
         if self.0.contains_key(&key) {
@@ -69,7 +70,7 @@ impl Audits {
         Some(task)
     }
 
-    /// The checker of a task answered with this outcome, or not at all.
+    /// Handles the outcome that the checker of a task computed, or `None` if it did not answer.
     pub fn on_answer(&mut self, key: u64, line: Option<Arc<str>>) -> Option<Finding> {
         let mut audit = self.0.remove(&key)?;
         let suspect = audit.lines.first()?.0.clone();

@@ -6,15 +6,16 @@ use std::time::{Duration, Instant};
 use super::{CallId, Ledger, LedgerAction, OnItsWay};
 use crate::wire::{MOST_TASKS, TaskText, WorkBatch};
 
-/// The time that a batch should take on a worker.
+/// Time that a batch should take on a worker.
 const BATCH_TIME: Duration = Duration::from_millis(500);
-/// Batches on their way for each thread of the workers: one in work, and one that waits for it.
+/// Batches in transit for each thread of the workers: one in progress and one that waits.
 const BATCHES_PER_THREAD: usize = 2;
-/// A batch without a result for this long, and for several times as long as it should take, is sent once more.
+/// A batch without results for this long is late, if its expected time times `LATE_FACTOR` has passed, too.
 const LATE_AFTER: Duration = Duration::from_secs(2);
-/// Factor on the expected time of a batch after which it is late.
+/// A batch is late only after its expected time multiplied by this factor.
 const LATE_FACTOR: f64 = 3.0;
-/// A batch without a result for this long is given up: the server may have lost it.
+/// A batch without results for this long is given up and its tasks are queued again, because the server may have lost
+/// it.
 pub(super) const LOST_AFTER: Duration = Duration::from_secs(30);
 /// Maximum number of batches that hold the same task.
 const MOST_COPIES: u8 = 3;
@@ -25,7 +26,7 @@ impl Ledger {
         pending.waiting.iter().all(is_paused)
     }
 
-    /// Batches with these tasks are not on their way any more.
+    /// Releases tasks from a batch that has ended, and queues those without a result again.
     pub(super) fn release(&mut self, keys: impl Iterator<Item = u64>) {
         for key in keys {
             if let Some(pending) = self.tasks.get_mut(&key) {
@@ -35,7 +36,7 @@ impl Ledger {
         }
     }
 
-    /// Puts a task without a result back into the queue, unless a batch on its way holds it or its result is held.
+    /// Puts a task without a result back into the queue, unless a batch holds it or its result is held.
     pub(super) fn requeue(&mut self, key: u64) {
         let is_free = self.tasks.get(&key).is_some_and(|pending| pending.copies == 0);
         if is_free && !self.staff.holds(key) && !self.queue.contains(&key) {
@@ -43,7 +44,7 @@ impl Ledger {
         }
     }
 
-    /// Publishes batches while the workers have room for them.
+    /// Publishes batches while the workers have capacity for them.
     pub(super) fn publish(&mut self, now: Instant) -> Vec<LedgerAction> {
         let threads = self.staff.threads();
         let mut actions = Vec::new();
@@ -55,8 +56,8 @@ impl Ledger {
         actions
     }
 
-    /// The tasks of the next batch: as many as take half a second, and fewer towards the end of the queue, so that all
-    /// workers end at about the same time.
+    /// Chooses the tasks of the next batch: as many as take half a second, and fewer towards the end of the queue, so
+    /// that all workers finish at about the same time.
     fn next_keys(&mut self, threads: usize) -> Vec<u64> {
         let in_time = BATCH_TIME.as_secs_f64() / self.evaluation_s.unwrap_or(1.0).max(1e-6);
         let share = self.queue.len().div_ceil(BATCHES_PER_THREAD * threads.max(1));
@@ -82,7 +83,7 @@ impl Ledger {
         keys
     }
 
-    /// A batch with these tasks, which is on its way from now on; none without a task.
+    /// Makes a batch of these tasks and counts it as in transit. Returns `None` if there is no task.
     fn batch_of(&mut self, keys: Vec<u64>, now: Instant) -> Option<WorkBatch> {
         let first = self.tasks.get(keys.first()?)?;
         let (kind, shared) = (first.kind, first.shared);
@@ -98,7 +99,7 @@ impl Ledger {
         Some(WorkBatch { run: self.run.clone(), batch: number, kind, shared, tasks })
     }
 
-    /// Sends tasks of late batches once more, if workers have nothing else to do: one of them may be slow, frozen or gone.
+    /// Sends tasks of late batches once more if the queue is empty, because their workers may be slow, frozen or gone.
     pub(super) fn repeat_late(&mut self, now: Instant) -> Vec<LedgerAction> {
         let (threads, mut actions) = (self.staff.threads(), Vec::new());
         for number in self.late_batches(now, LATE_AFTER) {
@@ -114,7 +115,7 @@ impl Ledger {
         actions
     }
 
-    /// The expected time of a batch of so many tasks.
+    /// Returns the expected time of a batch with this number of tasks.
     fn expected(&self, tasks: usize) -> Duration {
         Duration::from_secs_f64(self.evaluation_s.unwrap_or(1.0) * tasks as f64)
     }

@@ -1,4 +1,4 @@
-//! The workers: which are there, which have been proven, and the results that are held of the others.
+//! The workers of a run: which are present, which are proven, and the results of new workers that are held.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -10,38 +10,38 @@ use crate::hello::{WorkerNotice, own_engine};
 use crate::names::SILENCE;
 use crate::wire::TaskText;
 
-/// Maximum number of workers. Others are not heard.
+/// Maximum number of workers. Notices of further workers are ignored.
 const MOST_MEMBERS: usize = 20_000;
-/// Maximum number of workers whose arrival is told to the user.
+/// Maximum number of workers whose arrival is reported to the user.
 const MOST_TOLD: usize = 50;
 
 /// Whether results of a worker count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standing {
-    /// None of its results has been checked. They are held.
+    /// No result of the worker has been checked. Its results are held.
     New,
-    /// A result of it had the bits that this machine computes. Its results count.
+    /// A checked result of the worker had the bits that the coordinator's machine computes. Its results count.
     Proven,
-    /// It computes with another engine. It gets no batches of this run.
+    /// The worker computes with another engine. It gets no batches of this run.
     Foreign,
-    /// It sent a wrong result. Nothing that it sends counts.
+    /// The worker sent a wrong result. None of its results count.
     SetAside,
 }
 
 /// A worker.
 #[derive(Debug, Clone)]
 pub struct StaffMember {
-    /// Its latest notice.
+    /// Latest notice of the worker; `None` if only results have arrived from it.
     pub notice: Option<WorkerNotice>,
-    /// Whether its results count.
+    /// Whether the worker's results count.
     pub standing: Standing,
-    /// Results that count as soon as it is proven.
+    /// Results that count as soon as the worker is proven.
     pub held: Vec<TaskText>,
-    /// Number of its results that counted.
+    /// Number of the worker's results that counted.
     pub results: u64,
     seen: Instant,
     is_being_proven: bool,
-    /// Whether its arrival was told to the user.
+    /// Whether the worker's arrival was reported to the user.
     is_told: bool,
 }
 
@@ -62,7 +62,7 @@ impl StaffMember {
         }
     }
 
-    /// Name of its computer.
+    /// Returns the name of the worker's computer.
     pub fn host(&self) -> &str {
         self.notice.as_ref().map_or("an unknown computer", |notice| &notice.host)
     }
@@ -74,24 +74,24 @@ impl StaffMember {
 }
 
 impl Staff {
-    /// Number of workers whose results may count.
+    /// Returns the number of present workers whose results may count.
     pub fn workers(&self) -> usize {
         self.0.values().filter(|member| member.works()).count()
     }
 
-    /// Number of their threads.
+    /// Returns the number of threads of the present workers whose results may count.
     pub fn threads(&self) -> usize {
         let works = self.0.values().filter(|member| member.works());
         works.filter_map(|member| Some(member.notice.as_ref()?.threads as usize)).sum()
     }
 
-    /// Names of the workers that were set aside.
+    /// Returns the names of the workers that were set aside.
     pub fn set_aside_names(&self) -> Vec<String> {
         let is_it = |(_, member): &(&String, &StaffMember)| member.standing == Standing::SetAside;
         self.0.iter().filter(is_it).map(|(name, _)| name.clone()).collect()
     }
 
-    /// A worker told of itself. Returns lines for the user.
+    /// Records a worker's notice. Returns lines for the user.
     pub fn on_notice(&mut self, notice: WorkerNotice, proof: &str, now: Instant) -> Vec<String> {
         let name = notice.worker.clone();
         let is_new = !self.0.contains_key(&name);
@@ -124,8 +124,8 @@ impl Staff {
         lines
     }
 
-    /// Forgets workers that have been silent for long, but not those that were set aside. Returns for each a line about its
-    /// loss, if its arrival was told and it did not leave, and the tasks of which results of it were held.
+    /// Forgets workers that have been silent for `SILENCE`, except those that were set aside. Returns for each the
+    /// keys of its held results, and a line about its loss if its arrival was reported and it did not leave.
     pub fn forget_silent(&mut self, now: Instant) -> Vec<(Option<String>, Vec<u64>)> {
         let is_silent = |_: &String, member: &mut StaffMember| {
             now.duration_since(member.seen) > SILENCE && member.standing != Standing::SetAside
@@ -144,17 +144,17 @@ impl Staff {
         lines.collect()
     }
 
-    /// No worker could be heard until now: their silence counts from now on.
+    /// Restarts the silence of all workers from now, because no worker could be heard.
     pub fn excuse_silence(&mut self, now: Instant) {
         self.0.values_mut().for_each(|member| member.seen = now);
     }
 
-    /// Whether results of a worker count. One that nobody has heard of is new.
+    /// Returns whether results of a worker count. An unknown worker is new.
     pub fn standing(&self, worker: &str) -> Standing {
         self.0.get(worker).map_or(Standing::New, |member| member.standing)
     }
 
-    /// Holds a result.
+    /// Holds a result until its worker is proven.
     pub fn hold(&mut self, worker: &str, outcome: TaskText, now: Instant) {
         if self.0.len() >= MOST_MEMBERS && !self.0.contains_key(worker) {
             return;
@@ -166,19 +166,19 @@ impl Staff {
         }
     }
 
-    /// Whether a result of a task is held.
+    /// Returns whether a result of this task is held.
     pub fn holds(&self, key: u64) -> bool {
         self.0.values().flat_map(|member| &member.held).any(|held| held.key == key)
     }
 
-    /// Drops a held result that is not needed any more.
+    /// Drops a held result that is not needed.
     pub fn drop_held(&mut self, worker: &str, key: u64) {
         if let Some(member) = self.0.get_mut(worker) {
             member.held.retain(|held| held.key != key);
         }
     }
 
-    /// For each new worker with results, one of them, if none is being checked.
+    /// Chooses a held result at random for each new worker that has some, unless one is being checked already.
     pub fn to_be_proven(&self, rng: &mut ChaCha8Rng) -> Vec<(String, TaskText)> {
         let mut chosen = Vec::new();
         for (name, member) in &self.0 {
@@ -191,14 +191,14 @@ impl Staff {
         chosen
     }
 
-    /// A result of this worker is being checked.
+    /// Records that a result of this worker is being checked.
     pub fn begin_proof(&mut self, worker: &str) {
         if let Some(member) = self.0.get_mut(worker) {
             member.is_being_proven = true;
         }
     }
 
-    /// The worker is proven, unless it was set aside before. Returns the results that were held.
+    /// Marks the worker as proven, unless it was set aside before. Returns its held results.
     pub fn prove(&mut self, worker: &str) -> Vec<TaskText> {
         let Some(member) = self.0.get_mut(worker) else { return Vec::new() };
         if member.standing == Standing::New {
@@ -207,14 +207,14 @@ impl Staff {
         std::mem::take(&mut member.held)
     }
 
-    /// A result of this worker counted.
+    /// Counts a result of this worker.
     pub fn count_result(&mut self, worker: &str) {
         if let Some(member) = self.0.get_mut(worker) {
             member.results += 1;
         }
     }
 
-    /// Sets a worker aside, and returns it as it was; none if it is set aside already.
+    /// Sets a worker aside. Returns its state before, or `None` if it is unknown or was set aside already.
     pub fn set_aside(&mut self, worker: &str) -> Option<StaffMember> {
         let member = self.0.get_mut(worker)?;
         if member.standing == Standing::SetAside {
@@ -226,7 +226,7 @@ impl Staff {
         Some(before)
     }
 
-    /// A proven worker other than this one, chosen at random.
+    /// Chooses at random a proven and present worker other than this one. Returns `None` if there is none.
     pub fn other_proven(&self, worker: &str, rng: &mut ChaCha8Rng) -> Option<String> {
         let is_it = |(name, member): &(&String, &StaffMember)| {
             member.standing == Standing::Proven && member.works() && *name != worker

@@ -14,7 +14,7 @@ fn ledger() -> Ledger {
     Ledger::new("run", PROOF, 100_000, 1, ChaCha8Rng::seed_from_u64(1))
 }
 
-/// The right outcome of a task: a panic whose message is the task.
+/// Returns the right outcome of a task: a panic whose message is the task's text.
 fn right(task: &TaskText) -> Outcome {
     let result: EvaluationResult = Err(task.text.to_string());
     Outcome::Scored(result)
@@ -39,7 +39,7 @@ fn tasks(count: usize) -> Vec<Arc<str>> {
     (0..count).map(|number| format!("task {number}").into()).collect()
 }
 
-/// A ledger with its actions, whose audits this machine answers rightly.
+/// A ledger and the actions that it returned. The coordinator answers its own checks rightly.
 struct Room {
     ledger: Ledger,
     now: Instant,
@@ -98,7 +98,7 @@ impl Room {
         self.act(actions);
     }
 
-    /// Lets a worker answer all batches until nothing is published any more.
+    /// Answers all batches as this worker until nothing is left to publish.
     fn work(&mut self, worker: &str, outcome: fn(&TaskText) -> Outcome) {
         while let Some(batch) = self.published.pop() {
             self.answer(results(worker, &batch, outcome));
@@ -111,7 +111,7 @@ impl Room {
         self.act(actions);
     }
 
-    /// The indices that were delivered with the right outcome, in ascending order.
+    /// Returns the indices of the tasks that were delivered with the right outcome, in ascending order.
     fn right_indices(&self, call: CallId) -> Vec<usize> {
         let is_right = |(of, index, outcome): &&(CallId, usize, Outcome)| {
             let text = format!("task {index}");
@@ -161,7 +161,7 @@ fn batches_take_half_a_second_and_become_small_towards_the_end() {
         sizes.push(batch.tasks.len());
         room.answer(results("a", &batch, right));
     }
-    // 10 ms each.
+    // Each task takes 10 ms.
     assert_eq!(*sizes.iter().max().expect("some"), 50);
     assert_eq!(sizes[sizes.len() - 1], 1);
     assert_eq!(room.right_indices(1).len(), 1000);
@@ -221,7 +221,7 @@ fn a_wrong_checker_is_found_as_well() {
         let batch = room.published.remove(0);
         room.answer(results(worker, &batch, right));
     }
-    // The checks are answered by the other worker, wrongly, and then by this machine.
+    // The other worker answers the checks wrongly. Then the coordinator's machine repeats them.
     while let Some(batch) = room.published.pop() {
         let actions = room.ledger.on_results(results("a", &batch, right), room.now);
         for action in actions {
@@ -306,7 +306,7 @@ fn batches_that_the_server_has_lost_are_sent_again_at_once() {
     };
     assert_eq!(texts(&room.published), texts(&lost), "the same tasks in the same order");
     assert!(lost.iter().all(|batch| room.published.iter().all(|new| new.batch != batch.batch)));
-    // A worker may still have one of them.
+    // A worker may still have one of the lost batches.
     room.answer(results("a", &lost[0], right));
     room.work("a", right);
     assert_eq!(room.right_indices(1), (0..20).collect::<Vec<usize>>());
@@ -331,7 +331,7 @@ fn a_worker_that_falls_silent_is_told_once_unless_the_server_is_silent_too() {
     assert_eq!(lost, [words]);
     room.hear("dies", 1);
     assert_eq!(room.said.last().expect("a line"), "worker dies on computer: 1 thread");
-    // One that leaves is not lost.
+    // A worker that leaves is not reported as lost.
     let leaving = WorkerNotice { leaves: true, ..notice("dies", 1, PROOF) };
     let actions = room.ledger.on_notice(leaving, room.now);
     room.act(actions);
@@ -346,7 +346,7 @@ fn a_silent_worker_is_forgotten_and_what_is_held_of_it_is_computed_again() {
     room.open(1, 1);
     room.hear("a", 1);
     let batch = room.published.remove(0);
-    // Its result arrives, but the check is never answered.
+    // The result of this worker arrives, but the check is never answered.
     let actions = room.ledger.on_results(results("a", &batch, right), room.now);
     let [LedgerAction::Audit(audit)] = &actions[..] else { unreachable!("{actions:?}") };
     room.now += Duration::from_secs(6);
