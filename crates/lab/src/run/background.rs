@@ -1,4 +1,4 @@
-//! A run on a thread of its own, for a window that must not wait.
+//! A run on a separate thread, for a window that must not wait.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -17,28 +17,28 @@ use super::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::{Archive, Champion, Front, RunPlan, SettingChange, StairsTree};
 use snakes_core::schema::SettingValue;
 
-/// News about a run in the background.
+/// News about a run in the background, sent by its thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunEvent {
     /// The run's folder is open.
     Opened(Box<OpenedRun>),
-    /// A setting is changed; the change takes effect with the generation that begins next.
+    /// A setting was changed. The change takes effect with the generation that begins next.
     SettingChanged {
         /// The change.
         change: SettingChange,
-        /// The plan with it.
+        /// The plan that includes this change and all earlier ones.
         plan_now: Box<RunPlan>,
     },
-    /// A setting was not changed.
+    /// A requested change of a setting was not made.
     SettingNotChanged {
-        /// Its full dotted name.
+        /// Full dotted name of the setting.
         field: String,
-        /// The reason, in a line.
+        /// Reason, as one line.
         reason: String,
     },
-    /// The run's folder cannot be opened, and why: nothing is evolved.
+    /// The run's folder cannot be opened, so nothing is evolved. Holds the reason.
     Refused(String),
-    /// Results besides champions: after the run was opened, and before each [`Self::Generation`].
+    /// Results besides champions: sent after a run with finished generations was opened, and before each [`Self::Generation`].
     Explored(Box<Exploration>),
     /// A generation is finished.
     Generation(Box<GenerationReport>),
@@ -47,49 +47,49 @@ pub enum RunEvent {
         /// Hash over the whole run.
         run_hash: u64,
     },
-    /// The generation could not be saved, and why. The run is held; resuming tries again.
+    /// The generation could not be saved. Holds the reason. The run is paused; resuming it saves again.
     NotSaved(String),
-    /// The simulation of an individual panicked, in a line; the run continues.
+    /// The simulation of an individual panicked. Holds a line about it. The run continues.
     Crashed(String),
-    /// An evaluator reported results that cannot be trusted, and why, in a line. Earlier generations, saved ones included,
-    /// may be wrong; no more events follow.
+    /// The evaluator reported results that cannot be trusted. Holds the reason as one line. Earlier generations, even saved ones,
+    /// may be wrong. No more events follow.
     Untrusted(String),
-    /// The run's thread ended by an error of the program; no more events follow.
+    /// The run's thread panicked. No more events follow.
     Failed,
 }
 
 /// A run whose folder was opened.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenedRun {
-    /// The plan it began with.
+    /// Plan with which the run began.
     pub plan_at_start: RunPlan,
-    /// The plan with all changes that earlier sessions made.
+    /// Plan with all changes that were made so far.
     pub plan_now: RunPlan,
-    /// The finished generations, the first first.
+    /// Reports of the finished generations, the first one first.
     pub reports: Vec<GenerationReport>,
 }
 
 /// Results of a run besides its champions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exploration {
-    /// The individuals that no other beats in both distance and energy.
+    /// Front of the individuals that no other individual beats in both distance and energy.
     pub front: Front,
-    /// The strategy's archive of elites, if it has one.
+    /// Archive of elites, if the strategy has one.
     pub archive: Option<Archive>,
-    /// The tree of stairs, if stairs evolve.
+    /// Tree of stairs, if stairs evolve.
     pub stairs: Option<Arc<StairsTree>>,
-    /// The best of the latest generation, the best first; empty if an earlier session finished it.
+    /// Best individuals of the latest generation, the best first. Empty if an earlier session finished that generation.
     pub leaders: Vec<Champion>,
-    /// The latest generation; none if an earlier session finished it.
+    /// The latest generation. `None` if an earlier session finished it.
     pub generation: Option<Arc<Generation>>,
-    /// The known parents of the next generation, each with its number of children.
+    /// Known parents of the next generation, each with its number of children.
     pub parents: Vec<(Arc<Ancestor>, u32)>,
-    /// The ancestry of the best so far.
+    /// Ancestry of the best individual so far.
     pub ancestry: Ancestry,
 }
 
 impl Exploration {
-    /// The results of an experiment so far.
+    /// Collects the results of an experiment so far.
     pub fn of(experiment: &Experiment) -> Self {
         Self {
             front: experiment.front().clone(),
@@ -103,7 +103,7 @@ impl Exploration {
     }
 }
 
-/// A run on a background thread. Dropping this cancels it and waits briefly for files that are being written.
+/// A run on a background thread. Dropping it cancels the run, and waits briefly for files that are being written.
 #[derive(Debug)]
 pub struct BackgroundRun {
     shared: Arc<BackgroundState>,
@@ -111,19 +111,19 @@ pub struct BackgroundRun {
     has_ended: AtomicBool,
 }
 
-/// How long dropping a run waits for its thread: much longer than it takes to write a file.
+/// Longest time that dropping a run waits for its thread. Writing a file takes much less.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Shared between the run's thread and its [`BackgroundRun`].
+/// State that the run's thread shares with its [`BackgroundRun`].
 #[derive(Debug)]
 struct BackgroundState {
     control: RunControl,
     pause_after_generation: AtomicBool,
-    /// Size of the generation in progress. Some strategies change it.
+    /// Number of individuals in the generation in progress. Some strategies change it.
     population: AtomicU32,
-    /// Requested changes of settings: full dotted names and values.
+    /// Requested changes of settings: their full dotted names and values.
     requests: Mutex<VecDeque<(String, SettingValue)>>,
-    /// The evaluator of the next generation.
+    /// Evaluator of the next generation.
     evaluator: Mutex<Arc<dyn Evaluator>>,
 }
 
@@ -138,8 +138,8 @@ impl BackgroundState {
 }
 
 impl BackgroundRun {
-    /// Opens a run and holds it before its first evaluation: see [`Self::resume`]. If `before` may still use its
-    /// folder, the run's thread waits until that has ended.
+    /// Opens a run and pauses it before its first evaluation: see [`Self::resume`]. If `before` is given, cancels that run and
+    /// waits on the new thread until it has ended, because it may still use the folder.
     ///
     /// # Errors
     /// The thread could not be started.
@@ -176,54 +176,54 @@ impl BackgroundRun {
         Ok(Self { shared, events, has_ended: AtomicBool::new(false) })
     }
 
-    /// Continues until paused or finished.
+    /// Continues the run until it is paused or finished.
     pub fn resume(&self) {
         self.shared.pause_after_generation.store(false, Ordering::SeqCst);
         self.shared.control.resume();
     }
 
-    /// Continues to the end of the current generation, then pauses.
+    /// Continues the run to the end of the current generation, then pauses it.
     pub fn run_single_generation(&self) {
         self.shared.pause_after_generation.store(true, Ordering::SeqCst);
         self.shared.control.resume();
     }
 
-    /// Whether it will pause after the current generation.
+    /// Returns whether the run will pause after the current generation.
     pub fn is_single_generation(&self) -> bool {
         self.shared.pause_after_generation.load(Ordering::SeqCst)
     }
 
-    /// Holds the workers.
+    /// Pauses the workers before their next evaluation.
     pub fn pause(&self) {
         self.shared.control.pause();
     }
 
-    /// Requests changes of settings, by their full dotted names, before the next generation begins; if the run is
-    /// held between two generations, at once. Each is answered by [`RunEvent::SettingChanged`] or
-    /// [`RunEvent::SettingNotChanged`], unless the setting has that value already.
+    /// Requests changes of settings by their full dotted names. They are made before the next generation begins; while the run is
+    /// paused between two generations, at once. Each is answered by [`RunEvent::SettingChanged`] or
+    /// [`RunEvent::SettingNotChanged`], unless the setting already has the value.
     pub fn request_changes(&self, changes: impl IntoIterator<Item = (String, SettingValue)>) {
         self.shared.requests().extend(changes);
         self.shared.control.wake();
     }
 
-    /// Replaces the evaluator from the next generation on. That changes no bit.
+    /// Replaces the evaluator from the next generation on. The results stay the same.
     pub fn set_evaluator(&self, evaluator: Arc<dyn Evaluator>) {
         *self.shared.evaluator() = evaluator;
     }
 
-    /// Whether the workers are held.
+    /// Returns whether the workers are paused.
     pub fn is_paused(&self) -> bool {
         self.shared.control.is_paused()
     }
 
-    /// Number of finished evaluations of the current generation, and their total.
+    /// Returns the number of finished evaluations of the current generation, and the number of all its evaluations.
     pub fn progress(&self) -> (u32, u32) {
         let population = self.shared.population.load(Ordering::Relaxed);
-        // Between two generations, one number may be read before and the other after the change.
+        // Between two generations, the counter and the size may be read on different sides of the change.
         (self.shared.control.done().min(population), population)
     }
 
-    /// The next event, if there is one.
+    /// Returns the next event, or `None` if there is none.
     pub fn poll(&self) -> Option<RunEvent> {
         match self.events.try_recv() {
             Ok(event) => {
@@ -235,16 +235,16 @@ impl BackgroundRun {
                 Some(event)
             }
             Err(TryRecvError::Empty) => None,
-            // The thread is gone. Without a last event, it panicked.
+            // The thread has ended. If it sent no last event, it panicked.
             Err(TryRecvError::Disconnected) => {
                 (!self.has_ended.swap(true, Ordering::Relaxed)).then_some(RunEvent::Failed)
             }
         }
     }
 
-    /// Blocks until a cancelled run has released its folder.
+    /// Blocks until this run, which must be cancelled, has released its folder.
     fn wait_for_end(self) {
-        // The thread drops its end of the channel last.
+        // The thread drops the sending end of the channel last.
         self.events.iter().for_each(drop);
     }
 }
@@ -267,7 +267,7 @@ struct RunWorker {
 }
 
 impl RunWorker {
-    /// Sending fails only when the receiver was dropped; the run is cancelled then anyway.
+    /// Sends an event. This fails only when the receiver was dropped, which also cancels the run.
     fn send(&self, event: RunEvent) {
         drop(self.events.send(event));
     }
@@ -285,7 +285,7 @@ impl RunWorker {
         }
         let mut used: Option<Arc<dyn Evaluator>> = None;
         loop {
-            // Even a finished run can be made longer.
+            // Requests are served first, because a change can make even a finished run longer.
             self.serve_requests(&mut experiment, &mut recorder);
             if experiment.is_over() {
                 break;
@@ -296,7 +296,7 @@ impl RunWorker {
                 Err(Cancelled) => return,
             }
             let evaluator = Arc::clone(&self.shared.evaluator());
-            // The evaluator before may still have been checking its last results.
+            // The previous evaluator may have found a fault since, while it checked its last results.
             let before = used.replace(Arc::clone(&evaluator));
             let before = before.filter(|before| !Arc::ptr_eq(before, &evaluator));
             if self.reports_fault(before.as_deref()) {
@@ -337,7 +337,7 @@ impl RunWorker {
         }
     }
 
-    /// Tells that an evaluator's results cannot be trusted, if they cannot.
+    /// Reports a fault of an evaluator, if it has one. Returns whether it has one.
     fn reports_fault(&self, evaluator: Option<&dyn Evaluator>) -> bool {
         let fault = evaluator.and_then(Evaluator::fault);
         let is_wrong = fault.is_some();
@@ -345,7 +345,7 @@ impl RunWorker {
         is_wrong
     }
 
-    /// Makes the requested changes of settings.
+    /// Carries out the requested changes of settings.
     fn serve_requests(&self, experiment: &mut Experiment, recorder: &mut RunRecorder) {
         loop {
             self.show_next_generation(experiment);
@@ -358,13 +358,13 @@ impl RunWorker {
                 }
                 Err(error) => RunEvent::SettingNotChanged { field, reason: error.to_string() },
             };
-            // Before the event is sent, so that its receiver sees the generation that the change is for.
+            // The progress is updated before the event is sent, so that the receiver sees the generation that the change affects.
             self.show_next_generation(experiment);
             self.send(event);
         }
     }
 
-    /// Shows the progress of the next generation, of which nothing is done; after the last one, of that one.
+    /// Shows the progress of the next generation, of which nothing is done yet. After the last generation, its progress stays.
     fn show_next_generation(&self, experiment: &Experiment) {
         if !experiment.is_over() {
             self.shared.control.set_done(0);

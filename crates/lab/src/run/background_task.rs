@@ -1,4 +1,4 @@
-//! Work on a thread of its own, for callers that must not wait.
+//! Work on a separate thread, for callers that must not wait.
 
 use std::io;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use super::panics::caught;
 use super::run_control::RunControl;
 
-/// Work in progress that ends with one result. Dropping this does not end the work: see [`Self::cancel`].
+/// Work in progress that ends with one result. Dropping the task does not end the work: see [`Self::cancel`].
 #[derive(Debug)]
 pub struct BackgroundTask<T> {
     result: Receiver<Result<T, String>>,
@@ -18,8 +18,8 @@ pub struct BackgroundTask<T> {
 }
 
 impl BackgroundTask<String> {
-    /// Reads text to its end, such as the errors of a process, which would wait once they fill their pipe. If reading
-    /// fails, the text that came before counts.
+    /// Reads text to its end, such as the standard error of a process, which would block once its pipe is full. If reading fails,
+    /// the result is the text up to the failure.
     ///
     /// # Errors
     /// The thread could not be started.
@@ -33,7 +33,7 @@ impl BackgroundTask<String> {
 }
 
 impl<T: Send + 'static> BackgroundTask<T> {
-    /// Starts work that is one item.
+    /// Starts work that counts as a single item.
     ///
     /// # Errors
     /// The thread could not be started.
@@ -41,7 +41,8 @@ impl<T: Send + 'static> BackgroundTask<T> {
         Self::start_counted(1, |_| work())
     }
 
-    /// Starts work on `total` items that counts them with its control and stops early when that is cancelled.
+    /// Starts work on `total` items. The work counts finished items with its control, and stops early when the control is
+    /// cancelled.
     ///
     /// # Errors
     /// The thread could not be started.
@@ -52,28 +53,28 @@ impl<T: Send + 'static> BackgroundTask<T> {
         let (sender, result) = bounded(1);
         let control = Arc::new(RunControl::default());
         let shared = Arc::clone(&control);
-        // A send fails only when the task was dropped.
+        // Sending fails only when the task was dropped.
         let run = move || drop(sender.send(caught(|| work(&shared))));
         thread::Builder::new().name("background task".to_owned()).spawn(run)?;
         Ok(Self { result, control, total })
     }
 
-    /// Number of items finished.
+    /// Returns the number of finished items.
     pub fn done(&self) -> usize {
         self.control.done() as usize
     }
 
-    /// Number of items in all.
+    /// Returns the number of all items.
     pub fn total(&self) -> usize {
         self.total
     }
 
-    /// Asks the work to stop after the current item.
+    /// Cancels the work, which stops after the current item.
     pub fn cancel(&self) {
         self.control.cancel();
     }
 
-    /// The result, once and as soon as it is there; the message of the panic if the work panicked.
+    /// Returns the result once, as soon as it is available, or the message of the panic if the work panicked.
     pub fn poll(&self) -> Option<Result<T, String>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
@@ -82,7 +83,7 @@ impl<T: Send + 'static> BackgroundTask<T> {
         }
     }
 
-    /// Blocks until the work ends.
+    /// Blocks until the work ends, and returns its result.
     ///
     /// # Errors
     /// The work panicked.
@@ -91,11 +92,11 @@ impl<T: Send + 'static> BackgroundTask<T> {
     }
 }
 
-/// The thread is gone and its result was taken before.
+/// Error message when the result was taken before.
 const NO_RESULT: &str = "the work ended without a result";
 
 impl<T: Send + 'static> BackgroundTask<Vec<T>> {
-    /// Starts `act` on each item in turn. After a cancellation, `skip` makes the results of the items left.
+    /// Applies `act` to each item in turn. After a cancellation, `skip` makes the results of the remaining items.
     ///
     /// # Errors
     /// The thread could not be started.

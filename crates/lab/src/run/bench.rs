@@ -1,5 +1,5 @@
-//! Measures the speed of the simulation: our scoring path against bare rapier, one thread against many, in turn
-//! within one run, so that a noisy machine slows all of them alike.
+//! Measures the speed of the simulation: this program's evaluation against rapier alone, and one thread against many. The
+//! measurements alternate within one run, so that a noisy machine slows all of them alike.
 
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,10 +16,10 @@ use snakes_core::rng::{Purpose, stream};
 use snakes_core::score::{Trial, evaluate};
 use snakes_core::world::{JointTorque, PhysicsEngine, Simulation};
 
-/// Results of the benchmark. Rates are medians over its rounds, ratios medians of per-round ratios.
+/// Results of the benchmark. Rates are medians over its rounds; ratios are medians of the ratios of each round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BenchReport {
-    /// Worker threads of the many-threads figures.
+    /// Number of worker threads in the measurements with many threads.
     pub threads: usize,
     /// Physics steps per wall second, all threads together.
     pub steps_per_s: f64,
@@ -31,17 +31,17 @@ pub struct BenchReport {
     pub one_thread_sim_s_per_s: f64,
     /// Simulated seconds per wall second on one thread, stepped by rapier alone: no checks, no trace.
     pub bare_rapier_sim_s_per_s: f64,
-    /// Our one-thread rate over bare rapier's.
+    /// Rate of this program's evaluation on one thread, divided by the rate of rapier alone.
     pub ratio_to_bare_rapier: f64,
-    /// The many-threads rate over the one-thread rate.
+    /// Rate with many threads, divided by the rate with one thread.
     pub scaling: f64,
 }
 
-/// Genomes evaluated per thread in a round: a quarter of a second in rapier. A multiple of eight fills the lanes of an engine that steps
-/// eight snakes side by side.
+/// Number of genomes that a thread evaluates in a round, which takes a quarter of a second in rapier. A multiple of eight fills the
+/// lanes of an engine that steps eight snakes at once.
 const GENOMES: usize = 64;
 
-/// The work of a benchmark: genomes that are simulated in one trial.
+/// Genomes of a benchmark, all simulated in the same trial.
 #[derive(Debug)]
 pub struct Workload {
     genomes: Vec<Genome>,
@@ -49,8 +49,8 @@ pub struct Workload {
 }
 
 impl Workload {
-    /// Newborns of a run with these settings that are not disqualified: those stop early, and without them ours and
-    /// bare rapier take the same steps.
+    /// Makes a workload of newborns of a run with these settings. Disqualified newborns are left out, because they stop early, and
+    /// rapier alone would take more steps than the evaluation.
     pub fn newborns(settings: &Settings) -> Self {
         let trial = settings.trial.clone();
         let genomes = (0..10 * GENOMES as u32)
@@ -64,14 +64,14 @@ impl Workload {
         Self { genomes, trial }
     }
 
-    /// One champion, again and again. None if it is disqualified, since its trial then ends early.
+    /// Makes a workload that repeats one champion. Returns `None` if it is disqualified, because its trial then ends early.
     pub fn champion(genome: Genome, trial: Trial) -> Option<Self> {
         let runs_to_the_end = evaluate(&genome, &trial).disqualified.is_none();
         runs_to_the_end.then(|| Self { genomes: vec![genome; GENOMES], trial })
     }
 }
 
-/// Measures a workload for about `duration`, calling `progress` with the share done.
+/// Measures a workload for about `duration`, and calls `progress` with the share that is done, from 0 to 1.
 ///
 /// # Errors
 /// The threads could not be started.
@@ -104,7 +104,7 @@ pub fn bench(
             break;
         }
     }
-    // The first round warms the caches.
+    // The first round only warms the caches, and is dropped if there are others.
     if rounds.len() > 1 {
         rounds.remove(0);
     }
@@ -123,14 +123,14 @@ pub fn bench(
     })
 }
 
-/// Steps per second of the three variants, measured one after the other.
+/// Steps per second in one round: of this program, of rapier alone, and of many threads.
 struct Round {
     ours: f64,
     bare: f64,
     many: f64,
 }
 
-/// Steps per wall second of some work, which returns its number of steps.
+/// Measures the steps per wall second of `work`, which returns its number of steps.
 fn steps_per_s(work: impl FnOnce() -> u64) -> f64 {
     let started = Instant::now();
     let steps = work();
@@ -150,8 +150,8 @@ fn evaluated_steps(pool: &LocalPool, threads: usize, genomes: &[Genome], trial: 
     steps.into_inner()
 }
 
-/// Drives a snake with rapier as any program would: with the world and the torques of `evaluate`, without health checks, pose
-/// copies and trace. Returns the world at the end.
+/// Simulates a snake with rapier alone: with the world and the torques of `evaluate`, but without health checks, copies of poses
+/// and trace. Returns the world at the end.
 fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let plan = trial.world_plan(genome);
     let mut simulation = Simulation::new(&plan);

@@ -1,4 +1,4 @@
-//! A generation that was just evaluated: its individuals, and which of them are kept.
+//! A generation that was just evaluated, and which of its individuals are kept.
 
 use std::cmp::Ordering;
 
@@ -6,22 +6,22 @@ use super::generation_trials::GenerationTrials;
 use snakes_core::evolve::{Candidate, Champion, Front, FrontMember, RunPlan, Rung, ranking};
 use snakes_core::score::Evaluation;
 
-/// A generation that was just evaluated.
+/// The individuals and results of a generation that was just evaluated.
 pub struct EvaluatedGeneration<'a> {
     pub plan: &'a RunPlan,
-    /// Its number; the first is 1.
+    /// Number of the generation; the first is 1.
     pub generation: u32,
-    /// The trials of its individuals.
+    /// Trials of its individuals.
     pub trials: &'a GenerationTrials,
-    /// The rung of the ladder on which it was evaluated; none without a ladder.
+    /// Rung of the ladder on which the generation was evaluated; `None` without a ladder.
     pub rung: Option<Rung>,
-    /// In the order of the individuals, as the evaluations.
+    /// Candidates, in the same order as `evaluations`.
     pub candidates: &'a [Candidate],
     pub evaluations: &'a [Evaluation],
 }
 
 impl EvaluatedGeneration<'_> {
-    /// One of its individuals.
+    /// Returns an individual as a champion.
     pub fn individual(&self, index: usize) -> Champion {
         Champion {
             genome: self.candidates[index].genome.clone(),
@@ -32,8 +32,8 @@ impl EvaluatedGeneration<'_> {
         }
     }
 
-    /// The indices of its healthy individuals that may become champions, the best first. Where they have stairs of their own,
-    /// `rank` decides, because fitness on different stairs cannot be compared.
+    /// Returns the indices of the healthy individuals that may become champions, the best first. Where individuals have stairs of
+    /// their own, `rank` decides the order, because fitness on different stairs cannot be compared.
     pub fn ranking(&self, rank: impl Fn(&Champion) -> [f32; 2]) -> Vec<usize> {
         let mut ranking = ranking(self.evaluations);
         ranking.retain(|&index| self.candidates[index].may_be_champion);
@@ -46,7 +46,7 @@ impl EvaluatedGeneration<'_> {
         ranks.into_iter().map(|(_, index)| index).collect()
     }
 
-    /// Adds those of its individuals to a front that no other beats in both distance and energy.
+    /// Adds to a front the individuals that no other beats in both distance and energy.
     pub fn extend(&self, front: &mut Front) {
         if self.trials.are_own() {
             // Distances on different stairs cannot be compared.
@@ -64,8 +64,8 @@ impl EvaluatedGeneration<'_> {
         }
     }
 
-    /// The number by which each individual is counted: of its species, or of its blocks where bodies evolve. Empty if there
-    /// is none.
+    /// Returns the number by which each individual is counted: its species, or its number of blocks where bodies evolve. Empty if
+    /// there are no species.
     pub fn species(&self) -> Vec<u32> {
         if self.plan.settings.genome.bodies.vary {
             let blocks = |candidate: &Candidate| candidate.genome.body.block_count() as u32;

@@ -1,4 +1,4 @@
-//! Evaluating genomes: the one place that decides where and in which order simulations run.
+//! Evaluating genomes: evaluators decide where and in which order simulations run.
 //!
 //! An evaluator cannot change a result. An evaluation depends on its genome and its trial only, and the experiment
 //! puts the results in the order of the individuals before the strategy sees them. Another evaluator, which sends
@@ -19,28 +19,28 @@ use snakes_core::genome::Genome;
 use snakes_core::score::{ExamCondition, ExamEnd, Scored, Trial, score, score_together};
 use snakes_core::world::PhysicsEngine;
 
-/// The result of evaluating one genome; an error is the message of the panic in it.
+/// Result of evaluating one genome. An error is the message of the panic that ended the evaluation.
 pub type EvaluationResult = Result<Scored, String>;
 
-/// A genome to evaluate, and its trial.
+/// A genome to evaluate, and the index of its trial.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
     /// The genome.
     pub genome: &'a Genome,
-    /// Index of its trial in the list of the batch's trials.
+    /// Index of the genome's trial in the batch's list of trials.
     pub trial: usize,
 }
 
 /// Evaluates batches of genomes, and examines champions.
 pub trait Evaluator: Debug + Send + Sync {
-    /// Evaluates each genome in its trial of `trials`, in any order, and calls `report` with its index and result as
-    /// soon as that is known. `report` may be called from several threads at once.
+    /// Evaluates each job's genome in its trial, in any order, and calls `report` with the job's index and result as soon as the
+    /// result is known. `report` may be called from several threads at once.
     ///
-    /// Before each evaluation, an evaluator calls [`RunControl::wait_while_paused`]. A genome for which it reports
-    /// nothing is evaluated by its caller: an evaluator that loses its workers may simply return.
+    /// An evaluator calls [`RunControl::wait_while_paused`] before each evaluation. Genomes without a reported result are evaluated
+    /// by the caller, so an evaluator that loses its workers may simply return.
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was.
+    /// [`Cancelled`], if `control` was cancelled.
     fn evaluate_jobs(
         &self,
         trials: &[Trial],
@@ -49,10 +49,10 @@ pub trait Evaluator: Debug + Send + Sync {
         report: &(dyn Fn(usize, EvaluationResult) + Sync),
     ) -> Result<(), Cancelled>;
 
-    /// As [`Self::evaluate_jobs`], with one trial for all genomes.
+    /// Works as [`Self::evaluate_jobs`], with one trial for all genomes.
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was.
+    /// [`Cancelled`], if `control` was cancelled.
     fn evaluate_batch(
         &self,
         trial: &Trial,
@@ -64,11 +64,11 @@ pub trait Evaluator: Debug + Send + Sync {
         self.evaluate_jobs(std::slice::from_ref(trial), &jobs, control, report)
     }
 
-    /// Simulates a genome in each condition of an exam, as [`Self::evaluate_batch`] does genomes in a trial. A
-    /// simulation that panics counts as [`ExamEnd::CRASHED`].
+    /// Simulates a genome in each condition of an exam, and calls `report` with the index and the end of each. A simulation that
+    /// panics counts as [`ExamEnd::CRASHED`].
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was.
+    /// [`Cancelled`], if `control` was cancelled.
     fn examine_batch(
         &self,
         genome: &Genome,
@@ -77,33 +77,33 @@ pub trait Evaluator: Debug + Send + Sync {
         report: &(dyn Fn(usize, ExamEnd) + Sync),
     ) -> Result<(), Cancelled>;
 
-    /// Maximum number of evaluations at the same time.
+    /// Returns the maximum number of evaluations at the same time.
     fn workers(&self) -> usize;
 
-    /// An evaluator of the same kind with another number of workers.
+    /// Returns an evaluator of the same kind with another number of workers.
     ///
     /// # Errors
     /// The workers could not be started.
     fn with_workers(&self, workers: usize) -> Result<Arc<dyn Evaluator>, WorkersError>;
 
-    /// Where it evaluates, in a few words.
+    /// Describes in a few words where the evaluations run.
     fn place(&self) -> String {
         format!("threads {}", self.workers())
     }
 
-    /// The flags with which the same command uses it again, each after a space; none for threads of this computer.
+    /// Returns the command-line flags that choose this evaluator again, each after a space. Empty for threads of this computer.
     fn flags(&self) -> String {
         String::new()
     }
 
-    /// Why results that were reported earlier cannot be trusted any more, if they cannot. The evaluator then cancels all
-    /// batches, and what they belonged to begins again with another evaluator.
+    /// Returns why results that were reported earlier cannot be trusted, or `None` if there is no doubt. An evaluator with a fault
+    /// cancels all batches; the work must begin again with another evaluator.
     fn fault(&self) -> Option<String> {
         None
     }
 }
 
-/// The workers of an evaluator could not be started.
+/// Error when the workers of an evaluator could not be started.
 #[derive(Debug, thiserror::Error)]
 #[error("threads: cannot be started: {0}")]
 pub struct WorkersError(#[from] io::Error);
@@ -111,12 +111,12 @@ pub struct WorkersError(#[from] io::Error);
 /// Allowed numbers of worker threads.
 pub const THREADS_RANGE: RangeInclusive<usize> = 1..=1024;
 
-/// Number of processors that this program may use.
+/// Returns the number of processors that this program may use.
 pub fn available_cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// Evaluates a genome in a trial; a panic in it becomes its message.
+/// Evaluates a genome in a trial. A panic becomes an error with its message.
 ///
 /// # Errors
 /// The evaluation panicked.
@@ -124,11 +124,11 @@ pub fn evaluate_caught(genome: &Genome, trial: &Trial) -> EvaluationResult {
     caught(|| score(genome, trial))
 }
 
-/// Evaluates genomes on this thread, side by side where their engine does that, and reports each as soon as its result is known.
-/// After a panic the rest is evaluated one by one, so that only the genome that caused it fails.
+/// Evaluates genomes on this thread, and reports each result as soon as it is known. Engines that step several snakes at once do
+/// so. After a panic the remaining genomes are evaluated one by one, so that only the genome that caused it fails.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn evaluate_together(
     trials: &[Trial],
     jobs: &[Job<'_>],
@@ -159,18 +159,19 @@ pub fn evaluate_together(
     Ok(())
 }
 
-/// Number of jobs that a thread takes at once where their engine steps several snakes side by side: the share of each thread, or a
-/// part of a large one, so that lanes which end early are filled again, and threads end at about the same time.
+/// Returns the number of jobs that a thread takes at once with an engine that steps several snakes together. It is the share of
+/// each thread, or a part of a large share, so that lanes which end early are filled again and all threads end at about the same
+/// time.
 fn jobs_together(jobs: usize, workers: usize) -> usize {
     let share = jobs.div_ceil(workers.max(1)).max(1);
     if share <= 32 { share } else { (share / 4).clamp(16, 64) }
 }
 
-/// Evaluates each genome in its trial of `trials`, and returns the results in the order of the jobs. What the evaluator does
-/// not report is evaluated here.
+/// Evaluates each job, and returns the results in the order of the jobs. Jobs without a report from the evaluator are evaluated on
+/// this thread.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub(crate) fn evaluate_in_order(
     trials: &[Trial],
     jobs: &[Job<'_>],
@@ -189,12 +190,12 @@ pub(crate) fn evaluate_in_order(
     results.collect()
 }
 
-/// Simulates a genome in a condition of an exam; a panic in it counts as a crash.
+/// Simulates a genome in a condition of an exam. A panic counts as [`ExamEnd::CRASHED`].
 pub fn examine_caught(genome: &Genome, condition: &ExamCondition) -> ExamEnd {
     caught(|| ExamEnd::of(genome, condition)).unwrap_or(ExamEnd::CRASHED)
 }
 
-/// Evaluates on threads of this process.
+/// An evaluator on threads of this process.
 #[derive(Debug)]
 pub struct LocalPool(ThreadPool);
 
@@ -202,7 +203,7 @@ impl LocalPool {
     /// Starts the worker threads.
     ///
     /// # Errors
-    /// The system refused to start that many threads.
+    /// The operating system refused to start this number of threads.
     pub fn new(threads: usize) -> Result<Self, WorkersError> {
         let pool = ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -212,10 +213,10 @@ impl LocalPool {
         Ok(Self(pool))
     }
 
-    /// Calls `work` with each index below `count` and returns the results in the order of the indices.
+    /// Calls `work` on the threads with each index below `count`. Returns the results in the order of the indices.
     ///
     /// # Errors
-    /// The first error of `work`; the remaining calls are skipped.
+    /// The first error of `work`. The remaining calls are skipped.
     pub(super) fn map<T: Send, E: Send>(
         &self,
         count: usize,
@@ -237,7 +238,7 @@ impl Evaluator for LocalPool {
         let many = if side_by_side { jobs_together(jobs.len(), self.workers()) } else { 1 };
         let mut order: Vec<usize> = (0..jobs.len()).collect();
         if side_by_side {
-            // Snakes with as many limbs advance together.
+            // Snakes with equal numbers of limbs are stepped together.
             order.sort_by_key(|&index| jobs[index].genome.body.segments.len());
         }
         self.0.install(|| {

@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use super::evaluator::{Evaluator, LocalPool, WorkersError};
 
-/// A row of the registry.
+/// A row of the registry: an evaluator that the command line offers.
 #[derive(Debug, Clone, Copy)]
 pub struct EvaluatorInfo {
-    /// The name in the flag `--evaluator`.
+    /// Name of the evaluator in the flag `--evaluator`.
     pub name: &'static str,
-    /// The place of its simulations, in a few words.
+    /// Where its simulations run, in a few words.
     pub words: &'static str,
-    /// Starts an evaluator with this number of workers.
+    /// Starts the evaluator with this number of workers.
     pub start: fn(usize) -> Result<Arc<dyn Evaluator>, WorkersError>,
 }
 

@@ -1,4 +1,4 @@
-//! Examining a champion by an evaluator.
+//! Examining a champion with an evaluator.
 
 use std::sync::OnceLock;
 
@@ -8,18 +8,18 @@ use snakes_core::evolve::Champion;
 use snakes_core::genome::Genome;
 use snakes_core::score::{ExamCondition, ExamEnd, ExamSuite, StairsGrid, SuiteResult};
 
-/// Number of trials that the suites take for a champion, the undisturbed ones included.
+/// Returns the number of trials that these suites take for a champion, including one undisturbed trial per suite.
 pub fn exam_trials(champion: &Champion, suites: &[ExamSuite]) -> u32 {
     let suites = suites.iter().filter(|suite| suite.concerns(&champion.genome));
     let trials = suites.map(|suite| suite.conditions(&champion.trial).len() as u32);
     trials.filter(|&conditions| conditions > 0).map(|conditions| conditions + 1).sum()
 }
 
-/// Examines a champion in each suite that has conditions for it: without steps none can be higher, and a controller
-/// without senses loses nothing with them.
+/// Examines a champion in each suite that has conditions for it. A suite may have none: without steps, for example, no step can be
+/// higher.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn examine(
     champion: &Champion,
     suites: &[ExamSuite],
@@ -40,15 +40,15 @@ pub fn examine(
     suites.filter(|(_, conditions)| !conditions.is_empty()).map(result).collect()
 }
 
-/// Number of trials that [`examine_on_stairs`] takes for a champion.
+/// Returns the number of trials that [`examine_on_stairs`] takes for a champion.
 pub fn stairs_trials(champion: &Champion) -> u32 {
     stairs_conditions(champion).iter().map(|(_, conditions)| conditions.len() as u32).sum()
 }
 
-/// Examines a champion on the 100 other stairs, and once more without senses if its controller has them.
+/// Examines a champion on 100 other stairs, and once more without senses if its controller has any.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn examine_on_stairs(
     champion: &Champion,
     evaluator: &dyn Evaluator,
@@ -62,17 +62,17 @@ pub fn examine_on_stairs(
     stairs_conditions(champion).into_iter().map(grid).collect()
 }
 
-/// The suites of other stairs that concern a champion, with their conditions.
+/// Returns the suites of other stairs that concern a champion, with their conditions.
 fn stairs_conditions(champion: &Champion) -> Vec<(ExamSuite, Vec<ExamCondition>)> {
     let suites = ExamSuite::OF_STAIRS.into_iter();
     let suites = suites.filter(|suite| suite.concerns(&champion.genome));
     suites.map(|suite| (suite, suite.conditions(&champion.trial))).collect()
 }
 
-/// How a snake ends in each condition. A trial whose simulation panics counts as disqualified.
+/// Returns the end of a genome's trial in each condition. A trial whose simulation panics counts as disqualified.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn exam_ends(
     genome: &Genome,
     conditions: &[ExamCondition],
@@ -86,7 +86,7 @@ pub fn exam_ends(
         }
     };
     evaluator.examine_batch(genome, conditions, control, &store)?;
-    // Conditions that the evaluator did not report.
+    // Conditions that the evaluator did not report are simulated on this thread.
     for (index, condition) in conditions.iter().enumerate() {
         if ends[index].get().is_none() {
             control.wait_while_paused()?;

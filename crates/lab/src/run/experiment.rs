@@ -1,4 +1,4 @@
-//! A run of the learning method: asks the strategy, evaluates the genomes, and tells it the results in order.
+//! A run of the learning method: gets candidates from the strategy, evaluates them, and reports the results to it in order.
 
 mod best;
 mod changes;
@@ -31,14 +31,14 @@ use snakes_core::evolve::{
 use snakes_core::save::{IndividualRecord, LineageRecord, SavedProgress, SearchState};
 use snakes_core::score::{Evaluation, Trial};
 
-/// A run, between two generations.
+/// A run between two generations.
 pub struct Experiment {
-    /// The plan of the generation in progress, or of the last one.
+    /// Plan of the generation in progress, or of the last generation.
     plan: RunPlan,
     /// Recorded changes that take effect with later generations, the earliest first.
     ahead: VecDeque<SettingChange>,
     strategy: Box<dyn Strategy>,
-    /// The candidates of the next generation, from the first question for them until it is evaluated or a setting changes.
+    /// Candidates of the next generation, once they were requested, until they are evaluated or a setting changes.
     asked: OnceLock<Vec<Candidate>>,
     ladder: Option<Ladder>,
     front: Front,
@@ -49,12 +49,12 @@ pub struct Experiment {
     best: Best,
     /// The best individuals of the last generation, the best first.
     leaders: Vec<Champion>,
-    /// The last generation, if this session has finished it.
+    /// The last generation; `None` if an earlier session finished it.
     generation: Option<Arc<Generation>>,
     lineage: Lineage,
-    /// Lineage of the last generation, to be saved.
+    /// Lineage of the last generation, which is to be saved.
     lineage_record: Option<LineageRecord>,
-    /// Evaluations of the next generation that were made before the program was stopped.
+    /// Evaluations of the next generation that were made before the program was stopped, by individual.
     known: BTreeMap<u32, Evaluation>,
 }
 
@@ -62,7 +62,7 @@ pub struct Experiment {
 const MAX_LEADERS: usize = 10;
 
 impl Experiment {
-    /// A fresh run.
+    /// Creates a run that has not begun.
     pub fn new(plan: RunPlan) -> Self {
         Self {
             strategy: begin(&plan),
@@ -84,7 +84,7 @@ impl Experiment {
         }
     }
 
-    /// A run that continues from its saved progress, with the same bits as if it had never been stopped.
+    /// Creates a run that continues from its saved progress, with the same bits as if it had never stopped.
     ///
     /// # Errors
     /// The saved state does not fit the plan.
@@ -92,7 +92,7 @@ impl Experiment {
         let finished = progress.records.len() as u32;
         let begun = plan;
         let mut experiment = Self::new(begun.in_generation(finished, &progress.changes)?);
-        // Validate future changes now; later an error could not be reported.
+        // Later changes are validated now, because an error in them could not be reported later.
         begun.in_generation(u32::MAX, &progress.changes)?;
         let ahead = progress.changes.iter().filter(|change| change.generation > finished);
         experiment.ahead = ahead.cloned().collect();
@@ -123,17 +123,17 @@ impl Experiment {
         Ok(experiment)
     }
 
-    /// Generations finished so far.
+    /// Returns the number of finished generations.
     pub fn finished(&self) -> u32 {
         self.finished
     }
 
-    /// Whether all generations are done, or the next would cost more evaluations than are left.
+    /// Returns whether all generations are done, or the next would cost more evaluations than remain.
     pub fn is_over(&self) -> bool {
         self.next_plan().is_over(self.finished, self.evaluated, self.population().into())
     }
 
-    /// Number of individuals in the next generation.
+    /// Returns the number of individuals in the next generation.
     pub fn population(&self) -> u32 {
         match self.next_plan() {
             Cow::Owned(plan)
@@ -146,42 +146,42 @@ impl Experiment {
         }
     }
 
-    /// Number of evaluations in the finished generations.
+    /// Returns the number of evaluations in the finished generations.
     pub fn evaluated(&self) -> u64 {
         self.evaluated
     }
 
-    /// Number of trials that this session has simulated: each repeat of an evaluation, and those that chose champions.
+    /// Returns the number of trials that this session has simulated, including repeats and the trials that chose champions.
     pub fn simulations(&self) -> u64 {
         self.simulations
     }
 
-    /// A copy of the strategy's archive of elites, if it has one.
+    /// Returns a copy of the strategy's archive of elites, if it has one.
     pub fn archive(&self) -> Option<Archive> {
         self.strategy.archive()
     }
 
-    /// A copy of the tree of stairs, if stairs evolve.
+    /// Returns a copy of the tree of stairs, if stairs evolve.
     pub fn stairs_tree(&self) -> Option<StairsTree> {
         self.strategy.stairs_tree()
     }
 
-    /// The best individuals of the last generation that this session has finished, the best first.
+    /// Returns the best individuals of the last generation that this session has finished, the best first.
     pub fn leaders(&self) -> &[Champion] {
         &self.leaders
     }
 
-    /// The last generation, if this session has finished it.
+    /// Returns the last generation, if this session has finished it.
     pub fn generation(&self) -> Option<&Arc<Generation>> {
         self.generation.as_ref()
     }
 
-    /// The ancestry of the best individual so far.
+    /// Returns the ancestry of the best individual so far.
     pub fn ancestry(&self) -> Ancestry {
         self.lineage.ancestry(self.best.place())
     }
 
-    /// The known parents of the next generation, each with its number of children, in the order of their places.
+    /// Returns the known parents of the next generation, each with its number of children, in the order of their places.
     pub fn parents(&self) -> Vec<(Arc<Ancestor>, u32)> {
         let mut children = BTreeMap::new();
         let asked = self.asked.get_or_init(|| self.strategy.ask());
@@ -192,35 +192,35 @@ impl Experiment {
         children.into_iter().filter_map(known).collect()
     }
 
-    /// Lineage of the last generation, to be saved.
+    /// Returns the lineage of the last generation, which is to be saved.
     pub fn lineage_record(&self) -> Option<&LineageRecord> {
         self.lineage_record.as_ref()
     }
 
-    /// The individuals so far that no other beats in both distance and energy.
+    /// Returns the individuals so far that no other beats in both distance and energy.
     pub fn front(&self) -> &Front {
         &self.front
     }
 
-    /// The best individual of all generations so far; of equals, the first found.
+    /// Returns the best individual of all generations so far; of equals, the first found.
     pub fn best(&self) -> Option<&Champion> {
         self.best.champion()
     }
 
-    /// Hash over the bits of every evaluation so far, in the order of generations and individuals.
+    /// Returns a hash over the bits of every evaluation so far, in the order of generations and individuals.
     pub fn run_hash(&self) -> u64 {
         self.hash.digest()
     }
 
-    /// The state of the strategy and the front, to be saved.
+    /// Returns the state of the strategy and the front, which is to be saved.
     pub fn knowledge(&self) -> SearchState {
         SearchState { strategy: self.strategy.state(), front: self.front.clone() }
     }
 
-    /// Evaluates one generation, under the settings that were changed for it, and lets the strategy learn from it.
+    /// Evaluates one generation under the settings that hold for it, and lets the strategy learn from it.
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was; the experiment then is as it was before the call.
+    /// [`Cancelled`], if `control` was cancelled. The experiment is then in the state before the call.
     pub fn run_generation(
         &mut self,
         evaluator: &dyn Evaluator,
@@ -229,7 +229,8 @@ impl Experiment {
         self.run_generation_recording(evaluator, control, |_, _, _| ())
     }
 
-    /// As [`Self::run_generation`]; calls `record` with generation, individual and result of each evaluation as soon as it is made.
+    /// Works as [`Self::run_generation`], and calls `record` with generation, individual and result of each evaluation as soon as
+    /// it is made.
     ///
     /// # Errors
     /// As [`Self::run_generation`].
@@ -243,12 +244,12 @@ impl Experiment {
         control.set_done(0);
         self.apply_due_changes();
         let generation = self.finished + 1;
-        // If this generation is cancelled, the strategy is asked again.
+        // If this generation is cancelled, the strategy makes the same candidates again.
         let candidates = self.asked.take().unwrap_or_else(|| self.strategy.ask());
         let trials = GenerationTrials::new(self.trial_in(generation), &candidates);
         let record = |individual, evaluation: &_| record(generation, individual, evaluation);
         if self.strategy.learns_from_episodes() {
-            // A journal of evaluations has no experience to learn from; it is computed again, with the same bits.
+            // Saved evaluations lack the episodes from which the strategy learns, so they are computed again, with the same bits.
             self.known.clear();
         }
         let GenerationResults { evaluations, episodes, messages } =
@@ -267,10 +268,10 @@ impl Experiment {
         let (mut champion, of_choice) =
             choose_champion(&evaluated, &ranking, evaluator, control, rank)?;
         if trials.are_own() {
-            // There are thousands of generations. Those that are better than all before are enough.
+            // With thousands of generations, only champions that are better than all before are kept.
             champion = champion.filter(|champion| self.best.is_beaten_by(champion, settings));
         }
-        // People read its rules. A run that starts from it learns again what it needs besides.
+        // The champion's rules are shortened for readers. A run that starts from it learns the removed rules again.
         champion.iter_mut().for_each(|champion| champion.genome.controller.compact());
         let mut report = GenerationReport::of(&evaluated, champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);
@@ -286,7 +287,7 @@ impl Experiment {
             let before_m = ladder.rise_m();
             ladder.tell(rung.successes, report.evaluations);
             if ladder.rise_m() != before_m {
-                // Its members climbed other stairs than those that follow.
+                // The front's members climbed other stairs than the next generations will.
                 self.front = Front::default();
             }
         }
@@ -301,7 +302,7 @@ impl Experiment {
         Ok(report)
     }
 
-    /// The trial of a generation: that of the plan, on the rung that the ladder has reached.
+    /// Returns the trial of a generation: the plan's trial, on the rung that the ladder has reached.
     fn trial_in(&self, generation: u32) -> Trial {
         let trial = self.plan.trial_in(generation);
         match &self.ladder {
@@ -310,7 +311,7 @@ impl Experiment {
         }
     }
 
-    /// Keeps the generation that was just finished, and its possible parents in the lineage.
+    /// Keeps the generation that was just finished, and adds its possible parents to the lineage.
     fn remember(&mut self, generation: Generation) {
         let (pool, best) = (self.strategy.parent_pool(), self.best.place());
         self.lineage_record = Some(self.lineage.add(&generation, &pool, best));

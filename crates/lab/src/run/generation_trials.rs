@@ -1,26 +1,26 @@
-//! The trials of a generation: one for all, or those of the stairs on which its individuals are evaluated.
+//! The trials of a generation: a single trial for all individuals, or trials on the individuals' own stairs.
 
 use snakes_core::evolve::{Candidate, OwnStairs};
 use snakes_core::score::{Evaluation, Trial};
 
-/// The trials of a generation, and which individual has which.
+/// Trials of a generation, and which individual has which trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GenerationTrials {
-    /// The trial of the run; with stairs of their own, individuals have others.
+    /// Trial of the run. Individuals with stairs of their own have other trials.
     pub common: Trial,
-    /// The different trials, in the order in which individuals first need them.
+    /// All different trials, in the order in which individuals first need them.
     pub all: Vec<Trial>,
-    /// The index of each individual's trial; empty if all have the first.
+    /// Index in `all` of each individual's trial. Empty if all individuals have the first trial.
     of: Vec<usize>,
 }
 
 impl GenerationTrials {
-    /// The trials of candidates: on their own stairs, or all in `common` if they have none.
+    /// Makes the trials of candidates: on their own stairs, or all in `common` if they have none.
     pub fn new(common: Trial, candidates: &[Candidate]) -> Self {
         let mut different: Vec<&OwnStairs> = Vec::new();
         let mut of = Vec::new();
         for own in candidates.iter().filter_map(|candidate| candidate.stairs.as_ref()) {
-            // From the end: individuals on the same stairs follow one another.
+            // The search begins at the end, because individuals on the same stairs are adjacent.
             let known = different.iter().rposition(|other| *other == own);
             of.push(known.unwrap_or(different.len()));
             if known.is_none() {
@@ -34,17 +34,17 @@ impl GenerationTrials {
         Self { common, all, of }
     }
 
-    /// Whether individuals have stairs of their own.
+    /// Returns whether individuals have stairs of their own.
     pub fn are_own(&self) -> bool {
         !self.of.is_empty()
     }
 
-    /// Index of the trial of an individual.
+    /// Returns the index in `all` of an individual's trial.
     pub fn index_of(&self, individual: usize) -> usize {
         self.of.get(individual).copied().unwrap_or(0)
     }
 
-    /// Number of trials that were simulated for these evaluations, which are in the order of the individuals.
+    /// Returns the number of trials that were simulated for these evaluations, which are in the order of the individuals.
     pub fn simulations(&self, evaluations: &[Evaluation]) -> u64 {
         let of = |(index, evaluation): (usize, &Evaluation)| {
             u64::from(self.of(index).simulations_of(evaluation))
@@ -52,7 +52,7 @@ impl GenerationTrials {
         evaluations.iter().enumerate().map(of).sum()
     }
 
-    /// The trial of an individual.
+    /// Returns the trial of an individual.
     pub fn of(&self, individual: usize) -> &Trial {
         self.all.get(self.index_of(individual)).unwrap_or(&self.common)
     }

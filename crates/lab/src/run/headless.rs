@@ -14,7 +14,7 @@ use super::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::{Champion, RunPlan, Rung, SettingChange, SpeciesCount, StairsCount};
 use snakes_core::save::SaveError;
 
-/// A headless command failed.
+/// Errors of commands without a window.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     /// A file could not be read or written.
@@ -26,19 +26,19 @@ pub enum HeadlessError {
     /// Standard output was closed or is full.
     #[error("standard output: cannot be written: {0}")]
     Output(#[from] io::Error),
-    /// The interrupt key stopped a run.
+    /// The interrupt key stopped a run after a finished generation.
     #[error(
         "cancelled after generation {finished} of {generations}; continue it with: snakes --no-render --resume {}{flags}",
         folder.display()
     )]
     Stopped {
-        /// Number of generations that are finished.
+        /// Number of finished generations.
         finished: u32,
-        /// The greatest number of generations of the run, in words.
+        /// Greatest number of generations of the run, in words.
         generations: String,
-        /// The run's folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        /// Command-line flags that choose the run's evaluator: see [`Evaluator::flags`].
         flags: String,
     },
     /// A generation could not be saved.
@@ -47,21 +47,21 @@ pub enum HeadlessError {
         folder.display()
     )]
     NotSaved {
-        /// The cause.
+        /// Error of the file that could not be written.
         source: Box<SaveError>,
-        /// Number of generations that are saved.
+        /// Number of saved generations.
         saved: u32,
-        /// The run's folder.
+        /// Folder of the run.
         folder: PathBuf,
-        /// The flags that name its evaluator: see [`Evaluator::flags`].
+        /// Command-line flags that choose the run's evaluator: see [`Evaluator::flags`].
         flags: String,
     },
     /// The simulation of a saved genome panicked.
     #[error("{}: simulating its genome failed: {message}", path.display())]
     Crashed {
-        /// The save.
+        /// File of the genome.
         path: PathBuf,
-        /// The message of the panic.
+        /// Message of the panic.
         message: String,
     },
     /// A plot could not be drawn.
@@ -73,15 +73,15 @@ pub enum HeadlessError {
         None => "nothing was finished, so nothing is saved".to_owned(),
     })]
     Cancelled {
-        /// The file of the best so far.
+        /// File with what was finished; `None` if nothing was.
         kept: Option<PathBuf>,
     },
     /// A replay differs from its record.
     #[error("{path}: replay differs from the record: {difference}")]
     Differs {
-        /// The save.
+        /// File of the champion.
         path: PathBuf,
-        /// The difference, and a possible reason.
+        /// Difference in words, with a possible reason.
         difference: String,
     },
     /// Every agent of every generation was disqualified.
@@ -90,7 +90,7 @@ pub enum HeadlessError {
 }
 
 impl HeadlessError {
-    /// Names, in a cancellation, the file with what was finished, if it exists.
+    /// Adds to a cancellation the file with what was finished, if the file exists.
     pub fn keeping(self, file: &Path) -> Self {
         match self {
             Self::Cancelled { .. } => {
@@ -101,8 +101,8 @@ impl HeadlessError {
     }
 }
 
-/// Evolves a run to its end and prints a line per generation to `out`, beginning with those that earlier sessions
-/// finished. Each generation is saved before its line is printed.
+/// Evolves a run to its end and prints a line per generation to `out`, beginning with the generations of earlier sessions. Each
+/// generation is saved before its line is printed.
 ///
 /// # Errors
 /// See [`HeadlessError`]. The folder is opened before the first evaluation.
@@ -195,7 +195,7 @@ pub fn evolve(
     best.map(|_| ()).ok_or(HeadlessError::NoChampion)
 }
 
-/// The changes in a line; of many, the latest.
+/// Lists changes of settings in a line. Of more than six, only the latest are named.
 fn list_changes(changes: &[SettingChange]) -> String {
     const MAX_LISTED: usize = 6;
     let left_out = changes.len().saturating_sub(MAX_LISTED);
@@ -211,17 +211,17 @@ fn list_changes(changes: &[SettingChange]) -> String {
     texts.join(", ")
 }
 
-/// Finds the first individual on the landing, in the order of all evaluations.
+/// Finds the first individual that ends on the landing, in the order of all evaluations.
 #[derive(Debug, Default)]
 struct Landing {
     /// Number of evaluations so far.
     spent: u64,
-    /// Its number; the first evaluation is 1.
+    /// Number of the evaluation of that individual in the run; the first evaluation is 1. `None` before it.
     first: Option<u64>,
 }
 
 impl Landing {
-    /// Adds a generation, and returns the number of its first individual on the landing.
+    /// Adds a generation. Returns the number of its first evaluation on the landing, counted over the run.
     fn add(&mut self, report: &GenerationReport) -> Option<u64> {
         let number = report.first_on_landing.map(|index| self.spent + u64::from(index) + 1);
         self.first = self.first.or(number);
@@ -230,9 +230,9 @@ impl Landing {
     }
 }
 
-/// Writes a line for the user to standard error; standard output is for results.
+/// Writes a line for the user to standard error. Standard output is reserved for results.
 pub fn say(line: &str) {
-    // If standard error is closed, there is no other place to report to.
+    // If standard error is closed, there is nowhere to report the failure.
     let _ = beside_bar(|| writeln!(io::stderr(), "{line}"));
 }
 
@@ -249,8 +249,8 @@ fn table_row(report: &GenerationReport) -> String {
     format!("{generation:>10}{numbers}{disqualified:>14}  {}", report.meaning)
 }
 
-/// A generation as a line of JSON. `first_landing` is the number of its first evaluation that ended on the landing, counted from the
-/// first of the run.
+/// Returns a generation as a line of JSON. `first_landing` is the number of its first evaluation that ended on the landing, counted
+/// over the run.
 fn report_json(report: &GenerationReport, first_landing: Option<u64>, bodies_vary: bool) -> Value {
     let statistics = report.statistics;
     let mut line = json!({
@@ -286,7 +286,7 @@ fn report_json(report: &GenerationReport, first_landing: Option<u64>, bodies_var
     line
 }
 
-/// A champion in one line.
+/// Describes a champion in one line.
 fn about(champion: &Champion) -> String {
     format!(
         "{} (generation {}, snake {})",

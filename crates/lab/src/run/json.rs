@@ -1,14 +1,15 @@
-//! Numbers in lines of JSON for scripts.
+//! Numbers in lines of JSON, which scripts read.
 
 use serde_json::{Number, Value};
 
-/// A 32-bit number with the fewest digits that give it back: 0.7 instead of 0.699999988079071. Null, if it is not finite.
+/// Converts a 32-bit number to JSON with the fewest digits that give it back: 0.7 instead of 0.699999988079071. A number that is
+/// not finite becomes null.
 pub fn short(value: f32) -> Value {
     let shortest = value.to_string().parse().ok().and_then(Number::from_f64);
     shortest.map_or(Value::Null, Value::Number)
 }
 
-/// A value whose fractions are all 32-bit numbers, such as settings, each with the fewest digits that give it back.
+/// Shortens all fractions of a value as `short` does. They must be 32-bit numbers, as in settings.
 #[expect(clippy::cast_possible_truncation, reason = "they were 32-bit numbers")]
 pub fn with_short_numbers(value: &Value) -> Value {
     match value {

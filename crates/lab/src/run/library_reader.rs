@@ -1,7 +1,7 @@
-//! Reads the library in the background: it may have ten thousand saves on a slow disk.
+//! Reads the library in the background, because it may have ten thousand saves on a slow disk.
 //!
-//! It lists all names first, then reads the entries, requested ones before the others. Entries that have not changed
-//! are not read again.
+//! All names are listed first. Then the entries are read, requested entries before the others. Unchanged entries are not read
+//! again.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,15 +20,15 @@ use snakes_core::save::library::{
 pub enum LibraryEvent {
     /// All entries, by name.
     Listed(Vec<LibraryEntry>),
-    /// The folder cannot be read, and why.
+    /// The folder cannot be read. Holds the reason.
     NotListed(String),
-    /// Contents of an entry, or why it cannot be read.
+    /// The contents of an entry, or why it cannot be read.
     Read(SavePlace, Result<EntryDetails, EntryProblem>),
-    /// All entries are read; the number of listings since the start.
+    /// All entries are read. Holds the number of listings that were requested since the start.
     Done(u64),
 }
 
-/// Background thread that reads the library and rereads it on request. Dropping this ends it.
+/// A background thread that reads the library, and reads it again on request. Dropping the reader ends the thread.
 #[derive(Debug)]
 pub struct LibraryReader {
     queue: Arc<RequestQueue>,
@@ -43,11 +43,11 @@ struct RequestQueue {
 
 #[derive(Debug, Default)]
 struct Requests {
-    /// List the folder again.
+    /// Whether the folder is to be listed again.
     list: bool,
-    /// Number of times that was requested.
+    /// Number of times that a listing was requested.
     listings: u64,
-    /// Entries to read before all others, the first last.
+    /// Entries to read before all others. The next entry is the last in the list.
     urgent: Vec<SavePlace>,
     is_closed: bool,
 }
@@ -86,29 +86,29 @@ impl LibraryReader {
         Ok(Self { queue, events })
     }
 
-    /// Requests these entries to be read before all others, in this order.
+    /// Requests these entries to be read before all others, in this order. Replaces earlier requests.
     pub fn read_first(&self, mut places: Vec<SavePlace>) {
         places.reverse();
         self.queue.lock().urgent = places;
         self.queue.changed.notify_one();
     }
 
-    /// Requests the folder to be listed again.
+    /// Requests another listing of the folder.
     pub fn list_again(&self) {
         self.queue.lock().list();
         self.queue.changed.notify_one();
     }
 
-    /// At most `limit` new events, in order.
+    /// Returns at most `limit` new events, in order.
     pub fn poll(&self, limit: usize) -> Vec<LibraryEvent> {
         self.events.try_iter().take(limit).collect()
     }
 
-    /// Blocks until all entries are read; returns the events until then.
+    /// Blocks until all entries are read. Returns the events until then.
     pub fn wait(&self) -> Vec<LibraryEvent> {
         let mut events = Vec::new();
         while let Ok(event) = self.events.recv() {
-            // If another listing was requested meanwhile, wait for that one.
+            // If another listing was requested meanwhile, the loop waits for its end.
             let is_last = event == LibraryEvent::Done(self.queue.lock().listings);
             events.push(event);
             if is_last {
@@ -131,15 +131,15 @@ struct LibraryWorker {
     queue: Arc<RequestQueue>,
     saves: SavesFolder,
     sender: Sender<LibraryEvent>,
-    /// The listed entries, and whether each has been read as it is now.
+    /// The listed entries, each with whether its current version has been read.
     known: BTreeMap<SavePlace, (LibraryEntry, bool)>,
-    /// Entries left to read, the next last.
+    /// Entries that are still to be read. The next entry is the last in the list.
     unread: Vec<SavePlace>,
-    /// Number of listing requests served.
+    /// Number of listing requests that were served.
     listings: u64,
 }
 
-/// The next action of the worker.
+/// The next action of the reader's thread.
 enum ReaderStep {
     List,
     Read(SavePlace),
@@ -171,7 +171,7 @@ impl LibraryWorker {
                 }
             };
             if self.sender.send(event).is_err() {
-                // The reader was dropped.
+                // Sending failed because the reader was dropped.
                 return;
             }
         }
@@ -233,7 +233,7 @@ mod tests {
         SavePlace::Champion(path)
     }
 
-    /// The names of the files that were read.
+    /// Returns the names of the files that were read.
     fn read(events: &[LibraryEvent]) -> Vec<String> {
         let names = events.iter().filter_map(|event| match event {
             LibraryEvent::Read(place, _) if place.path().is_some() => Some(place.name()),
@@ -277,7 +277,7 @@ mod tests {
         reader.read_first(vec![last]);
         let read = read(&reader.wait());
         let place = read.iter().position(|name| name == "299").expect("read");
-        // Some may have been read before the request.
+        // Some entries may have been read before the request.
         assert!(place < 150, "read as number {place}");
         assert_eq!(read.len(), 200);
     }

@@ -8,51 +8,51 @@ use snakes_core::genome::Genome;
 use snakes_core::save::{IndividualRecord, LineageRecord, MAX_SPREAD};
 use snakes_core::score::Evaluation;
 
-/// A finished generation. All three lists are in the order of the individuals.
+/// A finished generation. Its lists are in the order of the individuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Generation {
-    /// The first is 1.
+    /// Number of the generation; the first is 1.
     pub number: u32,
-    /// The individuals.
+    /// Genomes of the individuals.
     pub genomes: Vec<Arc<Genome>>,
-    /// Their evaluations.
+    /// Evaluations of the individuals.
     pub evaluations: Vec<Evaluation>,
-    /// Their parents.
+    /// Parents of the individuals.
     pub parents: Vec<Parents>,
-    /// Their stairs; empty if all have those of their run.
+    /// Stairs of the individuals; empty if all have the stairs of the run.
     pub stairs: Vec<OwnStairs>,
 }
 
 /// An individual that has, or may have, descendants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ancestor {
-    /// Its place in the run.
+    /// Generation and index of the individual.
     pub place: IndividualId,
-    /// Its fitness; none if it was disqualified.
+    /// Fitness of the individual; `None` if it was disqualified.
     pub fitness: Option<f32>,
-    /// Its genome; none if an earlier session found it.
+    /// Genome of the individual; `None` if an earlier session evaluated it.
     pub genome: Option<Arc<Genome>>,
-    /// Its parents.
+    /// Parents of the individual.
     pub parents: Parents,
 }
 
 /// Distribution of a generation's fitness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitnessSpread {
-    /// The generation; the first is 1.
+    /// Number of the generation; the first is 1.
     pub generation: u32,
-    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
+    /// Fitness of healthy individuals, sampled at even distances in the ranking, in ascending order.
     pub fitness: Vec<f32>,
 }
 
 /// The ancestry of an individual.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ancestry {
-    /// The individual, its first parent, that one's first parent, and so on, as far as known.
+    /// The individual, its first parent, the first parent of that parent, and so on, as far as known.
     pub line: Vec<Arc<Ancestor>>,
-    /// The second parents of those in the line, as far as known.
+    /// The second parents of the individuals in `line`, as far as known.
     pub others: Vec<Arc<Ancestor>>,
-    /// Fitness in all generations, the first generation first.
+    /// Distribution of fitness in all generations, the first generation first.
     pub spreads: Vec<Arc<FitnessSpread>>,
 }
 
@@ -63,11 +63,11 @@ pub(super) struct Lineage {
     spreads: Vec<Arc<FitnessSpread>>,
 }
 
-/// Maximum number of ancestors, to limit memory; the earliest are removed.
+/// Maximum number of ancestors, which limits memory. The earliest are removed.
 const MAX_ANCESTORS: usize = 60_000;
 
 impl Lineage {
-    /// The lineage that earlier sessions saved.
+    /// Restores the lineage that earlier sessions saved.
     pub fn recalled(records: &[LineageRecord]) -> Self {
         let mut lineage = Self::default();
         for record in records {
@@ -85,7 +85,7 @@ impl Lineage {
         lineage
     }
 
-    /// Adds the champion of a generation and its individuals that may have children. Returns the record to be saved.
+    /// Adds a generation's champion and its individuals that may have children. Returns the record to be saved.
     pub fn add(
         &mut self,
         generation: &Generation,
@@ -109,7 +109,7 @@ impl Lineage {
         record
     }
 
-    /// Removes all individuals but these and their ancestors.
+    /// Removes all individuals except `roots` and their ancestors.
     pub fn retain(&mut self, roots: impl Iterator<Item = IndividualId>) {
         let mut lines = BTreeSet::new();
         let mut kept = BTreeSet::new();
@@ -131,12 +131,12 @@ impl Lineage {
         }
     }
 
-    /// A known individual.
+    /// Returns an individual, or `None` if it is not known.
     pub fn get(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
         self.known.get(&place)
     }
 
-    /// The ancestry of an individual.
+    /// Returns the ancestry of an individual; empty if it is not known.
     pub fn ancestry(&self, of: Option<IndividualId>) -> Ancestry {
         let first = of.and_then(|place| self.get(place));
         let parent = |ancestor: &&Arc<Ancestor>| self.get(ancestor.parents.ids().next()?);
@@ -148,7 +148,7 @@ impl Lineage {
 }
 
 impl Generation {
-    /// The generation of these candidates.
+    /// Makes a generation of candidates and their evaluations.
     pub(super) fn of(
         number: u32,
         candidates: Vec<Candidate>,
@@ -160,7 +160,7 @@ impl Generation {
         Self { number, genomes, evaluations, parents, stairs }
     }
 
-    /// One of its individuals, as an ancestor.
+    /// Returns an individual of this generation as an ancestor.
     fn ancestor(&self, individual: u32) -> Option<Ancestor> {
         let index = individual as usize;
         let evaluation = self.evaluations.get(index)?;
@@ -172,7 +172,7 @@ impl Generation {
         })
     }
 
-    /// Fitness of a sample of healthy individuals at even distances in the ranking, in ascending order.
+    /// Samples the fitness of healthy individuals at even distances in the ranking, in ascending order.
     fn spread(&self) -> Vec<f32> {
         let ranked = ranking(&self.evaluations);
         let count = ranked.len().min(MAX_SPREAD);
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use snakes_core::evolve::{RunPlan, Settings, StrategyKind, begin};
 
-    /// Evolves without simulating: `best` has the index of the best individual of each generation.
+    /// Evolves without simulating. `best` has the index of the best individual of each generation.
     fn lineage(strategy: StrategyKind, best: &[usize]) -> (Lineage, Vec<LineageRecord>) {
         let mut settings = Settings::default();
         settings.evolution.strategy = strategy;
@@ -215,14 +215,15 @@ mod tests {
 
     #[test]
     fn the_ancestry_of_the_reports_method_goes_back_parent_by_parent() {
-        // In turn: even indices are children of the best, odd ones of the second.
+        // Individuals with even indices are children of the best, those with odd indices of the second best.
         let (lineage, records) = lineage(StrategyKind::Halving, &[3, 2, 1, 4]);
         let of = IndividualId { generation: 4, individual: 4 };
         let line = lineage.ancestry(Some(of)).line;
         let places: Vec<(u32, u32)> =
             line.iter().map(|a| (a.place.generation, a.place.individual)).collect();
-        // 4 of the last comes from the best of the third, 1; that from the second best of the second, 5 (of 2 and
-        // 5); that, odd, from the second best of the first (of 3 and 5).
+        // Individual 4 of generation 4 is even: its parent is the best of generation 3, which is 1. Individual 1 is odd: its parent
+        // is the second best of generation 2, which is 5. Individual 5 is odd: its parent is the second best of generation 1, which
+        // is 5.
         assert_eq!(places, [(4, 4), (3, 1), (2, 5), (1, 5)]);
         assert!(line.iter().all(|ancestor| ancestor.genome.is_some()));
         let again = Lineage::recalled(&records).ancestry(Some(of));

@@ -6,7 +6,7 @@ use super::background_task::BackgroundTask;
 use snakes_core::genome::Genome;
 use snakes_core::score::{KeyframeHistory, Rollout, Trial};
 
-/// The history of a rollout, in progress or complete. Dropping this ends the work.
+/// History of a rollout, in progress or complete. Dropping it ends the simulation.
 #[derive(Default)]
 pub struct Lookahead {
     task: Option<BackgroundTask<Option<KeyframeHistory>>>,
@@ -14,14 +14,14 @@ pub struct Lookahead {
 }
 
 impl Lookahead {
-    /// Starts to simulate a genome in a trial. Both must have passed their checks. If no thread can be started, or
-    /// the simulation panics, there will be no history.
+    /// Starts to simulate a genome in a trial, both of which must have passed their checks. If no thread can be started, or the
+    /// simulation panics, the history stays `None`.
     pub fn begin(genome: &Genome, trial: &Trial) -> Self {
         let (genome, trial) = (genome.clone(), trial.clone());
         Self::run(trial.steps(), move || Rollout::new(&genome, &trial))
     }
 
-    /// Starts to simulate a rollout that is at its start.
+    /// Starts to simulate a rollout, which must be at its start.
     pub fn of(rollout: Rollout) -> Self {
         Self::run(rollout.last_step(), || rollout)
     }
@@ -37,13 +37,13 @@ impl Lookahead {
         Self { task: task.ok(), history: None }
     }
 
-    /// Takes the history over if it is complete.
+    /// Stores the history if the simulation has ended.
     pub fn poll(&mut self) {
         let ended = self.task.as_ref().and_then(BackgroundTask::poll);
         ended.into_iter().for_each(|result| self.finish(result));
     }
 
-    /// Blocks until the history is complete.
+    /// Blocks until the simulation has ended, and stores the history.
     pub fn wait(&mut self) {
         let ended = self.task.as_ref().map(BackgroundTask::wait);
         ended.into_iter().for_each(|result| self.finish(result));
@@ -54,12 +54,12 @@ impl Lookahead {
         self.history = result.ok().flatten().map(Arc::new);
     }
 
-    /// The history, once it is complete.
+    /// Returns the history, or `None` if it is not complete.
     pub fn history(&self) -> Option<&Arc<KeyframeHistory>> {
         self.history.as_ref()
     }
 
-    /// Number of steps simulated so far; none when the work has ended.
+    /// Returns the number of steps simulated so far, or `None` when the work has ended.
     pub fn steps_done(&self) -> Option<u32> {
         self.task.as_ref().map(|task| task.done() as u32)
     }

@@ -1,7 +1,7 @@
 //! Tables in Markdown.
 
-/// A Markdown table of rows of cells, the first row its head. Cells of the first `left` columns stand to the left, the
-/// others to the right. All columns have the width of their widest cell, so that the text is readable as it is.
+/// Formats rows of cells as a Markdown table, the first row as its head. The first `left` columns are aligned to the left, the
+/// others to the right. All cells of a column are padded to the same width, so that the source text is readable.
 pub fn markdown_table(rows: &[Vec<String>], left: usize) -> String {
     let Some((head, body)) = rows.split_first() else { return String::new() };
     let width = |column: usize| {

@@ -1,7 +1,7 @@
 //! Champions in MuJoCo: the same body on the same stairs, moved by the same controller, in another physics engine.
 //!
-//! A Python process holds MuJoCo (`tests/peers/mujoco.py`, which is part of the program). The controller runs here: it feels
-//! the limbs that MuJoCo moves, and its torques go back. So every kind of controller can be played, with or without senses.
+//! A Python process runs MuJoCo (`tests/peers/mujoco.py`, which is embedded in this program). The controller runs in this process:
+//! it senses the limbs that MuJoCo moves, and sends torques back. Therefore every kind of controller works, with or without senses.
 
 use std::ffi::{OsStr, OsString};
 use std::io::{self, BufRead, BufReader, Write};
@@ -19,36 +19,36 @@ use snakes_core::score::{
 };
 use snakes_core::world::{JointTorque, LimbState, Pose, Rotation, Vector, WorldPlan};
 
-/// The name of the suite.
+/// Name of the exam suite.
 pub const MUJOCO: &str = "mujoco";
-/// Its description, in one sentence.
+/// Description of the exam suite for users.
 pub const MUJOCO_SENTENCE: &str = "20 trials in the physics engine MuJoCo, from other starts (±0.2 m, ±5°), and the same \
      trials here. Needs Python with the package mujoco; only if it is named.";
-/// The variable of the environment that names the Python, and its default.
+/// Environment variable that names the Python program.
 const PYTHON_VARIABLE: &str = "SNAKES_PEER_PYTHON";
 const PYTHON: &str = "python3";
-/// Number of trials.
+/// Number of trials in each engine.
 const TRIALS: u32 = 20;
-/// Seed of their starts.
+/// Seed from which the starts of the trials are drawn.
 const SEED: u64 = 1;
-/// The steps that count as climbing in another engine.
+/// Minimum number of steps that counts as climbing in a comparison of engines.
 pub const CLIMBED_STEPS: u32 = 3;
 
-/// MuJoCo could not be used.
+/// Why MuJoCo could not be used.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
-    /// Python or the package is not there.
+    /// Python or its package mujoco is missing.
     #[error(
         "the suite mujoco needs Python with the package mujoco: {python}: {reason}; install it with \
          `pip install \"mujoco>=3,<5\"`, or name another Python in {PYTHON_VARIABLE}"
     )]
     Missing {
-        /// The Python.
+        /// Name of the Python program.
         python: String,
-        /// The reason.
+        /// Why it cannot be used.
         reason: String,
     },
-    /// It failed at work.
+    /// The Python process failed during the exam. Holds the reason.
     #[error("MuJoCo failed: {0}")]
     Failed(String),
     /// The user cancelled the exam.
@@ -62,28 +62,29 @@ impl From<Cancelled> for MujocoError {
     }
 }
 
-/// A champion in both engines. Ways are shares of the way from the start to the landing, 0 to 1; each is a median.
+/// Results of a champion in both engines. A way is the share of the distance from the start to the landing, 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MujocoResult {
-    /// Number of trials.
+    /// Number of trials in each engine.
     pub trials: u32,
-    /// How many climb at least [`CLIMBED_STEPS`] here, and in MuJoCo.
+    /// Number of trials that climb at least [`CLIMBED_STEPS`], in this program and in MuJoCo.
     pub climbed: [u32; 2],
-    /// How many end on the landing here, and in MuJoCo.
+    /// Number of trials that end on the landing, in this program and in MuJoCo.
     pub landed: [u32; 2],
-    /// The way here, and in MuJoCo.
+    /// Median way, in this program and in MuJoCo.
     pub way: [f32; 2],
-    /// The way in MuJoCo as a share of the way here, from the same start, over the starts from which there is a way here.
+    /// Median ratio of the way in MuJoCo to the way in this program from the same start. Starts without a way in this program are
+    /// left out.
     pub kept: f32,
 }
 
-/// MuJoCo in a process of its own.
+/// MuJoCo in a separate Python process.
 pub struct Mujoco {
     child: Child,
     orders: ChildStdin,
     answers: BufReader<ChildStdout>,
     version: String,
-    /// Its working folder: MuJoCo leaves a log of warnings there.
+    /// Working folder of the process, in which MuJoCo leaves a log of warnings.
     _folder: tempfile::TempDir,
 }
 
@@ -107,10 +108,10 @@ enum Answer {
 }
 
 impl Mujoco {
-    /// Starts it.
+    /// Starts the Python process.
     ///
     /// # Errors
-    /// [`MujocoError::Missing`], if there is no Python or no such package.
+    /// [`MujocoError::Missing`], if Python or its package is missing.
     pub fn start() -> Result<Self, MujocoError> {
         let python = std::env::var_os(PYTHON_VARIABLE).filter(|name| !name.is_empty());
         let python = python.unwrap_or_else(|| OsString::from(PYTHON));
@@ -149,15 +150,15 @@ impl Mujoco {
         Ok(started)
     }
 
-    /// The version of MuJoCo.
+    /// Returns the version of MuJoCo.
     pub fn version(&self) -> &str {
         &self.version
     }
 
-    /// Plays a champion in the suite's trials, here by `evaluator` and in MuJoCo. `model` writes a world as MJCF.
+    /// Simulates a champion in the suite's trials, with `evaluator` and in MuJoCo. `model` writes a world as MJCF.
     ///
     /// # Errors
-    /// MuJoCo fails, or the user cancels.
+    /// MuJoCo fails, or `control` was cancelled.
     pub fn examine(
         &mut self,
         champion: &Champion,
@@ -179,7 +180,7 @@ impl Mujoco {
         Ok(MujocoResult::of(&here, &there))
     }
 
-    /// Plays a champion in a trial.
+    /// Simulates a champion in a trial in MuJoCo.
     fn play(
         &mut self,
         champion: &Champion,
@@ -192,7 +193,7 @@ impl Mujoco {
         let text = model(plan).map_err(|error| MujocoError::Failed(error.to_string()))?;
         let (substeps, air_per_s) = (plan.explicit_steps(), plan.body.angular_damping_per_s);
         self.send(&Order::Model { model: &text, substeps, air_per_s })?;
-        // The start is the same in both.
+        // The first answer has the limbs at the start, which are equal in both engines.
         self.limbs()?;
         let mut torques = Vec::new();
         while !rollout.is_over() {
@@ -230,7 +231,7 @@ impl Mujoco {
         serde_json::from_str(&line).map_err(|error| failed(error.into()))
     }
 
-    /// The limbs; none if MuJoCo cannot go on with them.
+    /// Reads the limbs from the process; `None` if MuJoCo cannot continue.
     fn limbs(&mut self) -> Result<Option<Vec<LimbState>>, MujocoError> {
         match self.answer()? {
             Answer::Limbs(rows) => Ok(Some(rows.iter().map(limb_state).collect())),
@@ -241,8 +242,8 @@ impl Mujoco {
     }
 }
 
-/// The program that a name stands for: the process works in a folder of its own, in which a relative path would mean another
-/// file. A bare name is searched for as always. Links stay, because the Python of a virtual environment is one.
+/// Returns the path of a program. A relative path becomes absolute, because the process has another working folder. A bare name
+/// stays, to be searched for as usual. Links are not resolved, because the Python of a virtual environment is a link.
 fn program(name: &OsStr) -> PathBuf {
     let name = Path::new(name);
     if name.components().count() > 1 {
@@ -252,16 +253,16 @@ fn program(name: &OsStr) -> PathBuf {
     }
 }
 
-/// Ends the process.
+/// Ends the Python process.
 impl Drop for Mujoco {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// A limb from the numbers that the script describes.
+/// Reads a limb from a row of numbers, in the order that the script describes.
 fn limb_state(row: &[f32; 17]) -> LimbState {
     let [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, touches, fx, fy, fz] = *row;
     LimbState {
@@ -273,13 +274,13 @@ fn limb_state(row: &[f32; 17]) -> LimbState {
 }
 
 impl MujocoResult {
-    /// The result of the same trials here and in MuJoCo.
+    /// Summarizes the same trials in this program (`here`) and in MuJoCo (`there`).
     fn of(here: &[ExamEnd], there: &[ExamEnd]) -> Self {
         let both = [here, there];
         let count = |is: fn(&ExamEnd) -> bool| {
             both.map(|ends| ends.iter().filter(|end| is(end)).count() as u32)
         };
-        // Where there is no way here, none can be kept.
+        // Trials without a way in this program have no ratio.
         let both_ways = here.iter().zip(there).filter(|(here, _)| here.way > 0.0);
         let kept = both_ways.map(|(here, there)| there.way / here.way).collect();
         Self {
@@ -292,7 +293,7 @@ impl MujocoResult {
     }
 }
 
-/// Number of trials for a champion, those here included.
+/// Returns the number of trials for a champion, in both engines together.
 pub const fn mujoco_trials() -> u32 {
     2 * TRIALS
 }

@@ -1,4 +1,4 @@
-//! Catches panics, so that one in an evaluation ends that evaluation and not the program.
+//! Catches panics, so that a panic in an evaluation ends only this evaluation and not the program.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -6,11 +6,11 @@ use std::panic::{self, AssertUnwindSafe};
 use std::sync::Once;
 
 thread_local! {
-    /// Whether this thread expects panics, and the message of the last one.
+    /// Message of the last panic if this thread expects panics (empty before one), otherwise `None`.
     static EXPECTED: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Runs `work`; a panic in it becomes an error with its message and location, and is not printed.
+/// Runs `work`. A panic becomes an error with its message and location, and is not printed.
 ///
 /// # Errors
 /// `work` panicked. Values that it was changing may be inconsistent and must not be used again.
@@ -43,7 +43,7 @@ fn install_hook() {
     });
 }
 
-/// A panic's message, on one line of limited length.
+/// Returns a panic's message as one line of at most 300 characters.
 fn message_of(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));

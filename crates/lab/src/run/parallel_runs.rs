@@ -1,4 +1,4 @@
-//! Runs for a comparison by eye: in parallel, generation by generation, not saved.
+//! Runs for a visual comparison: evolved side by side, a generation of each in turn, and not saved.
 
 use std::sync::Arc;
 use std::thread;
@@ -11,14 +11,14 @@ use super::report::GenerationReport;
 use super::run_control::RunControl;
 use snakes_core::evolve::RunPlan;
 
-/// News about parallel runs. `run` is the index of the run.
+/// News about parallel runs.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParallelRunsEvent {
-    /// A generation is finished.
+    /// A generation of a run is finished.
     Generation {
         /// Index of the run.
         run: usize,
-        /// Its results.
+        /// Results of the generation.
         report: Box<GenerationReport>,
     },
     /// All generations of a run are finished.
@@ -28,11 +28,11 @@ pub enum ParallelRunsEvent {
         /// Hash over the whole run.
         run_hash: u64,
     },
-    /// All runs ended by an error; no more events follow.
+    /// All runs ended by an error. Holds the reason. No more events follow.
     Failed(String),
 }
 
-/// Runs on a background thread, which evolves a generation of each in turn. Dropping this cancels them.
+/// Runs on a background thread, which evolves a generation of each in turn. Dropping them cancels them.
 #[derive(Debug)]
 pub struct ParallelRuns {
     control: Arc<RunControl>,
@@ -40,7 +40,7 @@ pub struct ParallelRuns {
 }
 
 impl ParallelRuns {
-    /// Starts these runs, each with its own number of worker threads.
+    /// Starts runs, each given by its plan and its number of worker threads.
     ///
     /// # Errors
     /// The thread could not be started.
@@ -51,7 +51,7 @@ impl ParallelRuns {
             let control = Arc::clone(&control);
             move || {
                 if let Err(problem) = work(plans, &control, &sender) {
-                    // A send fails only when the receiver was dropped.
+                    // Sending fails only when the receiver was dropped.
                     drop(sender.send(ParallelRunsEvent::Failed(problem)));
                 }
             }
@@ -59,7 +59,7 @@ impl ParallelRuns {
         Ok(Self { control, events })
     }
 
-    /// The next event, if there is one.
+    /// Returns the next event, or `None` if there is none.
     pub fn poll(&self) -> Option<ParallelRunsEvent> {
         self.events.try_recv().ok()
     }
@@ -71,7 +71,7 @@ impl Drop for ParallelRuns {
     }
 }
 
-/// Evolves a generation of each in turn until all are over.
+/// Evolves a generation of each run in turn until all are over.
 fn work(
     plans: Vec<(RunPlan, usize)>,
     control: &RunControl,

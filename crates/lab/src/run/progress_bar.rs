@@ -1,4 +1,4 @@
-//! Progress bars on the terminal; where standard error is no terminal, none is drawn.
+//! Progress bars on the terminal. If standard error is not a terminal, none is drawn.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -15,7 +15,7 @@ use snakes_core::score::Evaluation;
 /// Runs one generation with a progress bar; for `record`, see [`Experiment::run_generation_recording`].
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn run_generation_with_bar(
     experiment: &mut Experiment,
     evaluator: &dyn Evaluator,
@@ -23,7 +23,7 @@ pub fn run_generation_with_bar(
     record: impl Fn(u32, u32, &Evaluation) + Sync,
 ) -> Result<GenerationReport, Cancelled> {
     let bar = ProgressBar::new(experiment.population().into());
-    // The template is a constant; if it were wrong, the default bar would do.
+    // The template is a constant. If it were wrong, the default style would be used.
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left") {
         bar.set_style(style);
     }
@@ -31,24 +31,24 @@ pub fn run_generation_with_bar(
     with_bar(&bar, control, || experiment.run_generation_recording(evaluator, control, record))
 }
 
-/// A bar for a number of things, such as evaluations.
+/// Creates a bar that counts things, such as evaluations. `things` is their name.
 pub fn bar_of(count: u64, things: &str) -> ProgressBar {
     let bar = ProgressBar::new(count).with_message(things.to_owned());
-    // The template is a constant; if it were wrong, the default bar would do.
+    // The template is a constant. If it were wrong, the default style would be used.
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}  {eta} left") {
         bar.set_style(style);
     }
     bar
 }
 
-/// The bar on the terminal, if one is drawn.
+/// The bar that is currently drawn on the terminal.
 static DRAWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 fn set_drawn(bar: Option<ProgressBar>) {
     *DRAWN.lock().unwrap_or_else(PoisonError::into_inner) = bar;
 }
 
-/// Writes to the terminal while no bar stands in the line.
+/// Calls `write`, which writes to the terminal, while the bar is hidden.
 pub fn beside_bar<T>(write: impl FnOnce() -> T) -> T {
     let bar = DRAWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
     match bar {
@@ -57,13 +57,13 @@ pub fn beside_bar<T>(write: impl FnOnce() -> T) -> T {
     }
 }
 
-/// Does `work` while a bar shows the number of evaluations that `control` has counted.
+/// Does `work` while a bar shows the number that `control` has counted.
 pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
     set_drawn(Some(bar.clone()));
     let result = std::thread::scope(|scope| {
         let (finished, is_finished) = crossbeam_channel::bounded::<()>(0);
         scope.spawn(move || {
-            // Ends when the sender is dropped.
+            // The loop ends when the sender is dropped.
             while is_finished.recv_timeout(Duration::from_millis(100))
                 == Err(RecvTimeoutError::Timeout)
             {

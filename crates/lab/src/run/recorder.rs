@@ -1,4 +1,4 @@
-//! Saves a run while it goes on, so that a kill, a full disk or a power cut loses no finished generation.
+//! Saves a run while it evolves, so that a kill, a full disk or a power cut loses no finished generation.
 
 use std::path::{Path, PathBuf};
 
@@ -12,53 +12,53 @@ use snakes_core::score::{Evaluation, Recording};
 
 /// A run whose folder is open.
 pub struct RecordedRun {
-    /// The plan it began with.
+    /// Plan with which the run began.
     pub plan_at_start: RunPlan,
     /// The run, after its last finished generation.
     pub experiment: Experiment,
-    /// Saves it.
+    /// Saves the run.
     pub recorder: RunRecorder,
-    /// The finished generations, the first first.
+    /// Reports of the finished generations, the first one first.
     pub reports: Vec<GenerationReport>,
 }
 
-/// Saves one run in its folder.
+/// Saves one run in a folder.
 #[derive(Debug)]
 pub struct RunRecorder {
     folder: RunFolder,
-    /// The file of the best champion, and its rank.
+    /// File of the best champion, and the champion's rank.
     best: Option<(PathBuf, [f32; 2])>,
 }
 
-/// A setting was not changed.
+/// Why a setting was not changed.
 #[derive(Debug, thiserror::Error)]
 pub enum ChangeError {
-    /// It may not change, or not to this value.
+    /// The setting may not change, or not to this value.
     #[error(transparent)]
     Refused(#[from] Invalid),
-    /// The change could not be saved, without which the run could not be repeated.
+    /// The change could not be saved, and without it the run could not be repeated.
     #[error(transparent)]
     NotSaved(#[from] SaveError),
 }
 
-/// A run, and how to open it.
+/// A run in a folder, and whether to continue it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSource {
-    /// Its folder.
+    /// Folder of the run.
     pub folder: PathBuf,
-    /// The plan it begins with.
+    /// Plan with which the run begins.
     pub plan: RunPlan,
-    /// Whether to continue from the contents of the folder.
+    /// Whether to continue from the contents of the folder or to discard them.
     pub earlier: ExistingRun,
 }
 
 impl RunSource {
-    /// A run in its folder among `saves`, which is named after its plan.
+    /// Returns the source of a run in the folder among `saves` that is named after its plan.
     pub fn in_saves(saves: &SavesFolder, plan: RunPlan, earlier: ExistingRun) -> Self {
         Self { folder: saves.of_run(&plan), plan, earlier }
     }
 
-    /// This run with the first seed, from its own on, of which `saves` has no run.
+    /// Returns this run with the first seed, counted up from its own, for which `saves` has no run.
     #[must_use]
     pub fn with_unused_seed(self, saves: &SavesFolder) -> Self {
         let mut plan = self.plan;
@@ -68,7 +68,7 @@ impl RunSource {
         Self::in_saves(saves, plan, self.earlier)
     }
 
-    /// The run in a folder, to continue it.
+    /// Returns the source that continues the run in a folder.
     ///
     /// # Errors
     /// The folder has no run, it was recorded by another engine, or its file is damaged.
@@ -77,7 +77,7 @@ impl RunSource {
         Ok(Self { folder: folder.to_owned(), plan, earlier: ExistingRun::Keep })
     }
 
-    /// Opens the run. `user` names this program to others that try to open the folder too.
+    /// Opens the run. `user` names this program to other programs that try to open the same folder.
     ///
     /// # Errors
     /// Another program uses the folder; it holds another run; a file in it is damaged; it cannot be written.
@@ -103,12 +103,12 @@ impl RunSource {
 }
 
 impl RunRecorder {
-    /// The run's folder.
+    /// Returns the run's folder.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// The file of the best champion so far.
+    /// Returns the file of the best champion so far.
     pub fn best(&self) -> Option<&Path> {
         self.best.as_ref().map(|(path, _)| path.as_path())
     }
@@ -118,12 +118,11 @@ impl RunRecorder {
         self.folder.note(generation, individual, evaluation);
     }
 
-    /// Changes a setting of the run from its next generation on: has the experiment check the change, saves it, and
-    /// then applies it. Returns the change; none if it changes nothing.
+    /// Changes a setting of the run from its next generation on: the experiment checks the change, the recorder saves it, and the
+    /// experiment applies it. Returns the change, or `None` if the setting already has the value.
     ///
     /// # Errors
-    /// The setting may not change during a run, or not to that value, or the change cannot be saved. Nothing is
-    /// changed then.
+    /// The setting may not change during a run, the value is not allowed, or the change cannot be saved. Nothing is changed then.
     pub fn change_setting(
         &mut self,
         experiment: &mut Experiment,
@@ -137,13 +136,13 @@ impl RunRecorder {
         Ok(Some(change))
     }
 
-    /// All changes of the run's settings, the earliest first.
+    /// Returns all changes of the run's settings, the earliest first.
     pub fn changes(&self) -> &[SettingChange] {
         self.folder.changes()
     }
 
-    /// Saves the generation that was just finished. After an error, it may be tried again. Returns a line for each
-    /// individual whose simulation panicked.
+    /// Saves the generation that was just finished. After an error, the call may be repeated. Returns a line for each individual
+    /// whose simulation panicked.
     ///
     /// # Errors
     /// The folder or a file cannot be written.
@@ -154,7 +153,7 @@ impl RunRecorder {
     ) -> Result<Vec<String>, SaveError> {
         let crashes = report.crashes.iter().map(|crash| self.record_crash(crash)).collect();
         let champion = report.champion.as_ref();
-        // For one more evaluation per generation, any later engine can show the champion.
+        // The recording costs one more evaluation per generation, and lets any later engine show the champion.
         let recording = champion.map(|champion| Recording::of(&champion.genome, &champion.trial));
         if let Some(lineage) = experiment.lineage_record() {
             self.folder.note_lineage(lineage);

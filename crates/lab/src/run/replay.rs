@@ -17,7 +17,7 @@ use snakes_core::world::{Effort, HealthLimits};
 /// Re-simulates a saved champion and compares it with its record, bit for bit.
 ///
 /// # Errors
-/// The file cannot be used, or fitness or trace differ from what was recorded.
+/// The file cannot be used, its simulation panicked, or fitness or trace differ from the record.
 pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), HeadlessError> {
     let loaded = load_champion(path)?;
     let recorded = loaded.champion.evaluation;
@@ -67,11 +67,11 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     }
 }
 
-/// Compares a champion with its record, bit for bit, for a task that only uses its genome: `None` if they are equal,
-/// else the difference in words.
+/// Compares a champion with its record, bit for bit, without printing results. Returns `None` if they are equal, otherwise the
+/// difference in words.
 ///
 /// # Errors
-/// Its simulation panicked.
+/// The simulation of the champion panicked.
 pub fn difference_from_record(
     path: &Path,
     loaded: &LoadedChampion,
@@ -86,7 +86,7 @@ fn simulated(path: &Path, loaded: &LoadedChampion) -> Result<Evaluation, Headles
         .map_err(|message| HeadlessError::Crashed { path: path.to_owned(), message })
 }
 
-/// The difference between the record and the simulation `found`, in words.
+/// Describes the difference between the record and the simulation `found` in words; `None` if they are equal.
 fn difference(loaded: &LoadedChampion, found: &Evaluation) -> Option<String> {
     let recorded = &loaded.champion.evaluation;
     if found.agrees_with(recorded) {
@@ -108,7 +108,7 @@ fn difference(loaded: &LoadedChampion, found: &Evaluation) -> Option<String> {
     ))
 }
 
-/// Effort of a rollout, each value with the limit beyond which it would have been disqualified.
+/// Describes the effort of a rollout, each value with the limit beyond which a snake is disqualified.
 fn effort_lines(effort: &Effort, health: &HealthLimits) -> String {
     format!(
         "energy      {:.1} J\n\

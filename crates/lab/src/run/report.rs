@@ -16,19 +16,19 @@ use snakes_core::evolve::{
 use snakes_core::score::{Evaluation, Trial};
 use snakes_core::world::Disqualification;
 
-/// The result of one generation: the numbers of its record, which it has as fields of its own, too, and what the log does
-/// not keep.
+/// Report of one generation: its record, which is available by dereferencing, and data that the log does not keep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GenerationReport {
-    /// Its numbers, as the log keeps them.
+    /// Numbers of the generation, as the log keeps them.
     pub record: GenerationRecord,
-    /// Number of disqualified individuals by reason; empty for a generation that was read from its log.
+    /// Number of disqualified individuals by reason. Empty for a generation that was read from its log.
     pub reasons: BTreeMap<Disqualification, u32>,
-    /// The first few individuals whose simulation panicked.
+    /// The first individuals whose simulation panicked, at most three.
     pub crashes: Vec<Crash>,
-    /// Meaning of the mean, in the words of the report's Table 1.
+    /// Meaning of the generation's mean fitness, in the words of the report's Table 1.
     pub meaning: String,
-    /// The best individual; none if all were disqualified.
+    /// Champion of the generation. `None` if all individuals were disqualified, or a run that keeps only better champions found
+    /// none.
     pub champion: Option<Champion>,
 }
 
@@ -43,17 +43,17 @@ impl Deref for GenerationReport {
 /// An individual whose simulation panicked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crash {
-    /// The individual; its evaluation is void.
+    /// The individual. Its evaluation is void.
     pub individual: Champion,
-    /// The message of the panic.
+    /// Message of the panic.
     pub message: String,
 }
 
-/// Maximum number of crashes in a report; more would add nothing new.
+/// Maximum number of crashes in a report.
 const MAX_CRASHES: usize = 3;
 
 impl GenerationReport {
-    /// The report of a generation. `messages` has those of the panics, in the order of the individuals.
+    /// Makes the report of a generation. `messages` are those of panics, in the order of the individuals.
     pub(super) fn of(
         evaluated: &EvaluatedGeneration<'_>,
         champion: Option<Champion>,
@@ -93,7 +93,7 @@ impl GenerationReport {
         }
     }
 
-    /// Adds the numbers of the stairs that evolve, if they do.
+    /// Adds the numbers of the stairs, if stairs evolve.
     pub fn set_stairs(&mut self, tree: Option<&StairsTree>) {
         self.record.stairs = tree.map(StairsCount::of);
         if let Some(count) = self.record.stairs {
@@ -101,24 +101,26 @@ impl GenerationReport {
         }
     }
 
-    /// The numbers by which the champions of a run are compared: the greater are the better one. None without a champion.
+    /// Returns the numbers by which champions of a run are compared in order. Greater numbers are better. `None` without a
+    /// champion.
     pub fn champion_rank(&self) -> Option<[f32; 2]> {
         let champion = self.champion.as_ref()?;
         match self.stairs {
-            // A run in which stairs evolve keeps only the champions that are better than all before.
+            // A run in which stairs evolve keeps only champions that are better than all before, so the latest is the best.
             Some(_) => Some([self.generation as f32, 0.0]),
             None => Some(champion.rank()),
         }
     }
 
-    /// The report of a generation that was read from its log, under the trial of its run.
+    /// Makes the report of a generation that was read from its log, under the trial of its run.
     pub fn of_record(record: GenerationRecord, champion: Option<Champion>, trial: &Trial) -> Self {
         let meaning = meaning(&record, trial);
         Self { record, reasons: BTreeMap::new(), crashes: Vec::new(), meaning, champion }
     }
 }
 
-/// Meaning of a generation's mean, and the rung of the ladder; where stairs evolve, their numbers.
+/// Returns the meaning of a generation's mean fitness in words, with the rise of its rung if there is a ladder. Where stairs
+/// evolve, returns the words about them.
 fn meaning(record: &GenerationRecord, trial: &Trial) -> String {
     if let Some(count) = record.stairs {
         return count.words();
@@ -135,7 +137,7 @@ fn meaning(record: &GenerationRecord, trial: &Trial) -> String {
     }
 }
 
-/// Number of disqualified individuals by reason.
+/// Counts the disqualified individuals by reason.
 fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
     let mut counts = BTreeMap::new();
     for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
@@ -144,7 +146,7 @@ fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
     counts
 }
 
-/// The largest species of a generation, from the number of the species of each individual.
+/// Counts the largest species of a generation. `numbers` has the species of each individual.
 fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
     let mut counts: BTreeMap<u32, SpeciesCount> = BTreeMap::new();
     for (&id, evaluation) in numbers.iter().zip(evaluations) {
@@ -162,7 +164,7 @@ fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
     species
 }
 
-/// Statistics over the healthy ones among `evaluations`, summed in a fixed order; none if all were disqualified.
+/// Computes statistics over the healthy individuals, summed in a fixed order; `None` if all were disqualified.
 fn statistics(evaluations: &[Evaluation]) -> Option<Statistics> {
     let healthy = || evaluations.iter().filter(|evaluation| evaluation.disqualified.is_none());
     let mut fitness: Vec<f64> = healthy().map(|e| f64::from(e.fitness)).collect();
@@ -185,7 +187,7 @@ fn statistics(evaluations: &[Evaluation]) -> Option<Statistics> {
     })
 }
 
-/// The hash of a generation: every evaluation's bits, in the order of the individuals.
+/// Returns the hash of a generation over the bits of every evaluation, in the order of the individuals.
 fn generation_hash(evaluations: &[Evaluation]) -> u64 {
     let mut hash = Xxh3Default::new();
     for evaluation in evaluations {
@@ -251,7 +253,7 @@ mod tests {
         ];
         assert_eq!(species(&[2, 7, 9, 2], &evaluations), counts);
         assert_eq!(species(&[], &evaluations), []);
-        // Of 30 species only the largest are kept; of equal ones the older.
+        // Of 30 species only the largest are kept. Of equally large species the older are kept.
         let numbers: Vec<u32> = (0..60).map(|index| index % 30).chain([29, 28]).collect();
         let kept = species(&numbers, &vec![evaluation(1.0, None); numbers.len()]);
         let ids: Vec<u32> = kept.iter().map(|count| count.id).collect();

@@ -6,21 +6,21 @@ use super::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::Champion;
 use snakes_core::score::{PerturbationRange, varied};
 
-/// Results of the trials.
+/// Results of a champion in perturbed trials.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Robustness {
     /// Number of trials.
     pub trials: u32,
-    /// Number of trials in which the agent was disqualified.
+    /// Number of trials in which the snake was disqualified.
     pub disqualified: u32,
-    /// Number of trials in which the agent ended at least one step high, at least two steps high, and so on.
+    /// Number of trials that ended at least one step high, at least two steps high, and so on.
     pub reached: Vec<u32>,
 }
 
-/// Runs a champion through `trials` perturbed trials, drawn from `seed`.
+/// Simulates a champion in `trials` perturbed trials, which are drawn from `seed`.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn robustness(
     champion: &Champion,
     range: &PerturbationRange,

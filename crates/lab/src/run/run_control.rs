@@ -1,14 +1,14 @@
-//! Pauses and cancels work on other threads, such as that of a run, and counts its progress.
+//! Pauses and cancels work on other threads, such as the evaluations of a run, and counts its progress.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Work was cancelled before it was finished.
+/// Error when work was cancelled before it was finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Shared between the workers of a run, or other work in the background, and its user interface.
+/// Control of work in the background, such as a run, which its workers share with the user interface.
 ///
 /// Workers of a run pass a gate before each evaluation. Pausing and cancelling therefore take effect within
 /// one evaluation (some milliseconds with the shipped presets), and cannot change a result: they decide
@@ -29,45 +29,45 @@ enum Gate {
 }
 
 impl RunControl {
-    /// Number of finished items: of a run, the evaluations of the current generation.
+    /// Returns the number of finished items. For a run, these are the evaluations of the current generation.
     pub fn done(&self) -> u32 {
         self.done.load(Ordering::Relaxed)
     }
 
-    /// Lets the workers continue, unless the run is cancelled.
+    /// Lets the workers continue, unless the work was cancelled.
     pub fn resume(&self) {
         self.move_gate(Gate::Open);
     }
 
-    /// Holds the workers before their next evaluation.
+    /// Pauses the workers before their next evaluation.
     pub fn pause(&self) {
         self.move_gate(Gate::Paused);
     }
 
-    /// Whether the workers are held.
+    /// Returns whether the workers are paused.
     pub fn is_paused(&self) -> bool {
         *self.gate() == Gate::Paused
     }
 
-    /// Ends the run, for good.
+    /// Cancels the work permanently.
     pub fn cancel(&self) {
         self.move_gate(Gate::Cancelled);
     }
 
-    /// Whether the run was cancelled.
+    /// Returns whether the work was cancelled.
     pub fn is_cancelled(&self) -> bool {
         *self.gate() == Gate::Cancelled
     }
 
-    /// Blocks while paused.
+    /// Blocks while the work is paused.
     ///
     /// # Errors
-    /// [`Cancelled`], if the run was.
+    /// [`Cancelled`], if the work was cancelled.
     pub fn wait_while_paused(&self) -> Result<(), Cancelled> {
         self.wait_while_paused_unless(|| false).map(drop)
     }
 
-    /// Blocks while paused, until `has_request`; then returns whether to continue (true) or to serve the request
+    /// Blocks while the work is paused and `has_request` is false. Returns whether to continue (`true`) or to serve a request
     /// first. After making a request, call [`Self::wake`].
     pub(super) fn wait_while_paused_unless(
         &self,
@@ -81,9 +81,9 @@ impl RunControl {
         }
     }
 
-    /// Lets waiting workers check for requests.
+    /// Wakes waiting workers, so that they check for requests.
     pub(super) fn wake(&self) {
-        // Taking the lock ensures that no worker is between its check and its wait: no call is lost.
+        // Taking the lock ensures that no worker is between its check and its wait, so that none misses the wake-up.
         drop(self.gate());
         self.gate_moved.notify_all();
     }
@@ -107,7 +107,7 @@ impl RunControl {
         self.gate_moved.notify_all();
     }
 
-    /// A panic elsewhere cannot leave a `Copy` value half-changed, so poison does no harm.
+    /// Locks the gate. Poison is harmless, because a panic cannot leave a `Copy` value half-changed.
     fn gate(&self) -> MutexGuard<'_, Gate> {
         self.gate.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,5 +1,5 @@
-//! Tuning the controller of a snake to its body by a few evaluations: a (1+4) evolution strategy with a step that adapts
-//! by the rule of one fifth (Rechenberg, Evolutionsstrategie, 1973).
+//! Tuning the controller of a snake to its body with few evaluations: a (1+4) evolution strategy whose step size adapts by the
+//! one-fifth rule (Rechenberg, Evolutionsstrategie, 1973).
 
 use super::panics::caught;
 use super::run_control::RunControl;
@@ -7,34 +7,35 @@ use snakes_core::genome::{Genome, GenomeSpace};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::score::{Evaluation, Trial, evaluate};
 
-/// Children of a parent.
+/// Number of children of each parent.
 const CHILDREN: usize = 4;
-/// First standard deviation of the steps, as a share of each gene's range.
+/// First standard deviation of the changes, as a share of each gene's range.
 const FIRST_STEP: f64 = 0.1;
-/// Factor of the step after a generation with an improvement; without one it shrinks so that one in five keeps it.
+/// Factor on the step size after a generation with an improvement.
 const GROWTH: f64 = 1.5;
-/// Factor of the step after a generation without one: `GROWTH` to the power of -1/4.
+/// Factor on the step size after a generation without an improvement: `GROWTH` to the power of -1/4, so that the size stays equal
+/// if one generation in five improves.
 const SHRINKAGE: f64 = 0.9036;
 
-/// A tuned snake.
+/// A snake whose controller was tuned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuned {
-    /// Its genes: the body is that of the beginning.
+    /// The genome. Its body is unchanged.
     pub genome: Genome,
-    /// Its evaluation.
+    /// Evaluation of the tuned snake.
     pub evaluation: Evaluation,
-    /// The evaluation at the beginning.
+    /// Evaluation of the snake before tuning.
     pub before: Evaluation,
 }
 
-/// The order of results: healthy ones by fitness, before those that were disqualified, by the time they lasted.
+/// Returns a key to compare results: healthy ones come first, by fitness; disqualified ones follow, by the steps they lasted.
 fn worth(evaluation: &Evaluation) -> (bool, f32) {
     let is_healthy = evaluation.disqualified.is_none();
     (is_healthy, if is_healthy { evaluation.fitness } else { evaluation.steps as f32 })
 }
 
-/// Changes the genes of the controller only, with this many evaluations, the first of which is that of the beginning, and
-/// returns the best. Each attempt tries other genes. Ends early when cancelled. None if the simulation fails.
+/// Tunes only the genes of the controller, with this number of evaluations, including one of the given genome. Returns the best.
+/// Each `attempt` tries other genes. Ends early when cancelled. Returns `None` if the first evaluation panics.
 pub fn tune_controller(
     genome: &Genome,
     trial: &Trial,

@@ -1,8 +1,8 @@
-//! Checks that this machine computes the same bits as every other.
+//! Checks that this machine computes the same bits as the reference machine.
 //!
-//! Short runs that together cover everything that affects bits: each controller, each strategy, each feature of
-//! surface, body and stairs. Their hashes are in `assets/golden.ron`, which is part of the program. A new setting
-//! needs a run that changes it: a test checks that.
+//! Short runs together cover everything that affects bits: each controller, each strategy, each feature of surface, body and
+//! stairs. Their hashes are in `assets/golden.ron` and `assets/golden-arm64.ron`, which are embedded in the program. A test checks
+//! that each setting is changed by one of the runs.
 
 mod cases;
 mod drawn_points;
@@ -23,7 +23,7 @@ use snakes_core::{ENGINE_VERSION, Processors};
 pub use cases::golden_plans;
 use drawn_points::{DRAWN_POINTS, hash_of_drawn_points};
 
-/// A case with at most this many evaluations is short.
+/// A case with at most this number of evaluations is short.
 const SHORT_BUDGET: u64 = 12;
 /// Maximum number of short cases.
 const SHORT_CASES: usize = 12;
@@ -33,40 +33,40 @@ const SHORT_CASES: usize = 12;
 pub struct Trajectory {
     /// Description of the computation.
     pub what: String,
-    /// Hash over all its bits, in 16 hexadecimal digits.
+    /// Hash over all bits of the computation, in 16 hexadecimal digits.
     pub hash: String,
 }
 
-/// The results of an engine.
+/// Results of the physics engine on one kind of processor.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trajectories {
-    /// The version of the engine.
+    /// Version of the engine.
     pub engine: u32,
-    /// The processors.
+    /// Kind of processor.
     #[serde(default, skip_serializing_if = "is_default")]
     pub processors: Processors,
-    /// The trajectories, in a fixed order.
+    /// Hashes of the computations, in a fixed order.
     pub trajectories: Vec<Trajectory>,
 }
 
 /// Errors of a comparison of trajectories.
 #[derive(Debug, thiserror::Error)]
 pub enum VerifyError {
-    /// An embedded preset is broken, which a test rules out.
+    /// An embedded preset is broken. A test rules this out.
     #[error(transparent)]
     Preset(#[from] SaveError),
-    /// A case is not allowed, which a test rules out.
+    /// A case is not allowed. A test rules this out.
     #[error(transparent)]
     Case(#[from] Invalid),
-    /// The embedded reference is broken, which a test rules out.
+    /// The embedded reference is broken. A test rules this out.
     #[error("the reference is broken: {0}")]
     Reference(#[from] ron::error::SpannedError),
-    /// This build computes other bits than all for which there is a reference.
+    /// This build has another kind of processor than all references.
     #[error(
         "there is no reference for this processor, or for a build without SIMD; there are some for x86-64 and arm64"
     )]
     NoReference,
-    /// This machine computes other bits than its reference.
+    /// This machine computes other bits than its reference. Holds the description of the computation.
     #[error("{0}: this machine computes other bits than the reference (see snakes verify)")]
     OtherBits(String),
     /// The interrupt key was pressed.
@@ -81,7 +81,7 @@ impl Trajectory {
 }
 
 impl Trajectories {
-    /// One hash over all, in 16 hexadecimal digits.
+    /// Returns one hash over the engine's version and all results, in 16 hexadecimal digits.
     pub fn fingerprint(&self) -> String {
         let mut hash = Xxh3Default::new();
         hash.update(&self.engine.to_le_bytes());
@@ -92,10 +92,10 @@ impl Trajectories {
         format!("{:016x}", hash.digest())
     }
 
-    /// The results of the reference machine with this engine and processors like these.
+    /// Returns the reference results of this engine on this kind of processor.
     ///
     /// # Errors
-    /// There is no reference for processors like these; or it is broken, which a test rules out.
+    /// There is no reference for this kind of processor, or the reference is broken, which a test rules out.
     pub fn reference() -> Result<Self, VerifyError> {
         Self::reference_of(Processors::THIS)
     }
@@ -109,12 +109,12 @@ impl Trajectories {
         Ok(ron::from_str(text)?)
     }
 
-    /// The results of this machine in some short cases, which show within a second or two whether it computes the same bits
-    /// as the reference machine.
+    /// Computes some short cases, which show within a second or two whether this machine computes the same bits as the reference
+    /// machine.
     ///
     /// # Errors
-    /// [`VerifyError::NoReference`] or [`VerifyError::OtherBits`], if it does not; [`VerifyError::Cancelled`], if `control`
-    /// was cancelled.
+    /// [`VerifyError::NoReference`] or [`VerifyError::OtherBits`], if the bits cannot be compared or differ;
+    /// [`VerifyError::Cancelled`], if `control` was cancelled.
     pub fn short(evaluator: &dyn Evaluator, control: &RunControl) -> Result<Self, VerifyError> {
         let reference = Self::reference()?;
         let is_short = |(_, plan): &&(String, RunPlan)| plan.budget() <= SHORT_BUDGET;
@@ -134,10 +134,10 @@ impl Trajectories {
         }
     }
 
-    /// The results of this machine. Calls `progress` with the number of finished trajectories and their total.
+    /// Computes all cases on this machine. Calls `progress` with the number of finished computations and the number of all.
     ///
     /// # Errors
-    /// [`VerifyError::Cancelled`], if `control` was.
+    /// [`VerifyError::Cancelled`], if `control` was cancelled.
     pub fn computed(
         evaluator: &dyn Evaluator,
         control: &RunControl,
@@ -156,7 +156,7 @@ impl Trajectories {
     }
 }
 
-/// The result of a case.
+/// Computes a case, and returns the hash of its run.
 fn trajectory(
     what: String,
     plan: RunPlan,
@@ -191,7 +191,7 @@ mod tests {
                 fields(&plan.settings).iter().any(|(p, v)| p == path && v != value)
             })
         };
-        // A setting that is newer than the reference is not written at its default, where it has no effect. Its case
+        // A setting that is newer than the reference is not written while it has its default value, which has no effect. Its case
         // belongs to the next reference.
         let written = serde_json::to_value(&report).expect("written");
         let is_written =
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(hashes.len(), all, "two cases compute the same");
     }
 
-    /// The reference for ARM named no processors, so that `snakes verify` found equal bits there and still failed.
+    /// A reference without its processors would fail `snakes verify` even where all bits are equal.
     #[test]
     fn each_reference_names_its_processors_and_holds_the_same_cases() {
         let names = |of: &Trajectories| -> Vec<String> {

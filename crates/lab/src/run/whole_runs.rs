@@ -1,4 +1,4 @@
-//! Whole runs in parallel: each on one worker, so that none waits for the slowest evaluation of a generation.
+//! Whole runs in parallel, each on one worker, so that no run waits for the slowest evaluation of a generation.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -7,8 +7,8 @@ use super::evaluator::Evaluator;
 use super::headless::HeadlessError;
 use super::run_control::{Cancelled, RunControl};
 
-/// Does `work` for each index below `count`, as many at the same time as `evaluator` has workers, each with an evaluator
-/// of a single worker. Calls `done` with each result, one at a time.
+/// Calls `work` for each index below `count`, with an evaluator of a single worker. As many calls run at the same time as
+/// `evaluator` has workers. Calls `done` with each result, one at a time.
 ///
 /// # Errors
 /// `control` was cancelled, workers could not be started, or `done` failed.
@@ -32,7 +32,7 @@ pub(crate) fn whole_runs<T: Send>(
             let result = result.map_err(|Cancelled| HeadlessError::Cancelled { kept: None })?;
             let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
             if let Err(error) = done(result) {
-                // The other runs could not be saved either.
+                // If this result cannot be stored, those of other runs could not be stored either.
                 control.cancel();
                 return Err(error);
             }
@@ -44,7 +44,7 @@ pub(crate) fn whole_runs<T: Send>(
         let results = workers
             .into_iter()
             .map(|worker| worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None })));
-        // Report the cause rather than the cancellations that followed.
+        // The cause is reported instead of the cancellations that followed from it.
         let mut errors: Vec<HeadlessError> = results.filter_map(Result::err).collect();
         errors.sort_by_key(|error| matches!(error, HeadlessError::Cancelled { .. }));
         errors.into_iter().next().map_or(Ok(()), Err)

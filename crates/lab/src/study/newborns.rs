@@ -35,7 +35,7 @@ impl NewbornStatistics {
 /// healthy in both count; their number is the second result.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn newborn_statistics(
     settings: &Settings,
     seed: u64,

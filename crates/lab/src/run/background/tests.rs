@@ -28,18 +28,18 @@ fn start_after(folder: &tempfile::TempDir, before: Option<BackgroundRun>) -> Bac
     BackgroundRun::start(source, evaluator, before).expect("a thread")
 }
 
-/// The next event of any kind.
+/// Waits for the next event of any kind.
 fn next_of_all(background: &BackgroundRun) -> RunEvent {
     background.events.recv_timeout(Duration::from_secs(60)).expect("an event in time")
 }
 
-/// The next event, which says that the run was opened.
+/// Waits for the next event, which must say that the run was opened.
 fn opened(background: &BackgroundRun) -> OpenedRun {
     let RunEvent::Opened(opened) = next_of_all(background) else { panic!("not opened") };
     *opened
 }
 
-/// The next event that is not [`RunEvent::Explored`].
+/// Waits for the next event other than [`RunEvent::Explored`].
 fn next(background: &BackgroundRun) -> RunEvent {
     loop {
         match next_of_all(background) {
@@ -107,12 +107,12 @@ fn a_generation_that_cannot_be_saved_holds_the_run_and_is_saved_on_resume() {
     assert!(in_the_way.is_file());
 }
 
-/// Evaluates as threads do, but a fault may be found in it.
+/// Evaluates on threads, but can report a fault.
 #[derive(Debug)]
 struct Faulty {
     pool: LocalPool,
     fault: Option<&'static str>,
-    /// Whether it cancels its batches.
+    /// Whether the evaluator cancels its batches.
     cancels: bool,
 }
 
@@ -161,7 +161,7 @@ fn a_fault_of_an_evaluator_ends_the_run_whenever_it_is_found() {
     };
     let (good, found, late) =
         (faulty(None, false), faulty(Some("w lies"), true), faulty(Some("w lies"), false));
-    // In a generation; after the evaluator was replaced; in the last generation.
+    // The fault appears: during a generation; after the evaluator was replaced; in the last generation.
     for (evaluators, generations) in
         [(vec![&good, &found], 1), (vec![&good, &late, &good], 2), (vec![&good, &good, &late], 3)]
     {
@@ -204,7 +204,7 @@ fn exploration_is_sent_before_each_generation_and_after_reopening() {
     assert!(matches!(next_of_all(&first), RunEvent::Generation(_)));
     let second = start_after(&folder, Some(first));
     assert_eq!(opened(&second).reports.len(), 1);
-    // The other individuals of the generation are not saved.
+    // Only the leaders of a generation are saved, so its other individuals are unknown after reopening.
     assert_eq!(explored.leaders.len(), 8);
     assert_eq!(explored.generation.as_ref().map(|of| of.genomes.len()), Some(8));
     let RunEvent::Explored(known) = next_of_all(&second) else { panic!("not explored") };
@@ -233,7 +233,7 @@ fn progress_counts_the_current_generation_of_any_size() {
     let background = BackgroundRun::start(source, evaluator, None).expect("a thread");
     assert!(matches!(next(&background), RunEvent::Opened(_)));
     assert_eq!(background.progress(), (0, 20));
-    // The newborns, then generations of the population.
+    // The first generation has only newborns; later generations have the size of the population.
     background.resume();
     while !matches!(next(&background), RunEvent::Finished { .. }) {}
     assert_eq!(background.progress(), (8, 8));
@@ -291,7 +291,7 @@ fn a_change_takes_effect_with_the_next_generation_and_at_once_while_held() {
         }
     };
     assert_eq!(reports, [5, 5, 5]);
-    // Opened again, it has the same changes and the same hash.
+    // The reopened run has the same changes and the same hash.
     let again = start_after(&folder, Some(background));
     let reopened = opened(&again);
     assert_eq!(reopened.reports.len(), 4);
@@ -315,7 +315,7 @@ fn a_run_in_its_last_generation_can_be_made_longer() {
     while !matches!(next(&background), RunEvent::Finished { .. }) {
         events += 1;
     }
-    // The change, and generations 3 to 5.
+    // One event for the change, and one for each of the generations 3 to 5.
     assert_eq!(events, 1 + 3);
 }
 

@@ -1,4 +1,4 @@
-//! Settings that change during a run: proposed, then recorded by the caller, then applied.
+//! Settings that change during a run: a change is proposed, then saved by the caller, then applied.
 
 use std::borrow::Cow;
 
@@ -7,17 +7,17 @@ use snakes_core::check::Invalid;
 use snakes_core::evolve::{RunPlan, SettingChange, Settings};
 use snakes_core::schema::SettingValue;
 
-/// A change that was checked, to be recorded and applied before the next generation begins.
+/// A checked change, which is to be saved and applied before the next generation begins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposedChange {
     /// The change.
     pub change: SettingChange,
-    /// The plan of the next generation with it.
+    /// Plan of the next generation with this change.
     plan: RunPlan,
 }
 
 impl Experiment {
-    /// The settings of the next generation.
+    /// Returns the settings of the next generation.
     pub fn settings(&self) -> Cow<'_, Settings> {
         match self.next_plan() {
             Cow::Borrowed(plan) => Cow::Borrowed(&plan.settings),
@@ -25,12 +25,12 @@ impl Experiment {
         }
     }
 
-    /// The plan of the next generation.
+    /// Returns the plan of the next generation.
     pub fn next_plan(&self) -> Cow<'_, RunPlan> {
         self.plan_with(|change| change.generation <= self.finished + 1)
     }
 
-    /// The plan as it is now: with all changes that were recorded, even those of later generations.
+    /// Returns the plan with all recorded changes, even those of later generations.
     pub fn plan_now(&self) -> Cow<'_, RunPlan> {
         self.plan_with(|_| true)
     }
@@ -38,14 +38,14 @@ impl Experiment {
     fn plan_with(&self, is_included: impl Fn(&SettingChange) -> bool) -> Cow<'_, RunPlan> {
         let mut plan = Cow::Borrowed(&self.plan);
         for change in self.ahead.iter().take_while(|change| is_included(change)) {
-            // All were checked before.
+            // All recorded changes were checked before, so this cannot fail.
             let _ = plan.to_mut().change(change);
         }
         plan
     }
 
-    /// The change of a setting, by its full dotted name, from the next generation on that a user asks for; none if it
-    /// changes nothing. This only checks it: see [`Self::apply_change`].
+    /// Checks the change of a setting, given by its full dotted name, from the next generation on. Returns `None` if the setting
+    /// already has the value. Changes nothing yet: see [`Self::apply_change`].
     ///
     /// # Errors
     /// The setting may not change during a run, its value is not allowed, or an earlier change has not taken effect
@@ -67,8 +67,8 @@ impl Experiment {
         Ok(plan.map(|plan| ProposedChange { change, plan }))
     }
 
-    /// Applies the change that was proposed last, which takes effect with the next generation. Known evaluations of that
-    /// generation were made under the old setting and are dropped.
+    /// Applies the change that was proposed last, from the next generation on. Drops known evaluations of that generation, because
+    /// they were made under the old setting.
     pub fn apply_change(&mut self, proposed: ProposedChange) {
         self.apply_due_changes();
         self.plan = proposed.plan;
@@ -76,18 +76,18 @@ impl Experiment {
         self.known.clear();
     }
 
-    /// Makes the search follow a changed plan.
+    /// Makes the strategy follow the changed plan.
     fn adopt_settings(&mut self) {
         self.strategy.apply_settings(&self.plan);
         self.asked.take();
     }
 
-    /// Applies the recorded changes of the next generation.
+    /// Applies the recorded changes that are due for the next generation.
     pub(super) fn apply_due_changes(&mut self) {
         let next = self.finished + 1;
-        // One by one, as they were made: changing a setting there and back differs from not changing it.
+        // Changes are applied one by one: changing a setting there and back differs from not changing it.
         while let Some(change) = self.ahead.pop_front_if(|change| change.generation <= next) {
-            // All were checked before.
+            // All recorded changes were checked before, so this cannot fail.
             let _ = self.plan.change(&change);
             self.adopt_settings();
         }

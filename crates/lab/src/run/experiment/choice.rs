@@ -1,4 +1,4 @@
-//! The choice of a generation's champion.
+//! Choosing the champion of a generation.
 
 use crate::run::evaluated_generation::EvaluatedGeneration;
 use crate::run::evaluator::{Evaluator, Job, evaluate_in_order};
@@ -6,15 +6,15 @@ use crate::run::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::Champion;
 use snakes_core::score::Trial;
 
-/// Number of candidates in each generation: the best ones in their own trial.
+/// Number of individuals of each generation that compete for champion: the best in their own trial.
 const CANDIDATES: usize = 2;
 
-/// The champion of a generation, given the indices of its healthy individuals, the best first: the first of them, or,
-/// if the settings say so, the candidate with the greatest fitness on a fixed list of varied trials. `None` if all
-/// were disqualified. The second result is the number of trials that this has simulated.
+/// Chooses the champion of a generation. `ranking` has the indices of its healthy individuals, the best first. The champion is the
+/// first of them or, if the settings have a list of varied trials, the candidate with the greatest fitness on that list; `None` if
+/// there is none. Also returns the number of trials that the choice simulated.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub(super) fn choose_champion(
     evaluated: &EvaluatedGeneration<'_>,
     ranking: &[usize],
@@ -34,7 +34,7 @@ pub(super) fn choose_champion(
     let results = evaluate_in_order(&trials, &jobs, evaluator, control)?;
     let (mut best, mut simulations) = (None::<Champion>, 0);
     for ((&index, result), trial) in candidates.iter().zip(results).zip(&trials) {
-        // A candidate that fails on the list is no champion, and the evaluator's report of its own trial stands.
+        // A candidate whose simulation panics on the list cannot become champion.
         let Ok(on_list) = result else { continue };
         simulations += u64::from(trial.simulations_of(&on_list.evaluation));
         let chosen_by = Some(on_list.evaluation.fitness);

@@ -1,4 +1,4 @@
-//! The evaluation of a generation, whose results are put in the order of its candidates.
+//! Evaluating a generation. The results are in the order of its candidates.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -10,20 +10,20 @@ use snakes_core::evolve::Candidate;
 use snakes_core::learn::Episode;
 use snakes_core::score::{Evaluation, Scored};
 
-/// The results of a generation. All lists are in the order of the candidates.
+/// Results of a generation. All lists are in the order of the candidates.
 pub struct GenerationResults {
-    /// The evaluations; that of a simulation that panicked is void.
+    /// Evaluations. The evaluation of a simulation that panicked is void.
     pub evaluations: Vec<Evaluation>,
-    /// The experience of the episodes, as far as a strategy learns from it.
+    /// Episodes from which the strategy learns; `None` where it learns from none.
     pub episodes: Vec<Option<Episode>>,
-    /// The messages of panics.
+    /// Messages of panics; `None` for individuals without a panic.
     pub messages: Vec<Option<String>>,
 }
 
-/// Evaluates the candidates whose results are not known yet, and calls `record` with each new result.
+/// Evaluates the candidates without a known result, and calls `record` with each new evaluation.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn evaluate(
     candidates: &[Candidate],
     trials: &GenerationTrials,
@@ -45,7 +45,7 @@ pub fn evaluate(
         if results[index].set(result).is_err() {
             return;
         }
-        // A crash is not recorded: after a resume it is tried again, perhaps by a corrected program.
+        // A crash is not recorded: a resumed run tries the simulation again, perhaps with a corrected program.
         if let Some(evaluation) = evaluation {
             record(index as u32, &evaluation);
         }

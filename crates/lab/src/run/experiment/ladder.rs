@@ -1,26 +1,26 @@
-//! The ladder of a run: which rise its next generation has.
+//! The ladder of a run, which decides the rise of the stairs in each generation.
 
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{GenerationRecord, LadderSettings, Rung, Settings};
 use snakes_core::score::{Evaluation, ExamEnd, Trial};
 
-/// The place on a ladder, between two generations.
+/// Position on a ladder, between two generations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ladder {
     settings: LadderSettings,
-    /// The number of the rung; the lowest is 0.
+    /// Number of the current rung; the lowest is 0.
     rung: u32,
-    /// The rise of the stairs to which the ladder leads, in m.
+    /// Rise of each step of the stairs to which the ladder leads, in m.
     goal_m: f32,
-    /// Generations since the last success or the last change of the rung.
+    /// Number of generations since the last success or the last change of the rung.
     barren: u32,
 }
 
 impl Ladder {
-    /// The ladder of a run after the generations of its log; none without one.
+    /// Returns the ladder of a run after the generations of its log, or `None` if the run has no ladder.
     ///
     /// # Errors
-    /// A generation of the log was not on the rung that follows from those before it.
+    /// A generation of the log has another rung than the one that follows from the generations before it.
     pub fn after(
         settings: &Settings,
         records: &[GenerationRecord],
@@ -42,26 +42,26 @@ impl Ladder {
         Ok(ladder)
     }
 
-    /// The ladder at the beginning of a run; none without one.
+    /// Returns the ladder at the beginning of a run, or `None` if the run has no ladder.
     pub fn begin(settings: &Settings) -> Option<Self> {
         let ladder = settings.evolution.ladder;
         let goal_m = settings.trial.stairs.step_rise_m(0);
         ladder.is_used().then_some(Self { settings: ladder, rung: 0, goal_m, barren: 0 })
     }
 
-    /// The rise of the stairs of the next generation, in m.
+    /// Returns the rise of each step in the next generation, in m.
     pub fn rise_m(&self) -> f32 {
-        // To a tenth of a millimetre: 0.45 m, not 0.45000002.
+        // Rounding to a tenth of a millimetre gives 0.45 m instead of 0.45000002 m.
         let rise_m = self.settings.first_rise_m + self.rung as f32 * self.settings.step_m;
         (libm::roundf(rise_m * 1.0e4) / 1.0e4).min(self.goal_m)
     }
 
-    /// A trial on the stairs of the next generation.
+    /// Returns a trial on the stairs of the next generation.
     pub fn trial(&self, trial: Trial) -> Trial {
         Rung { rise_m: self.rise_m(), successes: 0 }.on(trial)
     }
 
-    /// The rung of a generation with these evaluations in this trial.
+    /// Returns the rung of a generation with these evaluations in this trial, including its number of successes.
     pub fn rung_of(&self, evaluations: &[Evaluation], trial: &Trial) -> Rung {
         let succeeds =
             |evaluation: &&Evaluation| ExamEnd::way_of(evaluation, trial) >= self.settings.way;
@@ -69,7 +69,7 @@ impl Ladder {
         Rung { rise_m: self.rise_m(), successes }
     }
 
-    /// Takes in how many of a generation's individuals succeeded.
+    /// Moves up, down or not at all, after `successes` of a generation's `evaluations` reached the required way.
     pub fn tell(&mut self, successes: u32, evaluations: u32) {
         let is_climbed = successes as f32 >= self.settings.share * evaluations as f32;
         if is_climbed && self.rise_m() < self.goal_m {

@@ -45,7 +45,7 @@ fn a_cancelled_generation_leaves_the_experiment_as_it_was() {
     assert_eq!(experiment.run_hash(), hash_with(1, 1));
 }
 
-/// Fails on one genome, leaves out another, and reports in descending order.
+/// An evaluator that panics on one genome, leaves out another, and reports in descending order.
 #[derive(Debug)]
 struct TestEvaluator {
     fails_on: Genome,

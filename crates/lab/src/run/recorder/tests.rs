@@ -21,7 +21,7 @@ fn source(folder: &Path, earlier: ExistingRun) -> RunSource {
     RunSource::in_saves(&SavesFolder::find(Some(folder)), plan(), earlier)
 }
 
-/// Evolves `generations` of a recorded run, or to its end.
+/// Evolves a recorded run for `generations` or to its end, whichever comes first.
 fn evolve(run: &mut RecordedRun, generations: u32) {
     let evaluator = LocalPool::new(2).expect("threads");
     let control = RunControl::default();
@@ -38,7 +38,7 @@ fn evolve(run: &mut RecordedRun, generations: u32) {
     }
 }
 
-/// Two kinds of controllers for a strategy of genes; for others, their own.
+/// Returns two kinds of controllers for strategies that allow them, and all allowed kinds for others.
 fn controllers_of(strategy: StrategyKind) -> Vec<ControllerKind> {
     let all: Vec<ControllerKind> = strategy.controllers().collect();
     let usual = [ControllerKind::Signal, ControllerKind::Gait];
@@ -54,7 +54,7 @@ fn uninterrupted(plan: &RunPlan) -> Experiment {
     experiment
 }
 
-/// The names of all files of a folder, hidden ones included, sorted.
+/// Returns the sorted names of all files in a folder, including hidden ones.
 fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let names = entries.map(|entry| entry.expect("an entry").file_name());
@@ -226,10 +226,10 @@ fn damaged_evaluations_of_the_current_generation_are_ignored() {
     assert_eq!(again.experiment.run_hash(), uninterrupted(&plan()).run_hash());
 }
 
-/// A generation, and the setting to change before it, and its value.
+/// A generation, the setting that changes before it, and the new value.
 type PlannedChange = (u32, &'static str, &'static str);
 
-/// Changes of a run of each method.
+/// Changes of settings in a run of each strategy.
 const CHANGES: [(StrategyKind, &[PlannedChange]); 6] = [
     (
         StrategyKind::Halving,
@@ -261,7 +261,7 @@ fn changing_plan(strategy: StrategyKind) -> RunPlan {
     plan
 }
 
-/// Changes a setting of a recorded run, by its full dotted name, to the value that a text says.
+/// Changes a setting of a recorded run, given by its full dotted name, to the value in `text`.
 fn change(
     run: &mut RecordedRun,
     field: &str,
@@ -272,8 +272,7 @@ fn change(
     run.recorder.change_setting(&mut run.experiment, field, value)
 }
 
-/// Evolves a recorded run to its end or to the end of a generation, and makes those changes that it does not have
-/// yet.
+/// Evolves a recorded run to its end or to the end of generation `last`, and makes the changes that it does not have yet.
 fn evolve_changing(run: &mut RecordedRun, changes: &[PlannedChange], last: u32) {
     while !run.experiment.is_over() && run.experiment.finished() < last {
         let next = run.experiment.finished() + 1;
@@ -402,7 +401,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
     let source =
         RunSource::in_saves(&SavesFolder::find(Some(saves.path())), plan, ExistingRun::Keep);
     let (field, notes) = ("evolution.halving.mutation_range_nm", "evaluations.jsonl");
-    // A run with the change from the beginning of the second generation.
+    // One run has the change from the beginning of its second generation.
     let other = tempfile::tempdir().expect("a folder");
     let mut straight = RunSource { folder: other.path().to_owned(), ..source.clone() }
         .open("a test")
@@ -410,7 +409,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
     evolve(&mut straight, 1);
     change(&mut straight, field, "700").expect("allowed");
     evolve(&mut straight, 1);
-    // A run with saved evaluations of another second generation.
+    // Another run has saved evaluations of its second generation from before the change.
     let mut run = source.clone().open("a test").expect("opened");
     evolve(&mut run, 1);
     let mut old = source.clone();
@@ -435,7 +434,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
     let folder = run.recorder.folder().to_owned();
     let of_before = fs::read(folder.join(notes)).expect("noted");
     drop(run);
-    // They are known after opening and dropped by the change, also when their file is restored.
+    // The saved evaluations are known after opening. The change drops them, even when their file is restored.
     let mut run = source.clone().open("a test").expect("opened");
     change(&mut run, field, "700").expect("allowed");
     drop(run);
@@ -483,7 +482,7 @@ fn a_run_with_a_founder_continues_bit_for_bit_and_differs_from_one_without() {
             assert_continues_after_any_stop(&founded);
             let saves = SavesFolder::find(Some(Path::new("x")));
             assert_ne!(saves.of_run(&founded), saves.of_run(&plan), "a folder of its own");
-            // It is read back from its folder unchanged.
+            // The plan is read back unchanged from its folder.
             let folder = tempfile::tempdir().expect("a folder");
             let saves = SavesFolder::find(Some(folder.path()));
             let source = RunSource::in_saves(&saves, founded, ExistingRun::Keep);

@@ -7,8 +7,7 @@ use snakes_core::schema::Choices;
 use snakes_core::score::Fitness;
 use snakes_core::world::PhysicsEngine;
 
-/// A case: its description; seed, population and generations; and its changes to the preset `report`, as `--set` takes
-/// them.
+/// A case: its description; its seed, population and generations; and its changes to the preset `report`, in the syntax of `--set`.
 type Case = (&'static str, [u32; 3], &'static str);
 
 const CASES: &[Case] = &[
@@ -308,7 +307,7 @@ const CASES: &[Case] = &[
          stairs_children=2; uses_of_stairs=2; first_snakes=4; start_rise_m=0.15; special_steps=false; trial.fitness=share; \
          start_y_m=-3; trial.duration_s=3",
     ),
-    // Many of their joints have asymmetric limits.
+    // Many joints of these creatures have asymmetric limits.
     (
         "creatures",
         [3, 12, 4],
@@ -381,10 +380,10 @@ const CASES: &[Case] = &[
     ),
 ];
 
-/// Presets in lanes whose worlds are computed in rapier, too.
+/// Presets with the engine `lanes` whose worlds are also computed in rapier.
 const ALSO_IN_RAPIER: [&str; 4] = ["climb", "rubber", "mud", "trampoline"];
 
-/// The runs whose bits are compared, with their descriptions: the cases, each kind of fitness, each shipped preset.
+/// Returns the runs whose bits are compared, with their descriptions: the cases, each kind of fitness, and the shipped presets.
 ///
 /// # Errors
 /// An embedded preset or a case is broken, which a test rules out.
@@ -404,16 +403,17 @@ pub fn golden_plans() -> Result<Vec<(String, RunPlan)>, VerifyError> {
         settings.check()?;
         plans.push((what.to_owned(), RunPlan::new("verify", seed.into(), settings)));
     }
-    // Each has its own seed: presets that differ only in the size of their runs would compute the same bits.
+    // Each run has another seed. Otherwise presets that differ only in the size of their runs would compute the same bits.
     for (fitness, seed) in Fitness::OPTIONS.iter().copied().zip(100..) {
         let mut settings = report.clone();
         settings.trial.fitness = fitness;
         sized(&mut settings, 6, 2);
         plans.push((format!("fitness {fitness}"), RunPlan::new("verify", seed, settings)));
     }
-    // A new preset comes last in their list: a seed, once given, stays. Those of controllers that sense their surroundings
-    // have the world of the first, and their families have cases above: emulated processors take minutes for each second.
-    // That of evolving bodies has this world, too, and one of its generations is larger than a case.
+    // Seeds follow the order of the presets, so a new preset must come last to keep the others' seeds. Presets with controllers
+    // that sense their surroundings are left out: their worlds equal the first preset's, their controllers have cases above, and
+    // emulated processors would take minutes. The preset of evolving bodies is left out because one of its generations is larger
+    // than a case.
     let of_worlds = |preset: &Preset| {
         let genome = &preset.settings.genome;
         !genome.controller.senses_surroundings() && !genome.bodies.vary

@@ -1,6 +1,6 @@
-//! Points drawn from ranges: random streams, logarithms and exponentials decide bits, too.
+//! Points drawn at random from ranges, because random streams, logarithms and exponentials decide bits, too.
 //!
-//! The ranges are those of the search that once found the settings of the preset `report`.
+//! The ranges are those of a search for the settings of the preset `report`.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -9,7 +9,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 use snakes_core::evolve::Settings;
 use snakes_core::rng::{Purpose, stream};
 
-/// The least and greatest value of each coordinate.
+/// Least and greatest value of each coordinate.
 const RANGES: [(f32, f32); 9] = [
     (2.0, 12.0),
     (1.0, 60.0),
@@ -22,10 +22,10 @@ const RANGES: [(f32, f32); 9] = [
     (0.0, 3.0),
 ];
 
-/// Name of the points.
+/// Description of these points in the list of computations.
 pub const DRAWN_POINTS: &str = "100 points of the search for settings";
 
-/// Hash over twenty streams: the default settings' point, then four drawn ones.
+/// Returns a hash over twenty streams. Each has the point of the default settings, then four drawn points.
 pub fn hash_of_drawn_points() -> u64 {
     let mut hash = Xxh3Default::new();
     let mut add = |value: f32| hash.update(&value.to_bits().to_le_bytes());
@@ -55,7 +55,7 @@ fn default_point() -> [f32; 9] {
     ]
 }
 
-/// Evenly by ratio; where the range begins at 0, 0 or evenly.
+/// Draws a value evenly on a logarithmic scale. If the range begins at 0, draws either 0 or evenly.
 fn drawn(least: f32, most: f32, rng: &mut ChaCha8Rng) -> f32 {
     let value = if least > 0.0 {
         libm::expf(rng.random_range(libm::logf(least)..=libm::logf(most)))

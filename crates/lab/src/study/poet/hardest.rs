@@ -20,7 +20,7 @@ pub(super) const HARDEST: usize = 5;
 /// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
 ///
 /// # Errors
-/// [`Cancelled`], if `control` was.
+/// [`Cancelled`], if `control` was cancelled.
 pub fn hardest_stairs(
     plan: &RunPlan,
     tree: &StairsTree,

@@ -103,7 +103,7 @@ fn a_run_of_rules_stopped_within_a_generation_takes_over_the_same_waves() {
         let saves = tempfile::tempdir().expect("a folder");
         let mut run = source(saves.path()).open("a test").expect("opened");
         evolve(&mut run, 2);
-        // The uses of waves in the third generation come from the evaluations that were written before the stop.
+        // The uses of waves in the third generation come from the evaluations that were saved before the stop.
         let (evaluator, control) = (LocalPool::new(1).expect("threads"), RunControl::default());
         let recorder = &run.recorder;
         let note = |generation, individual, evaluation: &Evaluation| {
