@@ -1,7 +1,7 @@
-//! Meshes of limbs, stairs and their fittings, for the window and for animated scenes.
+//! Meshes of limbs, stairs and fittings, for the window and for animated scenes.
 //!
-//! A mesh consists of a few curved patches that form one body. Bodies are closed or flat. Triangles are counterclockwise
-//! seen from outside.
+//! A mesh consists of a few curved patches that form one body. Bodies are closed or flat. Triangles are counterclockwise seen from
+//! outside.
 
 mod eyes;
 mod rounded_box;
@@ -13,32 +13,32 @@ use snakes_core::world::Vector;
 
 pub use eyes::Eyes;
 
-/// Radius of the edges of a rigid limb, as a fraction of its smallest side.
+/// Radius of the edges of a rigid limb, as a share of its smallest side.
 pub const LIMB_EDGE: f32 = 0.2;
 
-/// Vertices and triangles of a body.
+/// Builder for the vertices and triangles of a mesh.
 #[derive(Debug, Clone, Default)]
 pub struct MeshBuilder {
-    /// Places of the vertices, in metres.
+    /// Positions of the vertices, in metres.
     pub positions: Vec<Vector>,
     /// Normal of each vertex.
     pub normals: Vec<Vector>,
-    /// Three vertices for each triangle.
+    /// Indices of the vertices, three for each triangle.
     pub indices: Vec<u32>,
-    /// Factor for the material's colour at each vertex.
+    /// Factor on the material's colour at each vertex.
     tones: Vec<Vector>,
-    /// Factor for the vertices that follow; `None` leaves the material's colour as it is.
+    /// Factor for the vertices that are added next; `None` leaves the material's colour unchanged.
     tone: Option<Vector>,
 }
 
-/// Sides of cylinders: enough for something as thick as an arm.
+/// Number of sides of a cylinder.
 const SIDES: usize = 14;
-/// Distance from a plane within which a corner counts as on it, in metres.
+/// Distance from a plane within which a corner counts as on the plane, in metres.
 const SLIVER_M: f32 = 1.0e-4;
 
 impl MeshBuilder {
-    /// A patch of `columns` by `rows` cells. `at` gives the position and normal of a corner. Seen from outside, rows go
-    /// up if columns go to the right.
+    /// Adds a patch of `columns` by `rows` cells. `at` gives the position and normal of a corner. Seen from outside, rows go up if
+    /// columns go to the right.
     pub fn patch(&mut self, columns: usize, rows: usize, at: impl Fn(usize, usize) -> [Vector; 2]) {
         let first = self.positions.len() as u32;
         for row in 0..=rows {
@@ -59,19 +59,19 @@ impl MeshBuilder {
         }
     }
 
-    /// Multiplies the material's colour, in linear light, for the parts that follow.
+    /// Sets the factor on the material's colour, in linear light, for the vertices that are added next.
     pub fn tone(&mut self, factor: Vector) {
         self.tone = Some(factor);
     }
 
-    /// A flat rectangle around `centre`; `right` and `up` lead from there to the middle of its edges.
+    /// Adds a flat rectangle around `centre`. `right` and `up` lead from the centre to the middle of two edges.
     pub fn sheet(&mut self, centre: Vector, right: Vector, up: Vector) {
         let normal = right.cross(up).normalize_or_zero();
         let share = |of: usize| of as f32 * 2.0 - 1.0;
         self.patch(1, 1, |column, row| [centre + right * share(column) + up * share(row), normal]);
     }
 
-    /// A flat triangle, whose corners are counterclockwise seen from outside.
+    /// Adds a flat triangle. Its corners are counterclockwise seen from outside.
     pub fn triangle(&mut self, corners: [Vector; 3]) {
         let first = self.positions.len() as u32;
         let [a, b, c] = corners;
@@ -81,7 +81,7 @@ impl MeshBuilder {
         self.indices.extend([first, first + 1, first + 2]);
     }
 
-    /// A cylinder between two points.
+    /// Adds a closed cylinder between two points.
     pub fn cylinder(&mut self, from: Vector, to: Vector, radius: f32) {
         let axis = (to - from).normalize_or_zero();
         let (right, up) = axis.any_orthonormal_pair();
@@ -95,7 +95,7 @@ impl MeshBuilder {
         self.patch(SIDES, 1, |side, end| [from + out(side) * radius * end as f32, -axis]);
     }
 
-    /// A sphere of this many sides, without the triangles at its poles that have no area.
+    /// Adds a sphere with this number of sides, without the triangles at its poles, which have no area.
     pub fn ball(&mut self, centre: Vector, radius: f32, sides: usize) {
         let (rows, first) = (sides / 2, self.indices.len());
         self.patch(sides, rows, |side, row| {
@@ -112,7 +112,7 @@ impl MeshBuilder {
         self.indices.extend(triangles.as_chunks().0.iter().filter(has_area).flatten());
     }
 
-    /// A box of a size, edges included, around a centre. A box that is too thin gets a smaller radius.
+    /// Adds a box around `centre`. `size` includes the rounded edges. A box that is too thin gets a smaller radius.
     pub fn rounded_box(&mut self, centre: Vector, size: Vector, radius: f32, edge_cells: usize) {
         let rounded = RoundedBox::new(size, radius, edge_cells);
         for face in RoundedBox::faces() {
@@ -123,13 +123,14 @@ impl MeshBuilder {
         }
     }
 
-    /// Factors for the material's colour at each vertex, red, green, blue and opacity, if a part has one.
+    /// Returns the factor on the material's colour at each vertex (red, green, blue, and 1 for opacity), or `None` if no vertex was
+    /// toned.
     pub fn colors(&self) -> Option<Vec<[f32; 4]>> {
         self.tone?;
         Some(self.tones.iter().map(|tone| tone.extend(1.0).to_array()).collect())
     }
 
-    /// The enclosed volume of a closed body, in m³. Triangles that face inward count negative.
+    /// Returns the volume that a closed body encloses, in m³. Triangles that face inward reduce it.
     pub fn volume_m3(&self) -> f32 {
         let of_triangle = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
@@ -145,7 +146,7 @@ impl MeshBuilder {
         for corners in triangles {
             let side = |corner: u32| self.positions[corner as usize].y - y_m;
             let sides = corners.map(side);
-            // The corner that is alone on its side of the plane.
+            // Finds the corner that is alone on its side of the plane.
             let alone = (0..3).find(|&corner| {
                 let [own, next, last] = [0, 1, 2].map(|step| sides[(corner + step) % 3]);
                 (own > SLIVER_M && next < -SLIVER_M && last < -SLIVER_M)
@@ -169,7 +170,7 @@ impl MeshBuilder {
         self.indices = cut;
     }
 
-    /// Adds the vertex at `y_m` between two others, and returns its index.
+    /// Adds a vertex at `y_m` between two others, and returns its index.
     fn vertex_between(&mut self, from: u32, to: u32, y_m: f32) -> u32 {
         let [from, to] = [from as usize, to as usize];
         let [start, end] = [self.positions[from], self.positions[to]];
@@ -186,7 +187,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// Asserts that no edge is open and that every triangle faces outward. Returns the enclosed volume.
+    /// Asserts that the mesh has no open edge and that every triangle faces outward. Returns the enclosed volume.
     fn closed_volume_m3(solid: &MeshBuilder) -> f32 {
         let place = |corner: u32| {
             solid.positions[corner as usize].to_array().map(|x| (x * 1.0e4).round() as i64)

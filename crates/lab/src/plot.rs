@@ -1,4 +1,4 @@
-//! Charts as data, and as pictures and tables; and texts on pictures.
+//! Charts as data, as pictures and as tables; and texts on pictures.
 
 mod canvas;
 mod colors;
@@ -25,7 +25,7 @@ pub use paint::figure;
 pub use signal::signal;
 pub use ticks::{tick_step, tick_text};
 
-/// Writes a line of text onto a picture, on a band along its lower edge.
+/// Writes a line of text onto a picture, on a dark band along its lower edge.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -40,22 +40,22 @@ pub fn caption(picture: &mut Picture, text: &str) -> Result<(), PlotError> {
     })
 }
 
-/// A label on a picture.
+/// A label for a point of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NameTag {
-    /// Its text.
+    /// Text of the label.
     pub text: String,
-    /// Middle of its lower edge, in pixels from the picture's top left.
+    /// Middle of the label's lower edge, in pixels from the picture's top left.
     pub at: (f32, f32),
 }
 
-/// Writes labels onto a picture, each on a light background above its point. A label that would cover another is moved
-/// above it.
+/// Writes labels onto a picture, each on a light background above its point. A label that would cover another one is moved up above
+/// it.
 ///
 /// # Errors
 /// The plotting library failed.
 pub fn tags(picture: &mut Picture, tags: &[NameTag]) -> Result<(), PlotError> {
-    // The size of a label on a screen of this height.
+    // Height of the text, in pixels, which grows with the height of the picture.
     let pixels = (picture.height / 48).clamp(12, 40);
     draw_on(picture, |area| {
         let style = (FONT, pixels).into_font().color(&INK);

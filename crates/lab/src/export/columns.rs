@@ -1,23 +1,23 @@
-//! The columns of the table of motion: one row for each limb at each step.
+//! Columns of the table of motion, which has one row for each limb at each step.
 
 use snakes_core::score::Rollout;
 use snakes_core::world::{LimbReading, SnakeReading, Vector};
 
-/// A column of numbers.
+/// A column of the table of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
-    /// Its name, which ends in the unit of its values; a pure number has none.
+    /// Name of the column. It ends in the unit of the values, unless they are pure numbers.
     pub name: &'static str,
-    /// Its meaning.
+    /// Meaning of the values, for users.
     pub meaning: &'static str,
 }
 
-/// A column by its name and meaning.
+/// Makes a column.
 const fn column(name: &'static str, meaning: &'static str) -> Column {
     Column { name, meaning }
 }
 
-/// The columns that say which row this is: whole numbers, but for the champion's name, which is text, and the time.
+/// Columns that identify a row. All are whole numbers, except the champion's name, which is text, and the time.
 pub(super) const KEYS: [Column; 4] = [
     column("champion", "name of the champion"),
     column("step", "number of the physics step; 0 is the start"),
@@ -25,7 +25,7 @@ pub(super) const KEYS: [Column; 4] = [
     column("limb", "number of the limb; the head is 1"),
 ];
 
-/// The columns of values.
+/// Columns with the values of a row.
 pub(super) const VALUES: [Column; 33] = [
     column("x_m", "position of the limb's centre across the stairs"),
     column("y_m", "position towards and up the stairs"),
@@ -65,22 +65,22 @@ pub(super) const VALUES: [Column; 33] = [
     ),
 ];
 
-/// All columns, in their order.
+/// Returns all columns in their order.
 pub fn columns() -> impl Iterator<Item = Column> {
     KEYS.into_iter().chain(VALUES)
 }
 
-/// Reads the values of all limbs at a moment; buffers are reused.
+/// Reads the values of all limbs at the current step of a rollout. Buffers are reused.
 #[derive(Debug, Default)]
 pub(super) struct RowReader {
     readings: Vec<LimbReading>,
 }
 
-/// The values of a row, in the order of [`VALUES`]; none where there is nothing to measure.
+/// Values of a row, in the order of [`VALUES`]; `None` where nothing can be measured.
 pub(super) type RowValues = [Option<f32>; VALUES.len()];
 
 impl RowReader {
-    /// The rows of all limbs, head first.
+    /// Returns the rows of all limbs, head first.
     pub fn rows(&mut self, rollout: &Rollout) -> Vec<RowValues> {
         let world = rollout.simulation();
         world.read_limbs(&mut self.readings);
@@ -115,7 +115,7 @@ impl RowReader {
     }
 }
 
-/// The values of the senses, in units: before they are scaled, filtered and clamped for controllers.
+/// Returns the values of a limb's senses in physical units, before they are scaled, filtered and clamped for controllers.
 fn sensed(limb: &LimbReading, snake: &SnakeReading) -> [Option<f32>; 10] {
     let angle_rad = |sine: f32| libm::asinf(sine.clamp(-1.0, 1.0));
     [

@@ -1,31 +1,31 @@
-//! The errors of exports.
+//! Errors of exports.
 
 use std::path::Path;
 
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 
-/// A champion could not be exported. Nothing is left under the file's name then.
+/// Why a champion could not be exported. The file's name then has no new file.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// The order is not allowed.
+    /// The format, its number of champions, or the file's name is not allowed.
     #[error(transparent)]
     Invalid(#[from] Invalid),
     /// The file could not be written.
     #[error(transparent)]
     Save(#[from] SaveError),
-    /// Films are drawn elsewhere: by the studio.
+    /// The format is a film, which only the studio can draw.
     #[error(
         "a film is drawn by the studio, which this program was built without; choose another format, or build it with the default features"
     )]
     Film,
-    /// The user cancelled it.
+    /// The user cancelled the export.
     #[error("cancelled; nothing was written")]
     Cancelled,
 }
 
 impl ExportError {
-    /// The error that a file cannot be written, from the reason of a library that writes it.
+    /// Returns a function that turns a library's reason into the error that the file at `path` cannot be written.
     pub fn unwritable<E>(path: &Path) -> impl Fn(E) -> Self
     where
         E: Into<Box<dyn std::error::Error + Send + Sync>>,

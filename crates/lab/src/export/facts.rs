@@ -1,14 +1,14 @@
-//! The facts about a champion that stand in the files of other programs.
+//! Facts about a champion that are written into files for other programs.
 
 use serde_json::{Map, Value};
 
 use super::ExportedChampion;
 use snakes_core::Engine;
 
-/// A fact: its name, and its value as text.
+/// A fact about a champion: its name, and its value as text.
 pub(super) type Fact = (&'static str, String);
 
-/// Origin and results of a champion. The seed and the hash are text: not every program reads 64 bits.
+/// Returns origin and results of a champion. Seed and hash are text, because not every program reads integers of 64 bits.
 pub(super) fn facts(ExportedChampion { name, loaded, .. }: &ExportedChampion) -> Vec<Fact> {
     let champion = &loaded.champion;
     let (origin, evaluation) = (&champion.origin, &champion.evaluation);
@@ -27,7 +27,7 @@ pub(super) fn facts(ExportedChampion { name, loaded, .. }: &ExportedChampion) ->
     ]
 }
 
-/// The facts about each champion: a JSON list of objects.
+/// Returns the facts about each champion as a JSON list of objects.
 pub(super) fn facts_as_json(champions: &[ExportedChampion]) -> Value {
     let each = champions.iter().map(|champion| {
         let facts = facts(champion).into_iter();
@@ -36,7 +36,7 @@ pub(super) fn facts_as_json(champions: &[ExportedChampion]) -> Value {
     each.map(Value::from).collect()
 }
 
-/// The program and its version.
+/// Names this program, its version and its engine.
 pub(super) fn generator() -> String {
     format!("snakes-and-stairs {} (engine {})", env!("CARGO_PKG_VERSION"), Engine::THIS)
 }

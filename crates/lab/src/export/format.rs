@@ -1,4 +1,4 @@
-//! The formats, each chosen by the ending of a file's name.
+//! Formats of exports. The ending of a file's name chooses the format.
 
 use std::path::Path;
 
@@ -7,46 +7,46 @@ use snakes_core::check::{Invalid, quoted};
 /// A format in which champions are exported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// A table as text.
+    /// Table of motion as text.
     Csv,
-    /// A table in columns.
+    /// Table of motion in columns.
     Parquet,
-    /// A page that plays and computes.
+    /// Web page that plays champions and evolves them further.
     Html,
-    /// An animated scene.
+    /// Animated 3D scene in binary glTF.
     Glb,
     /// A model of body and stairs for MuJoCo.
     Mjcf,
-    /// A model of the body for ROS and other programs that read it.
+    /// Model of the body for ROS and other programs that read URDF.
     Urdf,
-    /// A film for every player.
+    /// Film for video players.
     Mp4,
     /// A film for web pages, messages and slides.
     Gif,
-    /// A film as a folder of pictures.
+    /// Film as a folder of pictures.
     Png,
 }
 
-/// The facts about a format.
+/// Facts about a format of exports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FormatInfo {
-    /// The ending of its files, without the dot, in lower case.
+    /// Ending of the format's files, without the dot, in lower case.
     pub ending: &'static str,
-    /// Its name in menus.
+    /// Name of the format in menus.
     pub title: &'static str,
-    /// One sentence on its contents and use.
+    /// One sentence on contents and use of the format.
     pub sentence: &'static str,
     /// Maximum number of champions in one file.
     pub most_champions: usize,
-    /// Maximum number of generations of a run, each with its champion.
+    /// Maximum number of generations of an exported run, each with its champion.
     pub most_generations: usize,
 }
 
-/// Maximum number of champions in a film: as many as race on the stage.
+/// Maximum number of champions in a film, which race side by side.
 const MOST_LANES: usize = 10;
 
 impl ExportFormat {
-    /// All formats.
+    /// All formats, in the order of menus.
     pub const ALL: [Self; 9] = [
         Self::Html,
         Self::Mp4,
@@ -59,7 +59,7 @@ impl ExportFormat {
         Self::Urdf,
     ];
 
-    /// Its facts.
+    /// Returns the facts about the format.
     pub const fn info(self) -> FormatInfo {
         match self {
             Self::Csv => FormatInfo {
@@ -128,15 +128,15 @@ impl ExportFormat {
         }
     }
 
-    /// Whether it is a film, which the studio draws.
+    /// Returns whether the format is a film, which the studio draws.
     pub const fn is_film(self) -> bool {
         matches!(self, Self::Mp4 | Self::Gif | Self::Png)
     }
 
-    /// Checks a number of champions that one file has to hold.
+    /// Checks that a file of this format can hold `found` champions.
     ///
     /// # Errors
-    /// There are none, or too many.
+    /// There are no champions, or too many.
     pub fn check_champions(self, found: usize) -> Result<(), Invalid> {
         let FormatInfo { ending, most_champions: most, .. } = self.info();
         let allowed = match most {
@@ -146,10 +146,10 @@ impl ExportFormat {
         check_files((1..=most).contains(&found), format!("{found} champions"), allowed)
     }
 
-    /// Checks a number of a run's generations, each with its champion, that one file has to hold.
+    /// Checks that a file of this format can hold the champions of `found` generations of a run.
     ///
     /// # Errors
-    /// There are none, or too many.
+    /// There are no generations, or too many.
     pub fn check_generations(self, found: usize) -> Result<(), Invalid> {
         let FormatInfo { ending, most_generations: most, .. } = self.info();
         let allowed = match most {
@@ -162,7 +162,7 @@ impl ExportFormat {
         check_files((1..=most).contains(&found), value, allowed)
     }
 
-    /// The format of a file, by the ending of its name.
+    /// Returns the format of a file, by the ending of its name.
     ///
     /// # Errors
     /// No format has this ending.
@@ -177,7 +177,7 @@ impl ExportFormat {
     }
 }
 
-/// The error that the files have this value, unless it is allowed.
+/// Returns an error about `value` if it is not allowed.
 fn check_files(is_allowed: bool, value: String, allowed: String) -> Result<(), Invalid> {
     if is_allowed { Ok(()) } else { Err(Invalid::new("FILES", value, allowed)) }
 }

@@ -1,8 +1,8 @@
-//! The body and its world as a model for MuJoCo (MJCF).
+//! A body and its world as a model for MuJoCo (MJCF).
 //!
-//! A universal joint becomes two hinges in the rear limb, first the bend, then the twist. Lengths, masses, inertias,
-//! limits, damping, torques, friction and stairs are the same; [`left_out`] lists what MJCF cannot say. The joints of a
-//! branching body are at 0 in the middle of their ranges; a key frame has the angles at the start.
+//! A universal joint becomes two hinges of the rear limb, first the bend, then the twist. Lengths, masses, inertias, limits,
+//! damping, torques, friction and stairs are preserved; [`left_out`] lists what MJCF cannot express. The joints of a branching body
+//! are at 0 in the middle of their ranges; a key frame has the angles at the start.
 
 mod tree;
 
@@ -13,18 +13,18 @@ use super::xml_text::{XmlText, spaced};
 use snakes_core::world::{BodyPlan, JointPlan, Rotation, Surface, WorldPlan};
 use tree::{limbs, start};
 
-/// Limit of a hinge that must not move, in rad: MuJoCo demands a range that is not empty.
+/// Limit of a hinge that must not move, in rad. MuJoCo demands a range that is not empty.
 const LOCKED_RAD: f32 = 1.0e-4;
-/// Torque of a motor without torque, in N·m, for the same reason.
+/// Torque limit of a motor without torque, in N·m. MuJoCo demands a range that is not empty.
 const POWERLESS_NM: f32 = 1.0e-6;
-/// MuJoCo's own coefficients of torsional and rolling friction, which contacts of three dimensions ignore.
+/// MuJoCo's default coefficients of torsional and rolling friction, which contacts of three dimensions ignore.
 const OTHER_FRICTION: [f32; 2] = [0.005, 0.0001];
 
-/// Colours of the limbs in turn, and of steps in turn.
+/// Colours of the limbs, which alternate, as red, green and blue from 0 to 1.
 pub(super) const LIMB_COLORS: [[f32; 3]; 2] = [[0.86, 0.13, 0.12], [0.10, 0.27, 0.84]];
 pub(super) const STEP_COLORS: [[f32; 3]; 2] = [[0.72, 0.70, 0.66], [0.62, 0.60, 0.57]];
 
-/// Light, sky and the material of the ground. Two squares in each direction have two metres.
+/// Light, sky and material of the ground, whose squares have sides of one metre.
 const LOOKS: &str = r#"
   <visual>
     <global offwidth="1920" offheight="1080"/>
@@ -37,10 +37,10 @@ const LOOKS: &str = r#"
   </asset>
 "#;
 
-/// The model of a world: ground, stairs and snake, with facts about the champion.
+/// Returns the model of a world: ground, stairs and snake, with facts about the champion.
 ///
 /// # Errors
-/// The XML library's.
+/// The XML library failed.
 pub fn mjcf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> {
     XmlText::document(|xml| {
         xml.element("mujoco", &[("model", name.to_owned())], |xml| {
@@ -60,7 +60,7 @@ pub fn mjcf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
     })
 }
 
-/// Properties of a champion's world that a model for another engine lacks.
+/// Lists the properties of a champion's world that a model for another engine lacks.
 pub(super) fn left_out(plan: &WorldPlan) -> Vec<String> {
     let mut notes = Vec::new();
     let mut note = |applies: bool, text: String| {
@@ -126,7 +126,7 @@ fn settings(xml: &mut XmlText, plan: &WorldPlan, facts: &[Fact]) -> io::Result<(
     Ok(())
 }
 
-/// Length of a step of MuJoCo, in s.
+/// Returns the length of a step of MuJoCo, in s.
 fn step_s(plan: &WorldPlan) -> f64 {
     1.0 / (f64::from(plan.physics.steps_per_s) * f64::from(plan.explicit_steps()))
 }
@@ -143,7 +143,7 @@ fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             ("dir", "-0.5 0.5 -1".into()),
         ],
     )?;
-    // It looks at the middle of the way, with z upwards.
+    // The camera looks at the middle of the way, with z upwards.
     let from = [reach_m, middle_y_m - 0.35 * reach_m, 0.55 * reach_m];
     xml.leaf(
         "camera",
@@ -153,7 +153,7 @@ fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             ("xyaxes", "0.33 0.944 0 -0.4 0.14 0.905".into()),
         ],
     )?;
-    // MuJoCo takes the greater friction of two surfaces; the limbs have none, and the world has the product.
+    // MuJoCo takes the greater friction of two surfaces. The limbs therefore have none, and the world has the product.
     let friction = |surface: &Surface| {
         let [torsional, rolling] = OTHER_FRICTION;
         ("friction", spaced([surface.friction * plan.skin.friction, torsional, rolling]))
@@ -168,7 +168,7 @@ fn surroundings(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             friction(&plan.ground),
         ],
     )?;
-    // A step may consist of several solids, of which only the first has its plain name.
+    // A step may consist of several solids. Only the first of them is named after the step alone.
     let mut last = None;
     for (index, solid) in plan.stairs.solids().iter().enumerate() {
         let number = solid.step + 1;
@@ -199,7 +199,7 @@ fn rgba([red, green, blue]: [f32; 3]) -> String {
     spaced([red, green, blue, 1.0])
 }
 
-/// The position and rotation of the head at the start: the middle of the straight snake has the start's place.
+/// Returns position (in m) and turn about z (in rad) of the head at the start. A straight snake has its middle at the start.
 pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
     let body = &plan.body;
     if body.is_branching() {
@@ -213,7 +213,7 @@ pub(super) fn head_start(plan: &WorldPlan) -> ([f32; 3], f32) {
     ([x_m, y_m, body.axis_height_m()], plan.start_turn_rad)
 }
 
-/// The name of a part: that of its limb, and its number within a soft one.
+/// Returns the name of a part: its limb and, if the limb is soft, the part's number within the limb.
 pub(super) fn part_name(body: &BodyPlan, index: usize) -> String {
     let limb = body.parts[index].limb;
     let parts = body.parts_of(limb);
@@ -221,8 +221,8 @@ pub(super) fn part_name(body: &BodyPlan, index: usize) -> String {
     if parts.len() == 1 { of_limb } else { format!("{of_limb} part {}", index - parts.start + 1) }
 }
 
-/// Joined limbs, the parts of a soft limb, and contact-free pairs do not touch; the others touch with the friction of skin on
-/// skin.
+/// Writes the contacts. Joined limbs, the parts of a soft limb, and contact-free pairs do not touch. All other pairs touch with the
+/// friction of skin on skin.
 fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let body = &plan.body;
     let are_joined =
@@ -255,7 +255,7 @@ fn contacts(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     })
 }
 
-/// The motors: bend and twist of the first joint, of the second, and so on.
+/// Writes the motors: bend and twist of the first joint, of the second joint, and so on.
 fn motors(xml: &mut XmlText, body: &BodyPlan) -> io::Result<()> {
     xml.element("actuator", &[], |xml| {
         for (index, joint) in body.joints.iter().enumerate() {

@@ -1,8 +1,7 @@
 //! Champions in the formats of other programs.
 //!
-//! Each format stands in a file of its own and is written atomically, so that a file
-//! appears under its name only when it is complete. Nothing here reads a clock or depends on the order of threads: the
-//! same champion gives the same bytes.
+//! Each format has a file of its own. Exports are written atomically: a file appears under its name only when it is complete. They
+//! depend neither on a clock nor on the order of threads, so the same champion gives the same bytes.
 
 mod columns;
 mod error;

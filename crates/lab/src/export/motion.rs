@@ -4,10 +4,10 @@ use super::{ExportError, ExportProgress};
 use snakes_core::evolve::Champion;
 use snakes_core::score::Rollout;
 
-/// Steps between two looks at the user's wish to cancel.
+/// Number of steps between two checks whether the user cancelled.
 const STEPS_PER_LOOK: u32 = 64;
 
-/// Simulates a champion and calls `each` at the start and after every healthy step.
+/// Simulates a champion, and calls `each` at the start and after every healthy step.
 pub(super) fn follow(
     champion: &Champion,
     progress: &ExportProgress,

@@ -1,4 +1,4 @@
-//! Orders: champions, a format, and the file to write.
+//! Orders of an export: champions, a format, and the file to write.
 
 use std::path::Path;
 use std::path::PathBuf;
@@ -12,7 +12,7 @@ use super::{ExportError, ExportProgress, gltf, page, table_file};
 use snakes_core::save::store_text;
 use snakes_core::world::WorldPlan;
 
-/// Champions, a format and a file.
+/// An export to be carried out: champions, a format and a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOrder {
     source: ExportSource,
@@ -20,14 +20,14 @@ pub struct ExportOrder {
     path: PathBuf,
 }
 
-/// Writes the model of a world with facts about the champion: `(name, world, facts)`.
+/// Writes the model of a world with facts about the champion. The arguments are `(name, world, facts)`.
 type ModelWriter = fn(&str, &WorldPlan, &[Fact]) -> std::io::Result<String>;
 
 impl ExportOrder {
-    /// Champions for a file whose ending decides the format.
+    /// Creates an export to a file whose ending decides the format.
     ///
     /// # Errors
-    /// No format has this ending, or its files do not hold this number of champions.
+    /// No format has this ending, or its files cannot hold this number of champions.
     pub fn new(source: ExportSource, path: PathBuf) -> Result<Self, ExportError> {
         let format = ExportFormat::of_path("--output", &path)?;
         let found = source.champions.len();
@@ -38,30 +38,30 @@ impl ExportOrder {
         Ok(Self { source, format, path })
     }
 
-    /// The champions.
+    /// Returns the champions.
     pub fn champions(&self) -> &[ExportedChampion] {
         &self.source.champions
     }
 
-    /// The champions, to be changed.
+    /// Returns the champions for changes.
     pub fn champions_mut(&mut self) -> &mut [ExportedChampion] {
         &mut self.source.champions
     }
 
-    /// The format.
+    /// Returns the format.
     pub fn format(&self) -> ExportFormat {
         self.format
     }
 
-    /// The path of the file.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes the file, unless it is a film.
+    /// Writes the file, unless the format is a film.
     ///
     /// # Errors
-    /// It cannot be written, it is a film, or the user cancelled.
+    /// The file cannot be written, the format is a film, or the user cancelled.
     pub fn carry_out(&self, progress: &ExportProgress) -> Result<(), ExportError> {
         let Self { source, format, path } = self;
         let champions = &source.champions;
@@ -76,7 +76,7 @@ impl ExportOrder {
         }
     }
 
-    /// Writes the text of a model of the only champion.
+    /// Writes the model of the champion as text. Formats of models hold a single champion.
     fn write_models(
         &self,
         model: ModelWriter,

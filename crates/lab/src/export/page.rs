@@ -1,8 +1,7 @@
-//! A page that plays champions in a browser, simulates them again, and goes on evolving them.
+//! A web page that plays champions, simulates them again, and evolves them further.
 //!
-//! The page is one file: its script, its style, the core as WebAssembly, and the data. It asks nothing of a network, and
-//! names from files reach it as text only: in its data as JSON without `<`, in its markup with every special character
-//! escaped.
+//! The page is one file: its script, its style, the core as WebAssembly, and the data. It makes no network requests. Names from
+//! files appear only as text: in the data as JSON without `<`, in the markup with every special character escaped.
 
 mod data;
 mod drawing;
@@ -21,9 +20,9 @@ use data::PageData;
 use snakes_core::ENGINE_VERSION;
 use snakes_core::save::store_text;
 
-/// The core as a WebAssembly module, which `web/build` makes.
+/// The core as a compressed WebAssembly module, made by `web/build`.
 const CORE: &[u8] = include_bytes!("../../../../assets/page-core.wasm.gz");
-/// The parts of the script, in their order.
+/// Parts of the script, in their order.
 const SCRIPT: [&str; 6] = [
     include_str!("../../../../web/page/scene.js"),
     include_str!("../../../../web/page/motion.js"),
@@ -35,7 +34,7 @@ const SCRIPT: [&str; 6] = [
 const STYLE: &str = include_str!("../../../../web/page/page.css");
 const TEMPLATE: &str = include_str!("../../../../web/page/page.html");
 
-/// Writes a page with champions, which race on one stage, or with a run, whose champions are shown one at a time.
+/// Writes a page with champions that race on one stage, or with a run whose champions are shown one at a time.
 pub(super) fn write_page(
     source: &ExportSource,
     path: &Path,
@@ -45,16 +44,16 @@ pub(super) fn write_page(
     Ok(store_text(path, &page(source, &data))?)
 }
 
-/// The text of the page.
+/// Returns the text of the page.
 fn page(source: &ExportSource, data: &PageData) -> String {
     filled(TEMPLATE, &parts(source, data))
 }
 
-/// The names in the template, each with the text that takes its place.
+/// Returns the names in the template, each with the text that replaces it.
 fn parts(source: &ExportSource, data: &PageData) -> [(&'static str, String); 12] {
     let script = format!("\n\"use strict\";\n{}", SCRIPT.concat());
     let hash = format!("sha256-{}", STANDARD.encode(Sha256::digest(script.as_bytes())));
-    // In a script's text, `<` could end the element or begin a comment.
+    // Within a script element, `<` could end the element or begin a comment.
     let json = serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c");
     [
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -72,8 +71,8 @@ fn parts(source: &ExportSource, data: &PageData) -> [(&'static str, String); 12]
     ]
 }
 
-/// A template with its `{{name}}`s filled in. The texts that take their places are not searched again; a test makes sure
-/// that the page's template has no other names.
+/// Replaces each `{{name}}` of a template by its text. The inserted texts are not searched for names. A test checks that the page's
+/// template has no unknown names.
 fn filled(template: &str, parts: &[(&str, String)]) -> String {
     let mut text = String::new();
     let mut rest = template;
@@ -97,7 +96,7 @@ mod tests {
     fn every_name_in_the_template_has_its_text_and_every_text_its_name() {
         let mut loaded = shipped_champion().expect("well formed");
         loaded.champion.trial.duration_s = 0.5;
-        // A name that looks like a part of the template stays a name.
+        // A champion's name that looks like a placeholder must stay a name.
         let name = "{{core}}".to_owned();
         let champion = ExportedChampion { name, file: "a.ron".into(), loaded, note: None };
         let source = ExportSource { champions: vec![champion], run: None };

@@ -3,29 +3,29 @@
 use super::ExportError;
 use crate::run::RunControl;
 
-/// Shows the progress of an export, and asks whether to go on.
+/// Shows the progress of an export, and checks whether it was cancelled.
 #[derive(Clone, Copy)]
 pub struct ExportProgress<'p> {
     show: &'p dyn Fn(f64),
     control: &'p RunControl,
-    /// Start and end of the present part, as shares of the whole.
+    /// Start and end of the current part, as shares of the whole.
     part: [f64; 2],
 }
 
 impl<'p> ExportProgress<'p> {
-    /// Progress that is shown by `show`, as a share of the whole from 0 to 1, until `control` is cancelled.
+    /// Creates a progress from 0 to 1, which `show` displays, until `control` is cancelled.
     pub fn new(show: &'p dyn Fn(f64), control: &'p RunControl) -> Self {
         Self { show, control, part: [0.0, 1.0] }
     }
 
-    /// The progress of part number `index` of `count` equal parts.
+    /// Returns the progress of part number `index` of `count` equal parts.
     pub fn part(&self, index: usize, count: usize) -> Self {
         let [start, end] = self.part;
         let at = |index: usize| start + (end - start) * index as f64 / count.max(1) as f64;
         Self { part: [at(index), at(index + 1)], ..*self }
     }
 
-    /// Shows that a share of this part is done.
+    /// Reports that `share` of this part is done, from 0 to 1.
     ///
     /// # Errors
     /// [`ExportError::Cancelled`], if the user cancelled the export.

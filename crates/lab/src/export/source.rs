@@ -1,4 +1,4 @@
-//! Champions and runs that are exported, read from files.
+//! Champions and runs to be exported, read from files.
 
 use std::path::{Path, PathBuf};
 
@@ -9,55 +9,55 @@ use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{LoadedChampion, load_champion_and_note, load_log, load_run};
 use snakes_core::score::evaluate;
 
-/// A champion with the name under which it appears.
+/// A champion, and the name under which it appears in the export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportedChampion {
-    /// The name of its file without the ending, or of its generation in a run.
+    /// Name of the champion's file without its ending, or of its generation in a run.
     pub name: String,
-    /// The file that it was read from.
+    /// File from which the champion was read.
     pub file: PathBuf,
-    /// The champion.
+    /// The champion as it was loaded.
     pub loaded: LoadedChampion,
-    /// The comment of its user in the file.
+    /// Comment of the user in the champion's file.
     pub note: Option<String>,
 }
 
 impl ExportedChampion {
-    /// Replaces a record that the champion does not replay to by the result that it has here.
+    /// Simulates the champion and replaces its record by the result: for records of other engines.
     pub fn take_result_of_this_engine(&mut self) {
         let LoadedChampion { champion, engine, recording, exam } = &mut self.loaded;
         champion.evaluation = evaluate(&champion.genome, &champion.trial);
-        // Engine and recording belong to the replaced record.
+        // Engine, recording and exam belong to the replaced record.
         (*engine, *recording) = (Engine::THIS, None);
         exam.clear();
     }
 }
 
-/// The run that all exported champions come from.
+/// The run from which all exported champions come.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportedRun {
-    /// Its plan after all its changes.
+    /// Plan of the run after all its changes.
     pub plan: RunPlan,
-    /// Its finished generations.
+    /// Records of the finished generations.
     pub records: Vec<GenerationRecord>,
-    /// The generation of each champion; the first is 1.
+    /// Generation of each champion; the first generation is 1.
     pub generations: Vec<u32>,
 }
 
-/// Champions, and their run if they were read from its folder.
+/// Champions to be exported, and their run if they were read from its folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportSource {
-    /// The champions.
+    /// The champions, in the order of the export.
     pub champions: Vec<ExportedChampion>,
-    /// The run.
+    /// The run of the champions; `None` if they come from single files.
     pub run: Option<ExportedRun>,
 }
 
 impl ExportSource {
-    /// Reads champions from files, or those of all generations from the folder of a run.
+    /// Reads champions from files, or from the folder of a run the champions of all its generations.
     ///
     /// # Errors
-    /// A file cannot be used, or a folder is given beside something else.
+    /// A file cannot be used, or a folder is given together with something else.
     pub fn read(files: &[PathBuf]) -> Result<Self, ExportError> {
         if let Some(folder) = files.iter().find(|file| file.is_dir()) {
             if files.len() > 1 {
@@ -71,7 +71,7 @@ impl ExportSource {
         let mut champions: Vec<ExportedChampion> = Vec::with_capacity(files.len());
         for file in files {
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-            // Tables are grouped by name, so files of equal names in two folders get numbers.
+            // Tables are grouped by name, so equal names of files in different folders get numbers.
             let is_free = |name: &String| champions.iter().all(|other| other.name != *name);
             let numbered = (2..=files.len() + 1).map(|number| format!("{stem} ({number})"));
             let name = std::iter::once(stem.to_string()).chain(numbered).find(is_free);

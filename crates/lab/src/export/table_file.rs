@@ -18,20 +18,20 @@ use super::{ExportError, ExportProgress, ExportedChampion};
 use snakes_core::save::UnfinishedFile;
 use snakes_core::score::Rollout;
 
-/// Rows that are held in memory and become one group of a Parquet file.
+/// Number of rows that are held in memory and become one group of a Parquet file.
 const ROWS_PER_GROUP: usize = 100_000;
 
-/// The columns that say which row it is: see [`KEYS`].
+/// The columns that identify a row: see [`KEYS`].
 #[derive(Debug, Clone, Copy)]
 struct RowKey<'n> {
     champion: &'n str,
     step: u32,
     time_s: f64,
-    /// The head is 1.
+    /// Number of the limb; the head is 1.
     limb: u32,
 }
 
-/// Sends the rows of all champions, one after the other.
+/// Simulates all champions, one after the other, and calls `send_row` with each row.
 fn send_rows(
     champions: &[ExportedChampion],
     progress: &ExportProgress,
@@ -53,7 +53,7 @@ fn send_rows(
     Ok(())
 }
 
-/// Writes a table as CSV. Numbers have as many digits as their bits need; a value that is not there is empty.
+/// Writes a table as CSV. Numbers have as many digits as their bits need. A missing value is an empty cell.
 pub(super) fn write_csv(
     champions: &[ExportedChampion],
     path: &Path,
@@ -74,7 +74,7 @@ pub(super) fn write_csv(
     Ok(file.finish()?)
 }
 
-/// The error that a CSV file cannot be written.
+/// Returns a function that turns a CSV error into the error that the file at `path` cannot be written.
 fn of_csv(path: &Path) -> impl Fn(csv::Error) -> ExportError {
     move |error| {
         let text = error.to_string();
@@ -85,11 +85,11 @@ fn of_csv(path: &Path) -> impl Fn(csv::Error) -> ExportError {
     }
 }
 
-/// Key of the metadata with the facts about each champion, as JSON.
+/// Key of the file's metadata that has the facts about each champion as JSON.
 const CHAMPIONS: &str = "champions";
 
-/// Writes a table as Parquet: columns of 32-bit floats, in groups of [`ROWS_PER_GROUP`] rows, with the columns' meanings
-/// and facts about the champions as metadata of the file.
+/// Writes a table as Parquet: columns of 32-bit floats, in groups of [`ROWS_PER_GROUP`] rows. The file's metadata has the meanings
+/// of the columns and facts about the champions.
 pub(super) fn write_parquet(
     champions: &[ExportedChampion],
     path: &Path,
@@ -101,10 +101,10 @@ pub(super) fn write_parquet(
     let about = KeyValue::new(CHAMPIONS.to_owned(), facts_as_json(champions).to_string());
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
-        // The program's name and version; the library's own would change with each update of it.
+        // Name and version of this program. The library's own text would change with each update of the library.
         .set_created_by(concat!("snakes-and-stairs version ", env!("CARGO_PKG_VERSION")).to_owned())
         .set_key_value_metadata(Some(meanings.chain([about]).collect()))
-        // Neighbouring steps differ in few bits of a float, and the bytes of equal weight resemble each other.
+        // Splitting floats by bytes compresses better, because neighbouring steps differ in few bits.
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
         .set_column_dictionary_enabled(KEYS[0].name.into(), true)
         .set_dictionary_enabled(false)
@@ -136,7 +136,7 @@ struct RowGroup {
     steps: Vec<i32>,
     times_s: Vec<f64>,
     limbs: Vec<i32>,
-    /// For each column the values that are there, and for each row 1 if its value is there, else 0.
+    /// For each column its present values, and for each row 1 if the value is present, else 0.
     values: Vec<(Vec<f32>, Vec<i16>)>,
 }
 
@@ -153,7 +153,7 @@ impl Default for RowGroup {
 }
 
 impl ParquetTable<'_> {
-    /// Takes a row, and writes those that are held once they make a group.
+    /// Adds a row, and writes the held rows once they make a group.
     fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
         let group = &mut self.group;
         group.champions.push(key.champion.into());
@@ -167,7 +167,7 @@ impl ParquetTable<'_> {
         if group.steps.len() >= ROWS_PER_GROUP { self.write_group() } else { Ok(()) }
     }
 
-    /// Writes the rows that are held.
+    /// Writes the held rows as a group.
     fn write_group(&mut self) -> Result<(), ExportError> {
         let group = std::mem::take(&mut self.group);
         let mut write = || {
@@ -196,7 +196,7 @@ fn write_column<T: parquet::data_type::DataType>(
     column.close()
 }
 
-/// The types of all columns.
+/// Returns the types of all columns.
 fn schema() -> Result<Type, ParquetError> {
     let field = |name, physical, logical, repetition| {
         let builder = Type::primitive_type_builder(name, physical);
@@ -217,7 +217,7 @@ fn schema() -> Result<Type, ParquetError> {
     Type::group_type_builder("motion").with_fields(fields).build()
 }
 
-/// The error that a Parquet file cannot be written.
+/// Returns a function that turns a Parquet error into the error that the file at `path` cannot be written.
 fn of_parquet(path: &Path) -> impl Fn(ParquetError) -> ExportError {
     move |error| match error {
         ParquetError::External(reason) => ExportError::unwritable(path)(reason),

@@ -1,5 +1,4 @@
-//! The body as a robot for ROS, Gazebo, Drake, Pinocchio and PyBullet (URDF). Stairs, friction and motors have no place
-//! in URDF.
+//! A body as a robot for ROS, Gazebo, Drake, Pinocchio and PyBullet (URDF). URDF cannot express stairs, friction or motors.
 
 use std::io;
 
@@ -10,13 +9,13 @@ use snakes_core::world::{BodyPlan, Rotation, WorldPlan};
 
 /// Mass in kg, and moment of inertia in kg·m², of the link between the two hinges of a universal joint.
 const BETWEEN: f32 = 1.0e-6;
-/// The velocity limit that URDF demands of a joint, in rad/s: beyond all that a limb does.
+/// Velocity limit of a joint, in rad/s, which URDF demands. It is beyond all velocities that occur.
 const FASTEST_RAD_S: f32 = 1000.0;
 
-/// The robot of a world's snake, with facts about the champion.
+/// Returns the robot of a world's snake, with facts about the champion.
 ///
 /// # Errors
-/// The XML library's.
+/// The XML library failed.
 pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> {
     XmlText::document(|xml| {
         xml.element("robot", &[("name", name.to_owned())], |xml| {
@@ -34,7 +33,7 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
                     xml.leaf("color", &[("rgba", spaced([red, green, blue, 1.0]))])
                 })?;
             }
-            // A floating joint to the world is what only some programs know: PyBullet would fix it there.
+            // The robot has no floating joint to the world: only some programs support it, and PyBullet would fix the robot there.
             let body = &plan.body;
             if !body.springs.is_empty() {
                 xml.comment("Not in this model: softness of the limbs, which are rigid here; export .xml (MJCF) for it")?;
@@ -46,7 +45,7 @@ pub fn urdf(name: &str, plan: &WorldPlan, facts: &[Fact]) -> io::Result<String> 
                 }
             }
             let ([x_m, y_m, z_m], turn_rad) = head_start(plan);
-            // The link of a soft head is as long as all of its parts.
+            // The link of a soft head is as long as all parts of the head together.
             let behind_m = (body.limb_size_m(0)[1] - body.parts[0].length_m) / 2.0;
             let (sin, cos) = libm::sincosf(turn_rad);
             let at_m = [x_m + sin * behind_m, y_m - cos * behind_m, z_m];
@@ -65,7 +64,8 @@ fn ends(xml: &mut XmlText, parent: &str, child: &str) -> io::Result<()> {
     xml.leaf("child", &[("link", child.to_owned())])
 }
 
-/// A limb. The head's frame is in its middle, that of every other limb in the middle of its front face, at the joint.
+/// Writes a limb. The frame of the head is at its centre. The frame of every other limb is at the joint, in the middle of its front
+/// face.
 fn link(xml: &mut XmlText, body: &BodyPlan, index: usize) -> io::Result<()> {
     let size_m = body.limb_size_m(index);
     let back_m = if index == 0 { 0.0 } else { -size_m[1] / 2.0 };
@@ -104,8 +104,7 @@ fn inertia(xml: &mut XmlText, mass_kg: f64, about_kg_m2: [f64; 3]) -> io::Result
     xml.leaf("inertia", &moments)
 }
 
-/// The angles of a rotation about the fixed axes x, y and z, one after the other, in radians: what URDF calls roll, pitch and
-/// yaw.
+/// Returns the angles of a rotation about the fixed axes x, y and z, in this order, in rad: roll, pitch and yaw of URDF.
 fn roll_pitch_yaw(turn: Rotation) -> [f32; 3] {
     let [x, y, z, w] = turn.to_array();
     [
@@ -115,7 +114,8 @@ fn roll_pitch_yaw(turn: Rotation) -> [f32; 3] {
     ]
 }
 
-/// Each universal joint as two: the bend between the front limb and a link of almost no mass, and the twist behind it.
+/// Writes each universal joint as two joints: the bend between the front limb and a link of almost no mass, and the twist behind
+/// it.
 fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     for (index, joint) in plan.body.joints.iter().enumerate() {
         let number = index + 1;
@@ -126,7 +126,7 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
             })
         })?;
         let [front, rear] = [joint.parent, joint.child].map(|part| plan.body.parts[part].limb);
-        // From the frame of the front limb to the joint; a soft limb is as long as all of its parts.
+        // Offset from the frame of the front limb to the joint. A soft limb is as long as all its parts together.
         let front_m = plan.body.limb_size_m(front)[1];
         let mut at_m = joint.anchor_m(front_m);
         if front > 0 {

@@ -1,4 +1,4 @@
-//! XML, element by element. Attributes are escaped by the library.
+//! XML, written element by element. The library escapes attributes.
 
 use std::borrow::Cow;
 use std::io;
@@ -9,14 +9,14 @@ use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};
 /// An XML document in memory.
 pub(super) struct XmlText(Writer<Vec<u8>>);
 
-/// The attributes of an element, in their order.
+/// Attributes of an element, in their order.
 pub(super) type Attributes<'a> = &'a [(&'a str, String)];
 
 impl XmlText {
-    /// A document: its declaration, and what `write` writes.
+    /// Makes a document: its declaration, then what `write` adds.
     ///
     /// # Errors
-    /// The library's.
+    /// The XML library failed.
     pub fn document(write: impl FnOnce(&mut Self) -> io::Result<()>) -> io::Result<String> {
         let mut text = Self(Writer::new_with_indent(Vec::new(), b' ', 2));
         text.0.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
@@ -26,13 +26,13 @@ impl XmlText {
         String::from_utf8(bytes).map_err(io::Error::other)
     }
 
-    /// An element without content.
+    /// Adds an element without content.
     pub fn leaf(&mut self, name: &str, attributes: Attributes<'_>) -> io::Result<()> {
         let element = self.0.create_element(name).with_attributes(pairs(attributes));
         element.write_empty().map(drop)
     }
 
-    /// An element around what `inside` writes.
+    /// Adds an element whose content `inside` adds.
     pub fn element(
         &mut self,
         name: &str,
@@ -44,23 +44,23 @@ impl XmlText {
         self.close(name)
     }
 
-    /// The beginning of an element that [`Self::close`] ends: for elements within each other in a number that varies.
+    /// Begins an element that [`Self::close`] ends, for nesting to a depth that varies.
     pub fn open(&mut self, name: &str, attributes: Attributes<'_>) -> io::Result<()> {
         let element = BytesStart::new(name).with_attributes(pairs(attributes));
         self.0.write_event(Event::Start(element))
     }
 
-    /// The end of an element.
+    /// Ends an element.
     pub fn close(&mut self, name: &str) -> io::Result<()> {
         self.0.write_event(Event::End(BytesEnd::new(name)))
     }
 
-    /// Elements that are the same in every document, as XML with the indentation of their place.
+    /// Adds elements that are equal in every document, as XML that is already indented.
     pub fn fixed(&mut self, elements: &str) {
         self.0.get_mut().extend(elements.trim_end().bytes());
     }
 
-    /// A comment. XML has no escapes in comments and allows no two hyphens there.
+    /// Adds a comment. XML comments have no escapes, and two hyphens are not allowed in them.
     pub fn comment(&mut self, text: &str) -> io::Result<()> {
         let text = format!(" {} ", printable(text).replace("--", "-\u{2010}"));
         self.0.write_event(Event::Comment(BytesText::from_escaped(text)))
@@ -71,7 +71,7 @@ fn pairs<'a>(attributes: Attributes<'a>) -> impl Iterator<Item = (&'a str, Cow<'
     attributes.iter().map(|(name, value)| (*name, printable(value)))
 }
 
-/// A text without the characters that no XML file may contain, such as those that control a terminal.
+/// Replaces characters that XML does not allow, such as control characters, by question marks.
 fn printable(text: &str) -> Cow<'_, str> {
     let is_allowed =
         |character: char| !character.is_control() && !matches!(character, '\u{fffe}' | '\u{ffff}');
@@ -84,7 +84,7 @@ fn printable(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Numbers with a space between them, each with the fewest digits that give its bits back.
+/// Joins numbers with spaces. Each has the fewest digits that give its bits back.
 pub(super) fn spaced<N: ToString>(numbers: impl IntoIterator<Item = N>) -> String {
     let texts: Vec<String> = numbers.into_iter().map(|number| number.to_string()).collect();
     texts.join(" ")

@@ -1,4 +1,4 @@
-//! A box with rounded edges and corners, which catch the light: the shape of limbs in every picture and every scene.
+//! A box with rounded edges and corners, the shape of limbs in every picture and scene.
 //!
 //! Each face is a grid whose outer cells are bent over the edges, like a cube inflated to a sphere. The flat middle of a
 //! face is a single cell.
@@ -10,33 +10,33 @@ use snakes_core::world::Vector;
 pub(super) struct RoundedBox {
     half: Vector,
     radius: f32,
-    /// Cells across each rounded edge.
+    /// Number of cells across each rounded edge.
     edge_cells: usize,
 }
 
-/// A face of a box: the axis that it looks along, 0 to 2, and whether it looks towards the axis' positive end.
+/// A face of a box: the axis of its normal, 0 to 2, and whether the normal points towards the axis' positive end.
 pub(super) type BoxFace = (usize, bool);
 
 impl RoundedBox {
-    /// A box of a size, edges included, in metres. A box that is too thin gets a smaller radius.
+    /// Creates a box. `size_m` includes the edges, in metres. A box that is too thin gets a smaller radius.
     pub fn new(size_m: Vector, radius_m: f32, edge_cells: usize) -> Self {
         let half = size_m / 2.0;
         let radius = radius_m.min(half.min_element() * 0.999);
         Self { half, radius, edge_cells: edge_cells.max(1) }
     }
 
-    /// Its six faces.
+    /// Returns the six faces of a box.
     pub fn faces() -> impl Iterator<Item = BoxFace> {
         (0..3).flat_map(|axis| [(axis, true), (axis, false)])
     }
 
-    /// Cells of a face in each direction.
+    /// Returns the number of cells of a face in each direction.
     pub fn cells(&self) -> usize {
         2 * self.edge_cells + 1
     }
 
-    /// Position, in metres, and normal of a corner of a face's cells; both indices go from 0 to [`Self::cells`]. Seen from
-    /// outside, rows go up if columns go to the right.
+    /// Returns the position, in metres, and the normal of a corner of a face's cells. Both indices go from 0 to [`Self::cells`].
+    /// Seen from outside, rows go up if columns go to the right.
     pub fn corner(&self, (axis, is_positive): BoxFace, column: usize, row: usize) -> [Vector; 2] {
         let (mut right, mut up) = ((axis + 1) % 3, (axis + 2) % 3);
         if !is_positive {
@@ -52,7 +52,7 @@ impl RoundedBox {
         [within + normal * self.radius, normal]
     }
 
-    /// Position of a cell's corner along one axis before bending: equal angles within each rounded edge.
+    /// Returns the position of a cell's corner along one axis before it is bent. Cells have equal angles within each rounded edge.
     fn place(&self, corner: usize, half: f32) -> f32 {
         let from_edge = |cells: usize| {
             let angle = std::f32::consts::FRAC_PI_4 * (1.0 - cells as f32 / self.edge_cells as f32);

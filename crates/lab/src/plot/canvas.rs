@@ -1,4 +1,4 @@
-//! The pixels of a picture as a canvas of the plotting library, with the embedded font and the common colours.
+//! The pixels of a picture as a canvas of the plotting library, with the embedded font and common colours.
 
 use std::error::Error;
 use std::sync::OnceLock;
@@ -8,7 +8,7 @@ use plotters::style::{FontStyle, register_font};
 
 use snakes_core::save::Picture;
 
-/// A plot could not be drawn.
+/// Error when a plot could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the plot cannot be drawn: {0}")]
 pub struct PlotError(String);
@@ -17,20 +17,20 @@ pub struct PlotError(String);
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x26, 0x2e);
 /// Colour of grid lines and frames.
 pub(super) const FAINT: RGBColor = RGBColor(0xdd, 0xdf, 0xe4);
-/// Name under which the plotting library knows the embedded font.
+/// Name of the embedded font in the plotting library.
 pub(super) const FONT: &str = "sans-serif";
-/// Height of labels, in pixels.
+/// Height of the text of labels, in pixels.
 pub(super) const TEXT_PIXELS: u32 = 18;
 
-/// The style of labels.
+/// Returns the style of labels.
 pub(super) fn text() -> TextStyle<'static> {
     (FONT, TEXT_PIXELS).into_font().color(&INK)
 }
 
-/// Pixels on which the plotting library draws.
+/// A drawing area of the plotting library, over the pixels of a picture.
 pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 
-/// Draws on a picture, with the embedded font.
+/// Draws on a picture. The embedded font is available.
 pub(super) fn draw_on(
     picture: &mut Picture,
     draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,

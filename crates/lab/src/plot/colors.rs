@@ -1,4 +1,4 @@
-//! The colours of figures, in the light theme.
+//! Colours of figures in the light theme.
 
 use plotters::style::RGBColor;
 
@@ -7,7 +7,7 @@ use super::figure::Role;
 /// Opacity of a band between two curves, on the screen and in pictures.
 pub const BAND_OPACITY: f32 = 0.2;
 
-/// The colour of a role in the light theme, as red, green and blue.
+/// Returns the colour of a role in the light theme, as red, green and blue.
 pub fn role_color(role: Role) -> [u8; 3] {
     match role {
         Role::First | Role::Bend => [0x1a, 0x66, 0xd9],
@@ -23,8 +23,8 @@ pub fn role_color(role: Role) -> [u8; 3] {
     }
 }
 
-/// Colours of species by the last digit of their numbers, in both themes. They stay apart for colour-blind eyes, most of
-/// all those of neighbours.
+/// Colours of species by the last digit of their numbers, in both themes. Colour-blind people can distinguish them, best those of
+/// neighbouring numbers.
 const SPECIES: [[u8; 3]; 10] = [
     [0x80, 0x3a, 0x64],
     [0x64, 0x80, 0xfe],
@@ -38,8 +38,8 @@ const SPECIES: [[u8; 3]; 10] = [
     [0xd4, 0x64, 0x10],
 ];
 
-/// Colours from the least to the greatest value: viridis (van der Walt and Smith, 2015). Its brightness rises evenly,
-/// so its order is visible without the hues.
+/// Colours from the least to the greatest value: viridis (van der Walt and Smith, 2015). Brightness rises evenly, so the order is
+/// visible without the hues.
 const RAMP: [[u8; 3]; 9] = [
     [0x44, 0x01, 0x54],
     [0x47, 0x2d, 0x7b],
@@ -52,7 +52,7 @@ const RAMP: [[u8; 3]; 9] = [
     [0xfd, 0xe7, 0x25],
 ];
 
-/// The colour of a value between the least, 0, and the greatest, 1, as red, green and blue.
+/// Returns the colour of a value as red, green and blue. 0 stands for the least value, 1 for the greatest.
 pub fn ramp(share: f32) -> [u8; 3] {
     let last = RAMP.len() - 1;
     let place = share.clamp(0.0, 1.0) * last as f32;
@@ -65,7 +65,7 @@ pub fn ramp(share: f32) -> [u8; 3] {
     [mix(0), mix(1), mix(2)]
 }
 
-/// The colour of a role for the plotting library.
+/// Returns the colour of a role for the plotting library.
 pub(super) fn color_of(role: Role) -> RGBColor {
     let [red, green, blue] = role_color(role);
     RGBColor(red, green, blue)

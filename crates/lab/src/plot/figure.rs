@@ -1,110 +1,110 @@
-//! A chart as data: the window, the picture and the table of a chart all use the same figure.
+//! Charts as data. The window, the picture and the table of a chart use the same figure.
 
 use std::ops::RangeInclusive;
 
 use snakes_core::evolve::StrategyKind;
 
-/// Maximum number of shades that a legend lists; of more it lists none, because their order explains them.
+/// Maximum number of shades in a legend. If a figure has more, the legend lists none, because their order explains them.
 const MAX_SHADES_LISTED: usize = 8;
 
-/// Maximum number of bands that a legend lists beside the lines in their colours.
+/// Maximum number of bands in a legend, if lines of the same colours are listed, too.
 const MAX_BANDS_LISTED: usize = 2;
 
-/// One chart, or several that belong together.
+/// One chart, or several charts that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// Its title, a few words.
+    /// Title of the figure, a few words.
     pub title: String,
-    /// An explanation in a sentence or two; may be empty.
+    /// Explanation in a sentence or two; may be empty.
     pub note: String,
-    /// The charts, in reading order.
+    /// Charts of the figure, in reading order.
     pub charts: Vec<Chart>,
-    /// Its table, if that has other numbers than the charts; the first record is the header.
+    /// Records of the figure's table, the header first. `None` if the table has the numbers of the charts.
     pub numbers: Option<Vec<Vec<String>>>,
 }
 
-/// Series within one pair of axes.
+/// Series that share a pair of axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// Its name within the figure; empty for the only one.
+    /// Name of the chart within the figure; empty for the only chart.
     pub name: String,
-    /// The axis from left to right.
+    /// The horizontal axis, from left to right.
     pub x: Axis,
-    /// The axis from the bottom up.
+    /// The vertical axis, from the bottom up.
     pub y: Axis,
-    /// The series, the rearmost first.
+    /// Series of the chart. Later series are drawn over earlier ones.
     pub series: Vec<Series>,
-    /// Reference values: horizontal dashed lines.
+    /// Reference values, drawn as horizontal dashed lines.
     pub marks: Vec<Mark>,
 }
 
-/// An axis.
+/// An axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// The quantity.
+    /// Name of the quantity.
     pub name: String,
-    /// Its unit; empty for a count.
+    /// Unit of the quantity; empty for a count.
     pub unit: &'static str,
-    /// Least and greatest value.
+    /// Least and greatest position.
     pub range: RangeInclusive<f64>,
-    /// Names in place of numbers, each with its position.
+    /// Names that replace numbers, each with its position.
     pub names: Vec<(f64, String)>,
-    /// Whether it counts, so that only whole numbers make sense.
+    /// Whether the quantity is a count, so that only whole numbers make sense.
     pub is_whole: bool,
-    /// Whether positions are decimal logarithms of the numbers that labels show.
+    /// Whether positions are the decimal logarithms of the numbers on the labels.
     pub is_logarithmic: bool,
 }
 
-/// A reference value.
+/// A reference value of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// Its name.
+    /// Name of the reference value.
     pub name: String,
-    /// Its position on the y axis.
+    /// Position on the vertical axis.
     pub y: f64,
 }
 
 /// Data that are drawn in one way and listed under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name. Empty for a visual aid, which appears in no legend and no table.
+    /// Name of the series. Empty for a visual aid, which appears in no legend and no table.
     pub name: String,
-    /// Its meaning, which determines its colour.
+    /// Meaning of the series, which determines its colour.
     pub role: Role,
-    /// Its shape.
+    /// Data and shape of the series.
     pub shape: Shape,
 }
 
 /// The data of a series, and how they are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// Points joined by straight lines.
+    /// Points joined by straight lines: `[x, y]`.
     Line(Vec<[f64; 2]>),
-    /// Points joined by dashed lines.
+    /// Points joined by dashed lines: `[x, y]`.
     Dashed(Vec<[f64; 2]>),
-    /// Points.
+    /// Separate points: `[x, y]`.
     Points(Vec<[f64; 2]>),
     /// An area between a lower and an upper value at each x: `[x, lower, upper]`.
     Band(Vec<[f64; 3]>),
-    /// A layer of a stack, which covers what is behind it: `[x, lower, upper]`.
+    /// A layer of a stack, which hides what is drawn before it: `[x, lower, upper]`.
     Layer(Vec<[f64; 3]>),
-    /// Bars that begin at zero.
+    /// Vertical bars that begin at zero.
     Bars {
         /// Width of each bar.
         width: f64,
         /// Centre and height of each bar.
         bars: Vec<[f64; 2]>,
     },
-    /// Arrows: from, to.
+    /// Arrows: `[from, to]`, each `[x, y]`.
     Arrows(Vec<[[f64; 2]; 2]>),
     /// Rectangles in the colour of the series: `[left, right, bottom, top]`.
     Boxes(Vec<[f64; 4]>),
-    /// Rectangles: `[left, right, bottom, top]`, the share of the value between the least and the greatest of all
-    /// (0 to 1), and the value.
+    /// Rectangles with values: `[left, right, bottom, top]`, the value scaled to 0 (least of all values) to 1 (greatest), and the
+    /// value.
     Cells(Vec<([f64; 4], f32, f64)>),
 }
 
-/// Meaning of a series.
+/// Meaning of a series, which determines its colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Role {
     /// The main series.
@@ -121,24 +121,24 @@ pub enum Role {
     Twist,
     /// A learning method.
     Strategy(StrategyKind),
-    /// A value between the least, 0, and the greatest, 1.
+    /// A value scaled to 0 (least) to 1 (greatest).
     Share(f32),
-    /// A species of networks, by its number.
+    /// A species of networks, given by its number.
     Species(u32),
-    /// The first block of a snake, its third, and so on.
+    /// The first, third, fifth block of a snake, and so on.
     Red,
-    /// The second, the fourth, and so on.
+    /// The second, fourth block of a snake, and so on.
     Blue,
 }
 
 impl Axis {
-    /// An axis with numbers.
+    /// Creates an axis with numbers.
     pub fn new(name: &str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
         let (name, names) = (name.to_owned(), Vec::new());
         Self { name, unit, range, names, is_whole: false, is_logarithmic: false }
     }
 
-    /// An axis with numbers around all finite values: see [`padded_range`].
+    /// Creates an axis with numbers whose range holds all finite values: see [`padded_range`].
     pub fn around(
         name: &str,
         unit: &'static str,
@@ -148,34 +148,34 @@ impl Axis {
         Self::new(name, unit, padded_range(values, least_width).unwrap_or(0.0..=1.0))
     }
 
-    /// An axis of equal ratios between two numbers, which are greater than zero, with labels at powers of ten.
+    /// Creates a logarithmic axis between two positive numbers, with labels at powers of ten.
     pub fn logarithmic(name: &str, unit: &'static str, range: RangeInclusive<f64>) -> Self {
         let decades = libm::log10(*range.start())..=libm::log10(*range.end());
         Self { is_whole: true, is_logarithmic: true, ..Self::new(name, unit, decades) }
     }
 
-    /// An axis of a count, such as generations, with whole numbers.
+    /// Creates an axis of a count, such as generations, with whole numbers.
     pub fn count(name: &str, range: RangeInclusive<f64>) -> Self {
         Self { is_whole: true, ..Self::new(name, "", range) }
     }
 
-    /// Name and unit.
+    /// Returns the name with the unit.
     pub fn label(&self) -> String {
         with_unit(&self.name, self.unit)
     }
 
-    /// The position of a number.
+    /// Returns the position of a number on the axis.
     pub fn position_of(&self, number: f64) -> f64 {
         if self.is_logarithmic { libm::log10(number) } else { number }
     }
 
-    /// The number at a position.
+    /// Returns the number at a position of the axis.
     pub fn number_at(&self, position: f64) -> f64 {
         if self.is_logarithmic { libm::pow(10.0, position) } else { position }
     }
 }
 
-/// A name with its unit in parentheses, unless the unit is empty or a space.
+/// Returns a name with its unit in parentheses, or the name alone if the unit is blank.
 pub fn with_unit(name: &str, unit: &str) -> String {
     match unit.trim() {
         "" => name.to_owned(),
@@ -183,14 +183,14 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// The least and the greatest of the finite values; none if there are no such values.
+/// Returns the least and the greatest of the finite values, or `None` if there are no finite values.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.into_iter().filter(|value| value.is_finite());
     let ends = finite.map(|value| [value; 2]);
     ends.reduce(|[least, most], [value, _]| [least.min(value), most.max(value)])
 }
 
-/// The range of the finite values with a margin, at least `least_width` wide; none without finite values.
+/// Returns the range of the finite values with a margin, wider than `least_width`. `None` if there are no finite values.
 pub fn padded_range(
     values: impl IntoIterator<Item = f64>,
     least_width: f64,
@@ -202,26 +202,26 @@ pub fn padded_range(
 }
 
 impl Chart {
-    /// The only chart of a figure, which needs no name, without reference values.
+    /// Creates the only chart of a figure, which needs no name, without reference values.
     pub fn new(x: Axis, y: Axis, series: Vec<Series>) -> Self {
         Self { name: String::new(), x, y, series, marks: Vec::new() }
     }
 
-    /// One of several charts, with its name.
+    /// Returns the chart with a name, for a figure of several charts.
     pub fn named(self, name: &str) -> Self {
         Self { name: name.to_owned(), ..self }
     }
 }
 
 impl Series {
-    /// A series.
+    /// Creates a series.
     pub fn new(name: &str, role: Role, shape: Shape) -> Self {
         Self { name: name.to_owned(), role, shape }
     }
 }
 
 impl Shape {
-    /// The middle of the thickest part of a layer, and how thick that is; none for other shapes.
+    /// Returns the middle of the thickest part of a layer, and its thickness. `None` for other shapes.
     pub fn thickest(&self) -> Option<([f64; 2], f64)> {
         let Self::Layer(ends) = self else { return None };
         let thickness = |[_, low, high]: &[f64; 3]| high - low;
@@ -231,7 +231,7 @@ impl Shape {
         Some(([x, (low + high) / 2.0], most))
     }
 
-    /// The points of a line or a cloud, or centre and height of each bar; none of other shapes.
+    /// Returns the points of a line or a cloud, or centre and height of each bar. Empty for other shapes.
     pub fn points(&self) -> &[[f64; 2]] {
         match self {
             Self::Line(points) | Self::Dashed(points) | Self::Points(points) => points,
@@ -240,7 +240,7 @@ impl Shape {
         }
     }
 
-    /// Whether there is nothing to draw.
+    /// Returns whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => {
@@ -255,22 +255,23 @@ impl Shape {
 }
 
 impl Figure {
-    /// A figure of one chart.
+    /// Creates a figure of one chart.
     pub fn of(title: &str, chart: Chart) -> Self {
         Self::of_several(title, vec![chart])
     }
 
-    /// A figure of several charts.
+    /// Creates a figure of several charts.
     pub fn of_several(title: &str, charts: Vec<Chart>) -> Self {
         Self { title: title.to_owned(), note: String::new(), charts, numbers: None }
     }
 
-    /// The figure with an explanation.
+    /// Returns the figure with an explanation.
     pub fn with_note(self, note: impl Into<String>) -> Self {
         Self { note: note.into(), ..self }
     }
 
-    /// The figure with a table of other numbers than those of its charts: the heads of the columns, and the records.
+    /// Returns the figure with a table of other numbers than those of its charts, given as the heads of its columns and its
+    /// records.
     pub fn with_numbers(
         self,
         heads: impl IntoIterator<Item = impl Into<String>>,
@@ -280,12 +281,13 @@ impl Figure {
         Self { numbers: Some([heads].into_iter().chain(records).collect()), ..self }
     }
 
-    /// Whether there is nothing in it to draw.
+    /// Returns whether the figure has nothing to draw.
     pub fn is_empty(&self) -> bool {
         self.charts.iter().flat_map(|chart| &chart.series).all(|series| series.shape.is_empty())
     }
 
-    /// The series that a legend lists: each name once, and shades only if there are few.
+    /// Returns the series that a legend lists: each name once; shades only if they are few; and bands only if they are few or no
+    /// line has their colour.
     pub fn listed(&self) -> Vec<&Series> {
         let is_shade = |series: &Series| matches!(series.role, Role::Share(_));
         let all = || self.charts.iter().flat_map(|chart| &chart.series);

@@ -1,5 +1,5 @@
-//! Texts on the frames of a film: a band along the lower edge, and a title over the picture. Their sizes follow the
-//! height of the picture.
+//! Texts on the frames of a film: a band along the lower edge, and a title over the picture. Their sizes follow the height of the
+//! picture.
 
 use std::error::Error;
 
@@ -9,38 +9,38 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::canvas::{Area, FONT, INK, PlotError, draw_on};
 use snakes_core::save::Picture;
 
-/// Opacity of the band and of a title's plate.
+/// Opacity of the band and of the plate behind a title.
 const VEIL: f64 = 0.82;
-/// Opacity of the less important texts.
+/// Opacity of less important texts.
 const WEAK: f64 = 0.72;
-/// Least height of the band, in pixels.
+/// Minimum height of the band, in pixels.
 const LEAST_BAND: u32 = 22;
-/// Height of the picture as a multiple of the band's height.
+/// Height of the picture divided by the height of the band.
 const BANDS: u32 = 14;
 
 /// The texts of the band along the lower edge.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FilmBand {
-    /// The name, at the left.
+    /// Name at the left.
     pub name: String,
-    /// The text behind the name.
+    /// Text after the name.
     pub detail: String,
-    /// The time, at the right.
+    /// Time at the right.
     pub clock: String,
 }
 
-/// A title over the picture.
+/// A title that is drawn over the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmTitle {
-    /// The large line.
+    /// Text of the large line.
     pub text: String,
-    /// The smaller line below it.
+    /// Text of the smaller line below; may be empty.
     pub below: String,
-    /// Opacity from 0 to 1.
+    /// Opacity of the title, from 0 to 1.
     pub opacity: f64,
 }
 
-/// Writes the band onto a picture. What has no room is left out, the detail before the end of the name.
+/// Draws the band onto a picture. Text that does not fit is left out: first the detail, then the end of the name.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -66,7 +66,7 @@ pub fn film_band(picture: &mut Picture, band: &FilmBand) -> Result<(), PlotError
     })
 }
 
-/// Writes a title onto a picture, in the middle of its upper part.
+/// Draws a title onto a picture, in the middle of its upper part.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -96,7 +96,7 @@ pub fn film_title(picture: &mut Picture, title: &FilmTitle) -> Result<(), PlotEr
     })
 }
 
-/// A text, or as much of its beginning as has room, with dots that say so.
+/// Returns a text, shortened with an ellipsis if it is wider than `room` pixels.
 fn shortened(
     area: &Area,
     text: &str,
@@ -116,7 +116,7 @@ fn shortened(
     Ok(if fits == 0 { String::new() } else { beginning(fits) })
 }
 
-/// Width of a text of this size, in pixels.
+/// Returns the width of a text of this size, in pixels.
 fn width_of(area: &Area, text: &str, pixels: u32) -> Result<i32, Box<dyn Error>> {
     if text.is_empty() {
         return Ok(0);
@@ -125,7 +125,7 @@ fn width_of(area: &Area, text: &str, pixels: u32) -> Result<i32, Box<dyn Error>>
     Ok(area.estimate_text_size(text, &style)?.0 as i32)
 }
 
-/// Writes a white text whose middle line is at the height of `at`.
+/// Writes a white text, vertically centred at `at`, with its side `side` there.
 fn write(
     area: &Area,
     text: &str,

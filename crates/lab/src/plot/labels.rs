@@ -1,15 +1,15 @@
-//! Places for labels beside reference lines, where they cover least of the data.
+//! Positions for labels beside reference lines, where they hide little of the data.
 
 /// Rectangle in pixels, y downwards: left, top, right, bottom.
 pub type Box2 = [f32; 4];
 
-/// Distance between a label and its line, in pixels.
+/// Distance between a label and its reference line, in pixels.
 const GAP: f32 = 2.0;
-/// Shares of the width at which a label may stand, in order of preference.
+/// Positions of a label as shares of the free width, in order of preference.
 const PLACES: [f32; 5] = [0.0, 1.0, 0.25, 0.75, 0.5];
 
-/// Rectangle for a label of this `size` (width, height) beside the horizontal line at `y`, within `area`: above or below
-/// the line, where it meets the fewest segments of `lines` and none of the rectangles that are `taken`.
+/// Returns a rectangle for a label of this `size` (width, height), above or below the horizontal line at `y`, within `area`. It
+/// meets as few segments of `lines` as possible, and if possible none of the rectangles `taken`.
 pub fn beside_line(
     area: Box2,
     size: [f32; 2],
@@ -37,7 +37,7 @@ pub fn beside_line(
         let crossed = segments.filter(|ends| crosses(of, ends[0], ends[1])).count();
         let lone = lines.iter().filter(|line| line.len() == 1 && crosses(of, line[0], line[0]));
         let hidden = taken.iter().filter(|other| overlap(of, other)).count();
-        // A label over another one is worse than over any line.
+        // Covering another label is worse than crossing any number of lines.
         hidden * 1_000_000 + crossed + lone.count()
     };
     candidates.min_by_key(covered).unwrap_or_else(|| candidate(0.0, above.max(top)))
@@ -47,7 +47,7 @@ fn overlap(a: &Box2, b: &Box2) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
-/// Whether the segment from `from` to `to` meets a rectangle (clipping by Liang and Barsky).
+/// Returns whether the segment from `from` to `to` meets a rectangle (clipping by Liang and Barsky).
 fn crosses(of: &Box2, from: [f32; 2], to: [f32; 2]) -> bool {
     let [left, top, right, bottom] = *of;
     let (mut enters, mut leaves) = (0.0_f32, 1.0_f32);
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_label_stands_where_no_line_runs() {
-        // A line along the upper left, which then falls to the lower right.
+        // The line runs along the upper left, then falls to the lower right.
         let lines = [vec![[0.0, 40.0], [150.0, 40.0], [300.0, 90.0]]];
         let label = beside_line(AREA, [60.0, 12.0], 45.0, &lines, &[]);
         assert_eq!(label, [0.0, 47.0, 60.0, 59.0], "at the left, below its line");

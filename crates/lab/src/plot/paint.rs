@@ -1,4 +1,4 @@
-//! A figure as a picture: light, large, with its legend.
+//! A figure as a large picture in the light theme, with its legend.
 
 use std::error::Error;
 
@@ -15,24 +15,24 @@ use super::series::{DASH, FigureAxes, paint_series};
 use super::ticks::TickedAxis;
 use snakes_core::save::Picture;
 
-/// Size of a picture of a figure, in pixels.
+/// Width and height of the picture of a figure, in pixels.
 const SIZE: (u32, u32) = (1600, 900);
 const TITLE_PIXELS: u32 = 26;
-/// Margin of a picture, in pixels.
+/// Margin around the contents of a picture, in pixels.
 const MARGIN: i32 = 24;
 /// Height of a line of the legend, in pixels.
 const LEGEND_LINE: i32 = 30;
 /// Length of a sample in the legend, in pixels.
 const SAMPLE: i32 = 34;
-/// Space around the name of a mark on its plate, in pixels.
+/// Padding around the name of a mark on its plate, in pixels.
 const PLATE: f32 = 8.0;
-/// Maximum length of a name, in characters; the rest is cut off.
+/// Maximum length of a name below an axis, in characters. The rest is cut off.
 const MAX_NAME_LENGTH: usize = 32;
 
 /// Maximum number of numbers along the vertical axis.
 const MOST_Y_TICKS: f64 = 10.0;
 
-/// Draws a figure in the size of its pictures.
+/// Draws a figure as a picture of the usual size.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -40,7 +40,7 @@ pub fn figure(figure: &Figure) -> Result<Picture, PlotError> {
     figure_of_size(figure, SIZE)
 }
 
-/// Draws a figure in a size in pixels.
+/// Draws a figure as a picture of this width and height, in pixels.
 pub(super) fn figure_of_size(figure: &Figure, size: (u32, u32)) -> Result<Picture, PlotError> {
     let mut picture = Picture::new(size.0, size.1);
     draw_on(&mut picture, |area| {
@@ -55,7 +55,7 @@ pub(super) fn figure_of_size(figure: &Figure, size: (u32, u32)) -> Result<Pictur
         }
         let below = legend(area, figure, top)?;
         let (_, charts) = area.split_vertically(below);
-        // As many columns as rows: the picture is wide, and so are its charts.
+        // The grid has as many columns as rows, so that the charts are as wide in shape as the picture.
         let columns = (1..=figure.charts.len()).find(|n| n * n >= figure.charts.len());
         let columns = columns.unwrap_or(1);
         let rows = figure.charts.len().div_ceil(columns);
@@ -67,7 +67,7 @@ pub(super) fn figure_of_size(figure: &Figure, size: (u32, u32)) -> Result<Pictur
     Ok(picture)
 }
 
-/// Writes the legend from `top` down. Returns its lower end, in pixels.
+/// Draws the legend from `top` downwards. Returns its lower end, in pixels.
 fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>> {
     let text = text();
     let (mut x, mut y) = (MARGIN, top);
@@ -85,7 +85,7 @@ fn legend(area: &Area, figure: &Figure, top: i32) -> Result<i32, Box<dyn Error>>
     Ok(if listed.is_empty() { top } else { y + LEGEND_LINE })
 }
 
-/// Draws a sample of a series in the legend.
+/// Draws the sample of a series in the legend.
 fn sample(area: &Area, series: &Series, (x, y): (i32, i32)) -> Result<(), Box<dyn Error>> {
     let color = color_of(series.role);
     let ends = [(x, y), (x + SAMPLE, y)];
@@ -165,12 +165,12 @@ fn paint(area: &Area, chart: &Chart) -> Result<(), Box<dyn Error>> {
     mark_labels(area, &axes, chart)
 }
 
-/// A name that has room below an axis.
+/// Shortens a name to fit below an axis.
 fn short(name: &str) -> String {
     name.chars().take(MAX_NAME_LENGTH).collect()
 }
 
-/// Height of the longest name below the x axis, which stands upright, with its distance from the axis, in pixels.
+/// Returns the height of the longest upright name below the x axis, with its distance from the axis, in pixels.
 fn names_height(area: &Area, chart: &Chart) -> Result<u32, Box<dyn Error>> {
     let mut longest = 0;
     for (_, name) in &chart.x.names {
@@ -179,7 +179,7 @@ fn names_height(area: &Area, chart: &Chart) -> Result<u32, Box<dyn Error>> {
     Ok(longest + 24)
 }
 
-/// Writes the names of the marks on plates beside their lines, where they cover least of the series.
+/// Writes the names of the marks on plates beside their lines, where they hide little of the series.
 fn mark_labels(
     area: &Area,
     axes: &FigureAxes<'_, '_>,
@@ -226,7 +226,7 @@ mod tests {
         Chart { marks, ..Chart::new(x, y, series).named(name) }
     }
 
-    /// Number of pixels of a picture that have the colour of a role.
+    /// Counts the pixels of a picture that have the colour of a role.
     fn pixels(picture: &Picture, role: Role) -> usize {
         let color = role_color(role);
         picture.rgb.as_chunks::<3>().0.iter().filter(|pixel| **pixel == color).count()

@@ -1,4 +1,4 @@
-//! The series of a chart in a picture.
+//! Drawing the series of a chart in a picture.
 
 use std::error::Error;
 
@@ -8,14 +8,14 @@ use super::colors::{BAND_OPACITY, color_of};
 use super::figure::{Role, Series, Shape};
 use super::ticks::TickedAxis;
 
-/// Lengths of the dashes and gaps of a dashed line, in pixels.
+/// Lengths of the dashes and of the gaps of a dashed line, in pixels.
 pub(super) const DASH: (i32, i32) = (10, 7);
 
-/// The axes of a chart.
+/// The axes of a chart in a picture.
 pub(super) type FigureAxes<'a, 'b> =
     ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
-/// Draws a series into its axes.
+/// Draws a series between the axes of its chart.
 pub(super) fn paint_series(
     axes: &mut FigureAxes<'_, '_>,
     series: &Series,
@@ -48,7 +48,7 @@ pub(super) fn paint_series(
             let opacity = if is_layer { 1.0 } else { BAND_OPACITY.into() };
             axes.draw_series([Polygon::new(edge, color.mix(opacity).filled())])?;
             if is_layer {
-                // Keeps layers of similar colours apart.
+                // A white line separates layers of similar colours.
                 axes.draw_series(LineSeries::new(above, WHITE.stroke_width(1)))?;
             }
         }
@@ -73,7 +73,7 @@ pub(super) fn paint_series(
             for &[left, right, bottom, top] in boxes {
                 let ends = [(left, bottom), (right, top)];
                 axes.draw_series([Rectangle::new(ends, color.filled())])?;
-                // Keeps neighbours of the same colour apart.
+                // A white edge separates neighbours of the same colour.
                 axes.draw_series([Rectangle::new(ends, WHITE.stroke_width(1))])?;
             }
         }
@@ -88,7 +88,7 @@ pub(super) fn paint_series(
     Ok(())
 }
 
-/// The head of an arrow between two pixels, relative to its tip.
+/// Returns the head of an arrow between two pixels, relative to its tip.
 fn arrow_head(from: (i32, i32), to: (i32, i32)) -> [(i32, i32); 3] {
     const LENGTH: f64 = 12.0;
     let (x, y) = (f64::from(from.0 - to.0), f64::from(from.1 - to.1));

@@ -8,10 +8,11 @@ use snakes_core::genome::JointCommands;
 use snakes_core::save::Picture;
 use snakes_core::score::Rollout;
 
-/// Size of the picture, in pixels: as wide as a page of the report, and low.
+/// Width and height of the picture, in pixels: the width of a page of the report, and low.
 const SIZE: (u32, u32) = (960, 420);
 
-/// Plots the commands to the bend axis of a champion's first joint.
+/// Plots the bend commands to a champion's first joint over time or, for a controller whose commands depend on its senses, the
+/// applied torques.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -35,8 +36,8 @@ pub fn signal(champion: &Champion, title: &str) -> Result<Picture, PlotError> {
     figure_of_size(&Figure::of(title, Chart::new(x, y, series)), SIZE)
 }
 
-/// The bend torques of the first joint in a champion's rollout, for a controller whose commands depend on its senses: times
-/// in seconds and torques in N·m.
+/// Returns the bend torques of the first joint in a champion's rollout: times in seconds and torques in N·m. Used for controllers
+/// whose commands depend on their senses.
 fn applied_torques(champion: &Champion) -> Vec<[f64; 2]> {
     let mut rollout = Rollout::new(&champion.genome, &champion.trial);
     let step_s = f64::from(champion.trial.physics.step_s());

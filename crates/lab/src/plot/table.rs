@@ -3,8 +3,8 @@
 use super::figure::{Axis, Figure, Shape, with_unit};
 
 impl Figure {
-    /// The figure as a table, the first record its header: a column for each series, with its unit. If there are
-    /// several charts, the first column names the chart.
+    /// Returns the figure as a table, the header first, with a column for each series. If there are several charts, the first
+    /// column names the chart.
     pub fn table(&self) -> Vec<Vec<String>> {
         if let Some(numbers) = &self.numbers {
             return numbers.clone();
@@ -53,7 +53,7 @@ impl Figure {
 }
 
 impl Shape {
-    /// The columns of its table, as suffixes to the name of the series.
+    /// Returns the columns of the shape's table, as suffixes to the name of the series.
     fn columns(&self) -> &'static [&'static str] {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => &[""],
@@ -64,7 +64,7 @@ impl Shape {
         }
     }
 
-    /// The rows of its table: x, and a value for each column.
+    /// Returns the rows of the shape's table: x, and a value for each column.
     fn rows(&self) -> Vec<(f64, Vec<f64>)> {
         match self {
             Self::Line(_) | Self::Dashed(_) | Self::Points(_) | Self::Bars { .. } => {
@@ -91,7 +91,7 @@ impl Shape {
 }
 
 impl Axis {
-    /// The text of a position in a table: its name if it has one, otherwise its number.
+    /// Returns the text of a position in a table: its name if it has one, otherwise its number.
     fn text_at(&self, position: f64) -> String {
         let is_there = |(at, _): &&(f64, String)| (at - position).abs() < 1.0e-6;
         let name = self.names.iter().find(is_there).map(|(_, name)| name.clone());
@@ -99,10 +99,10 @@ impl Axis {
     }
 }
 
-/// A row of a table: x, and the columns with their values.
+/// A row of a table: its x, and indices of columns with their values.
 type Row = (f64, Vec<(usize, f64)>);
 
-/// Joins rows of the same x, unless they have values in the same column.
+/// Joins rows of equal x, unless they have values in the same column.
 fn merged(mut rows: Vec<Row>) -> Vec<Row> {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut merged: Vec<Row> = Vec::new();

@@ -1,4 +1,4 @@
-//! Places of the numbers along an axis.
+//! Positions and labels of the ticks along an axis.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -7,7 +7,7 @@ use plotters::coord::types::RangedCoordf64;
 
 use super::Axis;
 
-/// An axis of a picture, with its numbers at the ticks of this module.
+/// An axis of a picture, with round numbers at its ticks.
 pub(super) struct TickedAxis {
     range: RangedCoordf64,
     is_logarithmic: bool,
@@ -16,7 +16,7 @@ pub(super) struct TickedAxis {
 }
 
 impl TickedAxis {
-    /// An axis with at most about `most` numbers.
+    /// Creates an axis with at most about `most` ticks.
     pub fn new(axis: &Axis, most: f64) -> Self {
         let (start, end) = (*axis.range.start(), *axis.range.end());
         let step = tick_step(end - start, most, axis.is_whole);
@@ -24,7 +24,7 @@ impl TickedAxis {
         Self { range, is_logarithmic: axis.is_logarithmic, step, ticks }
     }
 
-    /// The text of a number.
+    /// Returns a function that labels the tick at a position.
     pub fn labels(&self) -> impl Fn(&f64) -> String + use<> {
         let Self { step, is_logarithmic, .. } = *self;
         move |position| tick_text(*position, step, is_logarithmic)
@@ -40,7 +40,7 @@ impl Ranged for TickedAxis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        // There are no lines between the ticks.
+        // The plotting library draws no lines between the ticks.
         if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
     }
 
@@ -49,8 +49,8 @@ impl Ranged for TickedAxis {
     }
 }
 
-/// Tick step for a range with at most about `most` ticks: 1, 2 or 5 times a power of ten, and at least 1 for whole
-/// numbers.
+/// Returns the step of ticks in a range of this `width`, for at most about `most` ticks: 1, 2 or 5 times a power of ten, and at
+/// least 1 for whole numbers.
 pub fn tick_step(width: f64, most: f64, is_whole: bool) -> f64 {
     let least = (width / most).max(1.0e-9);
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
@@ -59,15 +59,15 @@ pub fn tick_step(width: f64, most: f64, is_whole: bool) -> f64 {
     if is_whole { step.max(1.0) } else { step }
 }
 
-/// The multiples of a step within a range.
+/// Returns the multiples of a step within a range.
 fn ticks(range: &RangeInclusive<f64>, step: f64) -> Vec<f64> {
     let first = libm::ceil(range.start() / step);
     let count = (libm::floor(range.end() / step) - first + 1.0).max(0.0) as usize;
     (0..count).map(|index| (first + index as f64) * step).collect()
 }
 
-/// The number at a tick of an axis whose ticks have this distance, with the digits that tell it from its neighbours. On a
-/// logarithmic axis it is the power of ten.
+/// Returns the label of a tick, with the digits that distinguish it from its neighbours at a distance of `step`. On a logarithmic
+/// axis the label is the power of ten.
 pub fn tick_text(position: f64, step: f64, is_logarithmic: bool) -> String {
     if is_logarithmic {
         let digits = (-libm::floor(position)).max(0.0) as usize;
@@ -75,7 +75,7 @@ pub fn tick_text(position: f64, step: f64, is_logarithmic: bool) -> String {
     }
     let digits = libm::ceil(-libm::log10(step) - 1.0e-6).clamp(0.0, 9.0) as usize;
     let text = format!("{position:.digits$}");
-    // Rounding makes a zero of either sign.
+    // Rounding can turn a small negative number into a negative zero, whose sign is removed.
     let is_zero = text.chars().all(|letter| !letter.is_ascii_digit() || letter == '0');
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
@@ -102,7 +102,7 @@ mod tests {
         assert!(ticks(&(0.2..=0.8), 1.0).is_empty());
     }
 
-    /// With steps of one half, egui_plot's own labels were "-0", "0", "0" and "1".
+    /// With steps of one half, labels rounded to whole numbers would be "-0", "0", "0" and "1".
     #[test]
     fn neighbouring_ticks_have_different_labels() {
         let text = |position, step| tick_text(position, step, false);

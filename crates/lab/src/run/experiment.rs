@@ -271,7 +271,7 @@ impl Experiment {
             // With thousands of generations, only champions that are better than all before are kept.
             champion = champion.filter(|champion| self.best.is_beaten_by(champion, settings));
         }
-        // The champion's rules are shortened for readers. A run that starts from it learns the removed rules again.
+        // Rules that no decision of the champion needs are dropped for readers. A run that starts from it learns new ones.
         champion.iter_mut().for_each(|champion| champion.genome.controller.compact());
         let mut report = GenerationReport::of(&evaluated, champion, messages, started.elapsed());
         let leaders = ranking.iter().take(MAX_LEADERS);

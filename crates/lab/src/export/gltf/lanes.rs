@@ -1,4 +1,4 @@
-//! Lanes: a champion's stairs and limbs, and the animation of the limbs.
+//! Lanes of a scene: each has a champion's stairs and limbs, and the animation of the limbs.
 
 use gltf_json::accessor::Type;
 use gltf_json::animation::{Animation, Channel, Interpolation, Property, Sampler, Target};
@@ -14,13 +14,13 @@ use crate::mesh::{Eyes, LIMB_EDGE, MeshBuilder};
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::{BodyPlan, Pose, Rotation, StairSolid, Vector};
 
-/// Cells of a limb's rounded edge.
+/// Number of cells across the rounded edge of a limb.
 const EDGE_CELLS: usize = 3;
-/// Sides of an eye.
+/// Number of sides of an eye.
 const EYE_SIDES: usize = 16;
-/// Samples of an animation per second, at most.
+/// Maximum number of samples of an animation per second.
 const SAMPLES_PER_S: u32 = 60;
-/// Room between lanes, in m, as on the studio's stage.
+/// Gap between lanes, in m, as on the studio's stage.
 const GAP_M: f32 = 1.0;
 const RED: Look = Look { name: "red", color: LIMB_COLORS[0], roughness: 0.45 };
 const BLUE: Look = Look { name: "blue", color: LIMB_COLORS[1], roughness: 0.45 };
@@ -29,14 +29,14 @@ const DARK_STEP: Look = Look { name: "dark step", color: STEP_COLORS[1], roughne
 const EYE: Look = Look { name: "eye", color: [0.95, 0.95, 0.95], roughness: 0.2 };
 const PUPIL: Look = Look { name: "pupil", color: [0.05, 0.05, 0.06], roughness: 0.2 };
 
-/// Corners of the space that the lanes take, in m.
+/// Corners of the space that the lanes occupy, in m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     pub min: Vector,
     pub max: Vector,
 }
 
-/// The materials that all lanes share.
+/// Materials that all lanes share.
 struct Looks {
     limbs: [Index<Material>; 2],
     steps: [Index<Material>; 2],
@@ -44,15 +44,15 @@ struct Looks {
     pupil: Index<Material>,
 }
 
-/// The poses of a champion's limbs, sampled.
+/// Sampled poses of a champion's limbs.
 #[derive(Default)]
 struct Samples {
     times_s: Vec<f32>,
-    /// For each limb.
+    /// Poses of each part, one for each time.
     poses: Vec<Vec<Pose>>,
 }
 
-/// Adds a lane for each champion, the first one on the right, and their animation. Returns the lanes' nodes and bounds.
+/// Adds a lane with its animation for each champion, the first one on the right. Returns the lanes' nodes and bounds.
 pub(super) fn add_lanes(
     pieces: &mut SceneParts,
     champions: &[ExportedChampion],
@@ -108,7 +108,8 @@ pub(super) fn add_lanes(
     Ok((lanes, bounds))
 }
 
-/// Simulates a champion and keeps every pose, or at high step rates every second, third and so on, and the last one.
+/// Simulates a champion and samples its poses: at every step, or at high step rates at every second, third and so on. The last pose
+/// is always kept.
 fn samples(
     exported: &ExportedChampion,
     body: &BodyPlan,
@@ -123,7 +124,7 @@ fn samples(
         samples.times_s.push((f64::from(step) / f64::from(steps_per_s)) as f32);
         for (kept, pose) in samples.poses.iter_mut().zip(poses) {
             let mut pose = *pose;
-            // Of a rotation's two quaternions the one next to the last, so that the way between them is short.
+            // Two quaternions describe the same rotation. The one closer to the previous sample makes the interpolation short.
             pose.rotation = pose.rotation.normalize();
             if kept.last().is_some_and(|last: &Pose| last.rotation.dot(pose.rotation) < 0.0) {
                 pose.rotation = -pose.rotation;
@@ -147,7 +148,7 @@ fn samples(
     Ok(samples)
 }
 
-/// The nodes of the limbs, head first, at the start. Limbs of equal size and colour share a mesh.
+/// Adds the nodes of the limbs at their first poses, head first. Limbs of equal size and colour share a mesh.
 fn limbs(
     pieces: &mut SceneParts,
     name: &str,
@@ -195,7 +196,7 @@ fn limbs(
     nodes
 }
 
-/// Adds the movement of a limb.
+/// Adds the animation of a limb.
 fn move_limb(
     pieces: &mut SceneParts,
     animation: &mut Animation,
@@ -227,7 +228,8 @@ fn move_limb(
 }
 
 impl Samples {
-    /// How far along y a scene has to reach, in m: to where a snake lies on the landing, and at least as far as this one got.
+    /// Returns how far along y the scene must reach, in m: to the end of a snake that lies on the landing, and as far as this snake
+    /// got.
     fn furthest_y_m(&self, trial: &Trial, body: &BodyPlan) -> f32 {
         let places = self.poses.iter().flatten().map(|pose| pose.translation.y);
         let reach_m = body.parts.iter().map(|limb| limb.length_m).fold(0.0, f32::max);
@@ -236,7 +238,7 @@ impl Samples {
     }
 }
 
-/// The part of a solid before `end_y_m`.
+/// Returns the part of a solid with y less than `end_y_m`.
 fn cut_off(solid: StairSolid, end_y_m: f32) -> StairSolid {
     let over_m = solid.pose.translation.y + solid.half_m.y - end_y_m;
     if over_m <= 0.0 || solid.pose.rotation != Rotation::IDENTITY {
@@ -247,7 +249,7 @@ fn cut_off(solid: StairSolid, end_y_m: f32) -> StairSolid {
     StairSolid { pose, half_m: solid.half_m - ahead, ..solid }
 }
 
-/// Adds a box with sharp edges, without the face on which it stands.
+/// Adds a box with sharp edges, without its bottom face.
 fn add_step(shape: &mut MeshBuilder, solid: &StairSolid) {
     let (centre, turn) = (solid.pose.translation, solid.pose.rotation);
     let half = solid.half_m;
@@ -258,7 +260,7 @@ fn add_step(shape: &mut MeshBuilder, solid: &StairSolid) {
     }
 }
 
-/// The node of the stairs, if there are any: steps of two tones in turn. Of a long landing only the part up to `end_y_m`.
+/// Adds the node of the stairs, if there are any. Steps alternate between two tones. A long landing ends at `end_y_m`.
 fn stairs(
     pieces: &mut SceneParts,
     name: &str,

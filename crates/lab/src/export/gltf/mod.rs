@@ -1,7 +1,7 @@
-//! Moving champions on their stairs as binary glTF 2.0.
+//! Moving champions on their stairs as a binary glTF 2.0 scene.
 //!
-//! A root node turns the program's axes, with z up, to glTF's, with y up. Below it stand the lanes side by side as on the
-//! studio's stage, each with its stairs and limbs. Limbs move on straight lines between the samples of their poses.
+//! A root node turns the program's axes (z up) to glTF's axes (y up). Its children are the lanes, side by side as on the studio's
+//! stage, each with its stairs and limbs. Limbs move on straight lines between the samples of their poses.
 
 mod lanes;
 mod pieces;
@@ -25,11 +25,11 @@ use pieces::{Look, SceneParts};
 use snakes_core::save::UnfinishedFile;
 use snakes_core::world::{Rotation, Vector};
 
-/// The rotation from z up to y up: a quarter turn about x.
+/// Rotation from z up to y up: a quarter turn about x.
 const Y_UP: UnitQuaternion = UnitQuaternion([-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2]);
 /// Vertical field of view of the camera, in rad.
 const VIEW_RAD: f32 = 0.7;
-/// How far the ground reaches beyond the lanes, in m. Viewers choose their view by the size of the whole.
+/// Width of the ground around the lanes, in m. It is small, because viewers choose their view by the size of the whole scene.
 const GROUND_BEYOND_M: f32 = 4.0;
 const GROUND: Look = Look { name: "ground", color: [0.55, 0.57, 0.53], roughness: 0.95 };
 
@@ -46,7 +46,7 @@ pub(super) fn write_glb(
     Ok(file.finish()?)
 }
 
-/// The bytes of the file.
+/// Returns the bytes of the file.
 fn scene(
     champions: &[ExportedChampion],
     progress: &ExportProgress,
@@ -72,7 +72,7 @@ fn scene(
     Ok(pieces.into_glb())
 }
 
-/// The program, and the facts about each champion.
+/// Returns the scene's metadata: this program, and the facts about each champion.
 fn asset(champions: &[ExportedChampion]) -> Asset {
     Asset {
         generator: Some(generator()),
@@ -97,7 +97,7 @@ fn ground(pieces: &mut SceneParts, bounds: &Bounds) -> Index<Node> {
     })
 }
 
-/// A light from the right, behind and above.
+/// Adds a directional light from the right, behind and above.
 fn sun(root: &mut Root) -> Index<Node> {
     root.extensions_used.push("KHR_lights_punctual".to_owned());
     let light = root.push(Light {
@@ -121,7 +121,7 @@ fn sun(root: &mut Root) -> Index<Node> {
     })
 }
 
-/// A camera at the side of the first lane, which sees everything.
+/// Adds a camera at the side of the first lane that sees the whole scene.
 fn camera(root: &mut Root, bounds: &Bounds) -> Index<Node> {
     let middle = (bounds.min + bounds.max) / 2.0;
     let radius_m = bounds.min.distance(bounds.max) / 2.0;
@@ -152,7 +152,7 @@ fn camera(root: &mut Root, bounds: &Bounds) -> Index<Node> {
     })
 }
 
-/// The rotation of a camera or light, which look along their negative z axis, towards a direction, with z up.
+/// Returns the rotation that turns a camera or light from its negative z axis towards `direction`, with z up.
 fn looking(direction: Vector) -> UnitQuaternion {
     let turn = Rotation::look_to_rh(direction.normalize(), Vector::Z).inverse().normalize();
     UnitQuaternion(turn.to_array())
@@ -164,12 +164,12 @@ mod tests {
     use crate::run::RunControl;
     use snakes_core::save::shipped_champion;
 
-    /// A number at a place in little endian.
+    /// Reads a 32-bit number in little endian.
     fn number(bytes: &[u8], at: usize) -> usize {
         u32::from_le_bytes(bytes[at..at + 4].try_into().expect("four bytes")) as usize
     }
 
-    /// The JSON of a file, after a check of the file's chunks.
+    /// Checks the chunks of a file, and returns its JSON.
     fn json_of(bytes: &[u8]) -> Root {
         assert_eq!((&bytes[..4], number(bytes, 4)), (&b"glTF"[..], 2));
         assert_eq!(number(bytes, 8), bytes.len());

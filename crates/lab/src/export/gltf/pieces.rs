@@ -1,4 +1,4 @@
-//! The parts of a glTF file in progress: its description, and its buffer.
+//! A glTF file in progress: its JSON description, and its buffer.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -29,7 +29,7 @@ pub(super) struct Look {
 }
 
 impl SceneParts {
-    /// An empty file.
+    /// Creates an empty file with this metadata.
     pub fn new(asset: Asset) -> Self {
         let mut root = Root { asset, ..Root::default() };
         let bytes = root.push(Buffer {
@@ -57,7 +57,7 @@ impl SceneParts {
         })
     }
 
-    /// Adds a mesh of shapes, each with a material.
+    /// Adds a mesh that consists of shapes, each with a material.
     pub fn mesh(&mut self, name: &str, shapes: &[(MeshBuilder, Index<Material>)]) -> Index<Mesh> {
         let primitives = shapes.iter().map(|(shape, material)| {
             let positions = self.vectors(&shape.positions, true);
@@ -106,7 +106,7 @@ impl SceneParts {
         self.accessor(&bytes, ComponentType::U32, Type::Scalar, Some(Target::ElementArrayBuffer))
     }
 
-    /// Adds the times of samples, in s.
+    /// Adds the times of an animation's samples, in s.
     pub fn times(&mut self, times_s: &[f32]) -> Index<Accessor> {
         let accessor = self.floats(times_s, Type::Scalar, None);
         let ends = [times_s.first(), times_s.last()];
@@ -116,7 +116,7 @@ impl SceneParts {
         accessor
     }
 
-    /// Adds numbers, as elements of a type.
+    /// Adds numbers as elements of a type, such as vectors.
     pub fn floats(
         &mut self,
         numbers: &[f32],
@@ -134,7 +134,7 @@ impl SceneParts {
         element: Type,
         target: Option<Target>,
     ) -> Index<Accessor> {
-        // All components have four bytes, and so everything is aligned.
+        // All components have four bytes, so everything is aligned.
         let view = self.root.push(View {
             buffer: self.bytes,
             byte_length: bytes.len().into(),
@@ -162,11 +162,11 @@ impl SceneParts {
         })
     }
 
-    /// The bytes of the file: a header, and two chunks with their lengths.
+    /// Returns the bytes of the file: a header, and two chunks with their lengths.
     pub fn into_glb(mut self) -> io::Result<Vec<u8>> {
         self.root.buffers[self.bytes.value()].byte_length = self.buffer.len().into();
         let mut json = self.root.to_vec().map_err(io::Error::from)?;
-        // Chunks have whole words.
+        // The length of a chunk must be a multiple of four bytes.
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = |bytes: usize| {
             let too_long = |_| io::Error::other("more than 4 GiB, the most that glTF allows");
@@ -185,7 +185,7 @@ impl SceneParts {
     }
 }
 
-/// A part of a colour in linear light, of one in sRGB.
+/// Converts one component of an sRGB colour, 0 to 1, to linear light.
 fn linear(part: f32) -> f32 {
     if part <= 0.04045 { part / 12.92 } else { libm::powf((part + 0.055) / 1.055, 2.4) }
 }

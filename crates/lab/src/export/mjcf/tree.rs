@@ -1,4 +1,4 @@
-//! The parts of a body within each other, with their hinges.
+//! The tree of a body's parts, with their hinges.
 
 use std::io;
 
@@ -6,7 +6,7 @@ use super::super::xml_text::{XmlText, spaced};
 use super::{LIMB_COLORS, LOCKED_RAD, OTHER_FRICTION, head_start, part_name, rgba};
 use snakes_core::world::{JointPlan, PartPlan, Rotation, SpringPlan, Vector, WorldPlan};
 
-/// The parts within each other, from the head.
+/// Writes the parts, each within its parent, beginning with the head.
 pub(super) fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let name = part_name(&plan.body, 0);
     let (at_m, turn_rad) = head_start(plan);
@@ -15,7 +15,7 @@ pub(super) fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let [pos, quat] = place;
     xml.open("body", &[("name", name), pos, quat])?;
     xml.leaf("freejoint", &[("name", "free".into())])?;
-    // It follows the snake from its right-hand side.
+    // The camera follows the snake from its right-hand side.
     xml.leaf(
         "camera",
         &[
@@ -29,7 +29,7 @@ pub(super) fn limbs(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     xml.close("body")
 }
 
-/// The box of a part, and all parts that are joined to it from behind, in the order of the plan.
+/// Writes the box of a part, and within it all parts that are joined to it from behind, in the order of the plan.
 fn part(xml: &mut XmlText, plan: &WorldPlan, index: usize) -> io::Result<()> {
     let body = &plan.body;
     let part_plan = &body.parts[index];
@@ -71,7 +71,7 @@ fn part(xml: &mut XmlText, plan: &WorldPlan, index: usize) -> io::Result<()> {
     Ok(())
 }
 
-/// The hinges of a universal joint at the front face of its rear limb.
+/// Writes the two hinges of a universal joint, at the front face of its rear limb.
 fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &PartPlan) -> io::Result<()> {
     let axes = [("bend", "1 0 0", joint.bend_limit_rad), ("twist", "0 1 0", joint.twist_limit_rad)];
     axes.into_iter().try_for_each(|(name, axis, limit_rad)| {
@@ -90,7 +90,7 @@ fn hinges(xml: &mut XmlText, number: usize, joint: &JointPlan, limb: &PartPlan) 
     })
 }
 
-/// The three elastic hinges at the front face of a part of a soft limb.
+/// Writes the three elastic hinges at the front face of a part of a soft limb.
 fn spring_hinges(
     xml: &mut XmlText,
     of_part: &str,
@@ -114,7 +114,7 @@ fn spring_hinges(
     })
 }
 
-/// A key frame with the angles of the joints at the start, if they are not all 0.
+/// Writes a key frame with the angles of the joints at the start, if they are not all 0.
 pub(super) fn start(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let start_rad = |joint: &JointPlan| joint.mount.map_or([0.0; 2], |mount| mount.start_rad);
     if plan.body.joints.iter().all(|joint| start_rad(joint) == [0.0; 2]) {
@@ -123,7 +123,7 @@ pub(super) fn start(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     let (at_m, turn_rad) = head_start(plan);
     let (sin, cos) = libm::sincosf(turn_rad / 2.0);
     let mut numbers = vec![at_m[0], at_m[1], at_m[2], cos, 0.0, 0.0, sin];
-    // MuJoCo follows one branch to its end before the next.
+    // MuJoCo lists one branch to its end before the next.
     let mut left = vec![0];
     while let Some(part) = left.pop() {
         let of_part = plan.body.joints.iter().find(|joint| joint.child == part);

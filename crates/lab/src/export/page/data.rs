@@ -1,4 +1,4 @@
-//! The data of a page: recorded motion and facts of each champion.
+//! The data of a page: recorded motion of each champion, and facts about it.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -13,22 +13,22 @@ use snakes_core::schema::{Choices, PerPart};
 use snakes_core::score::{Fitness, Rollout, arrived_y_m};
 use snakes_core::world::{StairSolid, Stairs};
 
-/// Everything that the page's script reads.
+/// All data that the page's script reads.
 #[derive(Debug, Serialize)]
 pub struct PageData {
-    /// The page's heading.
+    /// Heading of the page.
     pub title: String,
-    /// The line below it.
+    /// Line below the heading.
     pub lead: String,
-    /// The version of the engine.
+    /// Version of the engine.
     engine: u32,
-    /// Whether the champions are those of a run's generations, which are shown one at a time.
+    /// Whether the champions belong to the generations of a run, and are shown one at a time.
     is_run: bool,
-    /// The champions.
+    /// Champions of the page.
     pub champions: Vec<PageChampion>,
 }
 
-/// A solid of the stairs: its middle and its size across, along and upwards, in metres, and its turn as x, y, z, w.
+/// A solid of the stairs: its centre and its size (across, along, up) in metres, and its rotation as a quaternion x, y, z, w.
 #[derive(Debug, Serialize)]
 struct PageSolid {
     at: [f32; 3],
@@ -47,60 +47,60 @@ impl PageSolid {
 /// A champion with its recorded motion.
 #[derive(Debug, Serialize)]
 pub struct PageChampion {
-    /// Its name.
+    /// Name of the champion.
     pub name: String,
-    /// Labels and texts about it.
+    /// Facts about the champion: labels and texts.
     pub facts: Vec<(&'static str, String)>,
-    /// Where it ended, such as "stands on the landing".
+    /// Where the champion ended, such as "stands on the landing".
     meaning: String,
     hash: String,
     friction: f32,
-    /// Width of its stairs, in metres.
+    /// Width of the stairs, in metres.
     width_m: f32,
     step_count: u32,
-    /// The solids of its stairs.
+    /// Solids of the stairs.
     stairs: Vec<PageSolid>,
-    /// The edges of its steps: y and z, in metres, and 1, or -1 for one that leads down.
+    /// Edges of the steps: y and z in metres, and 1 for a step up or -1 for a step down.
     edges: Vec<[f32; 3]>,
-    /// The outline of its stairs from the side, for the drawing: y and z, in metres.
+    /// Outline of the stairs from the side, for the drawing: y and z in metres.
     #[serde(skip)]
     pub outline: Vec<[f32; 2]>,
-    /// The size of each part across, along and upwards, in metres; the head first.
+    /// Size of each part across, along and upwards, in metres; the head first.
     pub parts: Vec<[f32; 3]>,
-    /// The index of the limb of each part; the head is 0.
+    /// Index of the limb to which each part belongs; the head is 0.
     pub limbs: Vec<usize>,
     /// Length of a physics step, in s.
     step_s: f32,
     /// Time from one frame to the next, in s.
     frame_s: f32,
     frames: usize,
-    /// Metres per unit of the positions.
+    /// Length of one unit of the positions in `poses`, in metres.
     unit_m: f32,
-    /// Frame by frame and part by part, seven numbers of 16 bits: position, and rotation times 32,767.
+    /// Poses as base64, frame by frame and part by part: seven numbers of 16 bits each, the position and the rotation times 32,767.
     poses: String,
-    /// Frame by frame and joint by joint, bend and twist, in shares of `torque_unit_nm` times 32,767.
+    /// Torques as base64, frame by frame and joint by joint: bend and twist as shares of `torque_unit_nm` times 32,767.
     torques: String,
     torque_unit_nm: f32,
-    /// Steps of the stairs below the middle limb, frame by frame.
+    /// Number of steps of the stairs below the middle limb, frame by frame.
     steps: Vec<u32>,
-    /// Energy that the joints have spent, frame by frame, in J.
+    /// Energy that the joints have spent so far, frame by frame, in J.
     energy: Vec<u32>,
-    /// The text of its file.
+    /// Text of the champion's file.
     file: String,
-    /// The recorded poses, for the drawing.
+    /// Recorded poses of the parts, frame by frame, for the drawing.
     #[serde(skip)]
     pub drawn: Vec<Vec<[f32; 7]>>,
 }
 
-/// Frames in a second, as far as there are fewer than [`MOST_FRAMES`]; half of them for each champion of a run.
+/// Frames per second, unless there would be more than [`MOST_FRAMES`]; half as many for each champion of a run.
 const FRAMES_PER_S: u32 = 30;
-/// Maximum number of frames.
+/// Maximum number of frames of a champion.
 const MOST_FRAMES: u32 = 6000;
-/// The greatest number of 16 bits.
+/// Greatest signed number of 16 bits.
 const MOST: f32 = 32_767.0;
 
 impl PageData {
-    /// Records all champions.
+    /// Simulates and records all champions.
     pub fn recorded(source: &ExportSource, progress: &ExportProgress) -> Result<Self, ExportError> {
         let champions = &source.champions;
         let is_run = source.run.is_some();
@@ -128,7 +128,7 @@ impl PageData {
     }
 }
 
-/// The motion of a champion, frame by frame.
+/// Motion of a champion, frame by frame.
 #[derive(Default)]
 struct Frames {
     poses: Vec<Vec<[f32; 7]>>,
@@ -213,19 +213,19 @@ impl PageChampion {
     }
 }
 
-/// Numbers as text: 16 bits each, the lower byte first.
+/// Packs numbers as base64: 16 bits each, the lower byte first.
 fn packed(numbers: impl Iterator<Item = f32>) -> String {
     let bytes: Vec<u8> = numbers.flat_map(|number| (number.round() as i16).to_le_bytes()).collect();
     STANDARD.encode(bytes)
 }
 
-/// The edge of a step, and where its tread lies: behind it, or before it if it leads down.
+/// Returns y and z of the edge of a step, in metres, and 1 if the step leads up or -1 if it leads down.
 fn edge(stairs: &Stairs, step: u32) -> [f32; 3] {
     let [y_m, z_m] = stairs.edge_m(step);
     [y_m, z_m, stairs.step_rise_m(step).signum()]
 }
 
-/// The number of steps, and their depth.
+/// Describes the number of steps and their depth in words.
 fn stairs_in_words(stairs: &Stairs) -> String {
     let depth = match &stairs.tread_m {
         PerPart::All(tread_m) => format!("each {tread_m} m deep"),
@@ -234,7 +234,7 @@ fn stairs_in_words(stairs: &Stairs) -> String {
     format!("{} steps, {depth}", stairs.steps)
 }
 
-/// Facts about a champion: result, body, world and origin.
+/// Returns facts about a champion: result, body, world and origin.
 fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
     let champion = &exported.loaded.champion;
     let (origin, trial) = (&champion.origin, &champion.trial);

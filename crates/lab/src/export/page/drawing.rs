@@ -1,15 +1,15 @@
-//! A drawing of a climb from the side, at equal intervals, which needs no script.
+//! A drawing of a climb from the side at equal intervals of time, as SVG, which needs no script.
 
 use std::fmt::Write;
 
 use super::data::PageChampion;
 
-/// Number of moments.
+/// Number of moments that the drawing shows.
 const MOMENTS: usize = 9;
-/// Size of the drawing, in its own units.
+/// Width and height of the drawing, in its own units.
 const SIZE: [f32; 2] = [960.0, 540.0];
 
-/// The drawing of the first champion.
+/// Draws the first champion; empty without champions.
 pub fn of(champions: &[PageChampion]) -> String {
     champions.first().map(drawing).unwrap_or_default()
 }
@@ -33,7 +33,7 @@ fn drawing(champion: &PageChampion) -> String {
         SIZE[0], SIZE[1]
     );
     let mut add = |text: std::fmt::Arguments| {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = svg.write_fmt(text);
     };
     if let (Some([first_m, _]), Some([last_m, _])) =
@@ -53,7 +53,7 @@ fn drawing(champion: &PageChampion) -> String {
         let opacity = 0.25 + 0.75 * moment as f32 / (MOMENTS - 1) as f32;
         for (limb, (pose, size)) in champion.limbs.iter().zip(limbs.iter().zip(&champion.parts)) {
             let [_, y, z, qx, qy, qz, qw] = *pose;
-            // The limb's axes along it and upwards, seen from the side.
+            // Axes of the limb along its length and upwards, seen from the side.
             let along = [1.0 - 2.0 * (qx * qx + qz * qz), 2.0 * (qy * qz + qx * qw)];
             let up = [2.0 * (qy * qz - qx * qw), 1.0 - 2.0 * (qx * qx + qy * qy)];
             let corners = [[0.5, 0.5], [0.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]].map(|[a, b]| {

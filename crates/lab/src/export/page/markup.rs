@@ -1,9 +1,9 @@
-//! Markup of the parts of a page that are readable without scripts.
+//! Markup for the parts of a page that are readable without scripts.
 
 use super::data::PageChampion;
 use crate::export::source::ExportSource;
 
-/// Text with every character escaped that markup gives a meaning to.
+/// Escapes every character with a meaning in markup, and replaces control characters by spaces.
 pub fn escaped(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -20,7 +20,7 @@ pub fn escaped(text: &str) -> String {
     result
 }
 
-/// Tables of what each champion is, those of a race folded; of a run, that of its last champion.
+/// Returns tables of facts: of each champion, folded if several race, or of the last champion of a run.
 pub fn facts(source: &ExportSource, champions: &[PageChampion]) -> String {
     let table = |champion: &PageChampion| {
         let row = |(label, text): &(&str, String)| {

@@ -5,12 +5,12 @@ use crate::export::source::ExportedRun;
 use snakes_core::evolve::{SettingChanges, Statistics, fields, run_hash};
 use snakes_core::save::shipped_presets;
 
-/// Size of the chart, in its own units.
+/// Width and height of the chart, in its own units.
 const SIZE: [f32; 2] = [720.0, 260.0];
 /// Margins of the chart: left, top, right, bottom.
 const MARGINS: [f32; 4] = [56.0, 14.0, 14.0, 34.0];
 
-/// Markup about a run. The buttons choose champions by their places in the page's data.
+/// Returns markup about a run. Its buttons refer to champions by their indices in the page's data.
 pub fn of(run: &ExportedRun) -> String {
     let buttons: String = run
         .generations
@@ -59,7 +59,7 @@ pub fn of(run: &ExportedRun) -> String {
     )
 }
 
-/// The command that repeats the run: the preset, and every setting in which the run differs from it.
+/// Returns the command that repeats the run: the preset, and every setting that differs from the preset.
 fn command(run: &ExportedRun) -> String {
     let plan = &run.plan;
     let shipped = shipped_presets().unwrap_or_default();
@@ -90,7 +90,7 @@ fn command(run: &ExportedRun) -> String {
     words
 }
 
-/// A chart of the best, the median and the mean fitness.
+/// Draws a chart of the best, the median and the mean fitness as SVG.
 fn chart(run: &ExportedRun) -> String {
     let statistics: Vec<_> = run
         .records
