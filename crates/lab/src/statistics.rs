@@ -2,23 +2,23 @@
 
 use std::cmp::Ordering;
 
-/// The 97.5th percentile of the normal distribution.
+/// The 97.5th percentile of the standard normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// Median and quartiles.
+/// Median and quartiles of some values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quartiles {
-    /// A quarter is below.
+    /// Lower quartile: a quarter of the values is below.
     pub low: f64,
-    /// Half is below.
+    /// Median: half of the values is below.
     pub median: f64,
-    /// Three quarters are below.
+    /// Upper quartile: three quarters of the values are below.
     pub high: f64,
 }
 
 impl Quartiles {
-    /// The quartiles of some values, by linear interpolation between them (definition 7 of Hyndman and Fan, The
-    /// American Statistician 50 (1996)); none if there are no values.
+    /// Computes the quartiles of some values, interpolating linearly between them (definition 7 of Hyndman and Fan, The American
+    /// Statistician 50 (1996)). Returns `None` without values.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
@@ -27,14 +27,14 @@ impl Quartiles {
             let place = share * last as f64;
             let (below, part) = (place as usize, place - (place as usize) as f64);
             let (low, high) = (values[below], values[(below + 1).min(last)]);
-            // Infinity times zero is not a number.
+            // The product of infinity and zero would be not a number.
             if part == 0.0 || low == high { low } else { low + (high - low) * part }
         };
         Some(Self { low: at(0.25), median: at(0.5), high: at(0.75) })
     }
 }
 
-/// A share and its 95 % confidence interval.
+/// A share, 0 to 1, and its 95 % confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Share {
     /// The observed share.
@@ -46,8 +46,8 @@ pub struct Share {
 }
 
 impl Share {
-    /// The share of `count` in `of`, with the score interval of Wilson (Probable inference, the law of
-    /// succession, and statistical inference, 1927) at 95 %.
+    /// Returns the share of `count` in `of`, with the score interval of Wilson (Probable inference, the law of succession, and
+    /// statistical inference, 1927) at 95 %.
     pub fn of(count: u32, of: u32) -> Self {
         let n = f64::from(of.max(1));
         let seen = f64::from(count) / n;
@@ -57,13 +57,13 @@ impl Share {
     }
 }
 
-/// The probability, from 0 to 1, that of `more + fewer` pairs without a tie the counts of both signs differ by at least as
-/// much as here, if both signs are equally likely: the exact two-sided sign test (Dixon and Mood, The statistical sign
-/// test, Journal of the American Statistical Association 41 (1946)). Ties are left out beforehand.
+/// Returns the probability, from 0 to 1, that the counts of both signs among `more + fewer` pairs differ by at least `more - fewer`
+/// if both signs are equally likely: the exact two-sided sign test (Dixon and Mood, The statistical sign test, Journal of the
+/// American Statistical Association 41 (1946)). Ties must not be counted.
 pub fn sign_test(more: u32, fewer: u32) -> f64 {
     let pairs = more + fewer;
-    // The probability of each count follows from that of the count before; in logarithms, because those of thousands of
-    // pairs are too small for a number.
+    // The probability of each count follows from that of the count before. Logarithms are used because the probabilities of
+    // thousands of pairs underflow.
     let mut log_chance = -f64::from(pairs) * std::f64::consts::LN_2;
     let mut tail = 0.0;
     for count in 0..=more.min(fewer) {
@@ -73,23 +73,24 @@ pub fn sign_test(more: u32, fewer: u32) -> f64 {
     (2.0 * tail).min(1.0)
 }
 
-/// How the first of paired values compares with the second.
+/// Comparison of the first with the second values of pairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PairedDifference {
     /// Number of pairs whose first value is larger.
     pub more: u32,
     /// Number of pairs whose second value is larger.
     pub fewer: u32,
-    /// Number of pairs.
+    /// Number of pairs, including ties.
     pub pairs: usize,
-    /// Probability of the sign test.
+    /// Probability of the sign test, 0 to 1.
     pub p: f64,
-    /// Median difference and its interval, over the pairs in which both values are known.
+    /// Median difference and, with at least six pairs, its interval. Only pairs with two known values count; `None` if there are
+    /// none.
     pub median: Option<(f64, Option<[f64; 2]>)>,
 }
 
 impl PairedDifference {
-    /// Compares pairs. An unknown value, that of a failed run, is lower than any other.
+    /// Compares pairs. An unknown value, which stands for a failed run, counts as lower than any known value.
     pub fn of(pairs: &[[Option<f64>; 2]]) -> Self {
         let or_lowest = |value: Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
         let count = |first: usize, second: usize| {
@@ -99,7 +100,7 @@ impl PairedDifference {
         };
         let (more, fewer) = (count(0, 1), count(1, 0));
         let known = pairs.iter().filter_map(|[a, b]| Some((*a)? - (*b)?));
-        // Two events that never came do not differ.
+        // Two infinite values stand for events that never came, which do not differ.
         let known = known.map(|difference| if difference.is_nan() { 0.0 } else { difference });
         Self {
             more,
@@ -111,14 +112,14 @@ impl PairedDifference {
     }
 }
 
-/// The median of paired differences and its interval of at least 95 %, by the order statistics that the sign test does not
-/// reject. No interval below six pairs, of which none has that confidence; nothing without pairs.
+/// Returns the median of paired differences, and its interval with a confidence of at least 95 %, between the order statistics that
+/// the sign test does not reject. Fewer than six pairs have no interval. Returns `None` without pairs.
 pub fn median_difference(mut differences: Vec<f64>) -> Option<(f64, Option<[f64; 2]>)> {
     differences.sort_by(f64::total_cmp);
     let pairs = differences.len();
     let middle = pairs.checked_sub(1)? / 2;
     let median = f64::midpoint(differences[middle], differences[pairs / 2]);
-    // Leaves out as many at each end as the test rejects.
+    // The interval leaves out as many values at each end as the sign test rejects.
     let count = u32::try_from(pairs).ok()?;
     let left_out =
         (0..count / 2).take_while(|&fewer| sign_test(count - fewer, fewer) <= 0.05).last();
@@ -126,9 +127,9 @@ pub fn median_difference(mut differences: Vec<f64>) -> Option<(f64, Option<[f64;
     Some((median, interval.map(|from| [differences[from], differences[pairs - 1 - from]])))
 }
 
-/// Probabilities corrected by the method of Holm (A simple sequentially rejective multiple test procedure, Scandinavian Journal
-/// of Statistics 6 (1979)), in the order of the given ones: a test that rejects those below 5 % errs in any of them with a
-/// probability of 5 % at most.
+/// Corrects the probabilities of several tests by the method of Holm (A simple sequentially rejective multiple test procedure,
+/// Scandinavian Journal of Statistics 6 (1979)), and returns them in the given order. If all tests below 5 % are rejected, the
+/// probability of any wrong rejection is at most 5 %.
 pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     let count = probabilities.len();
     let mut order: Vec<usize> = (0..count).collect();
@@ -141,11 +142,11 @@ pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// How often one of some values is greater than one of some others: the effect size A of Vargha and Delaney (Journal of
-/// Educational and Behavioral Statistics 25 (2000)).
+/// Effect size A of Vargha and Delaney (Journal of Educational and Behavioral Statistics 25 (2000)): the probability that a value
+/// of one group is greater than a value of another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Superiority {
-    /// The share of all pairs in which the first value is greater; equal ones count half.
+    /// Share of all pairs in which the first value is greater. Equal values count half.
     pub seen: f64,
     /// Lower end of the 95 % interval.
     pub least: f64,
@@ -154,8 +155,8 @@ pub struct Superiority {
 }
 
 impl Superiority {
-    /// Compares all values with all others. The interval is that of method 5 of Newcombe (Confidence intervals for an effect
-    /// size measure based on the Mann-Whitney statistic, part 2, Statistics in Medicine 25 (2006)). None without values.
+    /// Compares all values with all others. The interval is that of method 5 of Newcombe (Confidence intervals for an effect size
+    /// measure based on the Mann-Whitney statistic, part 2, Statistics in Medicine 25 (2006)). Returns `None` if a group is empty.
     pub fn of(values: &[f64], others: &[f64]) -> Option<Self> {
         let pairs =
             values.iter().flat_map(|value| others.iter().map(move |other| value.total_cmp(other)));
@@ -175,7 +176,7 @@ impl Superiority {
             let spread = 1.0 + half * (1.0 - share) / (2.0 - share) + half * share / (1.0 + share);
             (share * (1.0 - share) * spread / all).sqrt()
         };
-        // The ends are where the seen share would be just as far away as 95 % of such samples are.
+        // Each end is a probability at which the observed share is just at the edge of the 95 % of the most likely samples.
         let end = |mut inside: f64, mut outside: f64| {
             for _ in 0..60 {
                 let middle = f64::midpoint(inside, outside);
@@ -197,7 +198,7 @@ mod tests {
 
     #[test]
     fn the_probabilities_are_those_of_fair_coins() {
-        // Of ten coins none shows tails, or at most one, or two, with probabilities of 1, 11 and 56 in 1,024.
+        // Ten coins show no tails, at most one, or at most two with probabilities of 1, 11 and 56 in 1,024.
         for (more, fewer, expected) in [
             (10, 0, 2.0 / 1024.0),
             (0, 10, 2.0 / 1024.0),
@@ -220,7 +221,7 @@ mod tests {
         let (median, interval) =
             median_difference((0..4000).map(f64::from).collect()).expect("pairs");
         let [from, to] = interval.expect("many");
-        // The interval is 1.96 times the square root of the number wide, half of it to either side.
+        // The interval reaches 0.98 times the square root of the number of pairs to either side.
         assert!((from - (median - 62.0)).abs() < 3.0 && (to - (median + 62.0)).abs() < 3.0);
     }
 
@@ -237,8 +238,8 @@ mod tests {
         assert_eq!(found.p, 1.0);
     }
 
-    /// Of ten pairs, the second and the ninth bound the median with a confidence of 1 - 22 / 1,024 (any table of the
-    /// binomial distribution).
+    /// The second and the ninth of ten differences bound the median with a confidence of 1 - 22 / 1,024 (any table of the binomial
+    /// distribution).
     #[test]
     fn the_interval_of_the_median_leaves_out_what_the_test_rejects() {
         let ten = (1..=10).rev().map(f64::from).collect();
@@ -259,7 +260,7 @@ mod tests {
 
     #[test]
     fn the_interval_is_the_score_interval_of_wilson() {
-        // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263 and 15 of 148.
+        // Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263, and 15 of 148.
         for (count, of, least, most) in
             [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)]
         {

@@ -11,7 +11,7 @@ use snakes_core::evolve::{
 use snakes_core::genome::Genome;
 use snakes_core::save::StudyValue;
 
-/// The bodies of a run.
+/// Measurements of the bodies of a run.
 pub(super) struct BodyMeasures {
     archive: Archive<()>,
     feasible_cells: usize,
@@ -41,7 +41,7 @@ impl BodyMeasures {
         }
     }
 
-    /// Adds the values of the whole run.
+    /// Adds the values of the whole run to `values`.
     ///
     /// # Errors
     /// `control` was cancelled.
@@ -71,7 +71,7 @@ impl BodyMeasures {
     }
 }
 
-/// Number of individuals in a line of descent that were born after a generation with another structure than their first
+/// Counts the individuals in a line of descent that were born after `generation` and have another structure than their first
 /// parent.
 fn changes_after(ancestry: &Ancestry, generation: u32) -> usize {
     let pairs = ancestry.line.iter().zip(ancestry.line.iter().skip(1));

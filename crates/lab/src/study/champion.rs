@@ -1,4 +1,4 @@
-//! The values of a champion in its own trial.
+//! Values of a champion in its own trial.
 
 use std::collections::BTreeMap;
 
@@ -10,12 +10,12 @@ use snakes_core::genome::{ControllerGenes, joint_tree};
 use snakes_core::save::StudyValue;
 use snakes_core::score::Rollout;
 
-/// Number of rules whose share of all decisions is measured.
+/// Number of the most used rules whose share of all decisions is measured.
 const MOST_USED: usize = 20;
-/// Share of its decisions from which on a champion is said to use a wave.
+/// Minimum share of a champion's decisions in which it must choose a wave to count as using it.
 const LEAST_WAVE_SHARE: f64 = 0.1;
 
-/// The values of a run's champion, by their names; a run without one has climbed nothing.
+/// Returns the values of a run's champion by their names. A run without a champion has climbed no step.
 pub(super) fn champion_values(champion: Option<&Champion>) -> BTreeMap<String, StudyValue> {
     let mut values = BTreeMap::new();
     let mut add = |name: &str, value| values.insert(name.to_owned(), value);
@@ -54,11 +54,11 @@ pub(super) fn champion_values(champion: Option<&Champion>) -> BTreeMap<String, S
     values
 }
 
-/// The number of rules of a champion with rules, and the share of its decisions that the most used of them make; none for other
-/// champions. The trial is simulated again.
+/// Simulates the trial of a champion with rules again. Returns the number of its rules, and the share of its decisions that the
+/// most used rules make. `None` for other champions.
 ///
-/// Several rules may stand behind one posture. The decision then counts for the rule with the greatest weight in the choice:
-/// the greatest fitness in XCS, the greatest strength in ZCS, and of equals the eldest.
+/// Several rules may advocate the chosen posture. The decision then counts for the rule with the greatest weight (the fitness in
+/// XCS, the strength in ZCS) and, of equal rules, for the eldest.
 fn rule_use(champion: &Champion) -> Option<(usize, f64)> {
     let ControllerGenes::Decisions(genes) = &champion.genome.controller else { return None };
     if matches!(genes.policy, Policy::Table(_)) {

@@ -1,4 +1,4 @@
-//! Checks of a study before any run is made.
+//! Checks of a study before its runs begin.
 
 use super::definition::{Goal, Study};
 use super::measure::Measure;
@@ -8,10 +8,10 @@ use snakes_core::check::{Invalid, name, quoted, within};
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
 
-/// Maximum number of seeds.
+/// Maximum number of seeds of a study.
 const MAX_SEEDS: u64 = 10_000;
 impl Study {
-    /// Checks everything that can be checked without making a run.
+    /// Checks everything that can be checked without a run.
     ///
     /// # Errors
     /// The first field that is not allowed.
@@ -74,7 +74,7 @@ impl Study {
         Ok(())
     }
 
-    /// Takes other suites, without the shown and compared values of those that it had.
+    /// Replaces the suites of the exam. Removes shown and compared values that only the removed suites measure.
     pub fn set_suites(&mut self, suites: Vec<ExamSuite>) {
         self.suites = suites;
         let (mut show, mut compare) = (self.show.clone(), self.compare.clone());
@@ -83,7 +83,7 @@ impl Study {
         (self.show, self.compare) = (show, compare);
     }
 
-    /// Refuses a value that does not exist, or that only a suite measures which the study does not have.
+    /// Refuses a value that does not exist, or that only a suite measures which the study does not use.
     fn check_measured(&self, field: &str, name: &str) -> Result<(), Invalid> {
         value(field, name)?;
         let is_of = |suite: &&ExamSuite| {
@@ -102,10 +102,10 @@ impl Study {
 }
 
 impl Measure {
-    /// Checks the values that it names.
+    /// Checks the values that the measure names.
     ///
     /// # Errors
-    /// There is no such value, or it is of another form.
+    /// A value does not exist, or has another form than the measure needs.
     fn check(&self, study: &Study) -> Result<(), Invalid> {
         let field = "demands.measure.of";
         let is_expected = |form: Form| match self {

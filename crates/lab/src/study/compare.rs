@@ -1,28 +1,28 @@
-//! Every arm against its baseline: a test, a corrected probability, a difference and an effect size.
+//! Comparisons of every arm with its baseline: a test, a corrected probability, a difference and an effect size.
 
 use super::definition::Arm;
 use super::results::Results;
 use super::values::{ValueInfo, value};
 use crate::statistics::{PairedDifference, Superiority, holm};
 
-/// An arm compared with its baseline by one value.
+/// Comparison of an arm with its baseline by one value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArmComparison<'a> {
-    /// The arm.
+    /// The arm that is compared.
     pub arm: &'a Arm,
     /// The arm with which it is compared.
     pub baseline: &'a Arm,
-    /// The value.
+    /// The value by which they are compared.
     pub value: &'static ValueInfo,
-    /// The differences of the runs with the same seeds.
+    /// Differences between runs with the same seeds.
     pub difference: PairedDifference,
-    /// The probability of the sign test, corrected for the number of arms that are compared by this value (Holm).
+    /// Probability of the sign test, corrected for the number of comparisons by this value (Holm).
     pub corrected_p: f64,
-    /// The probability that a run of the arm has a greater value than a run of the baseline; none without runs of both.
+    /// Probability that a run of the arm has a greater value than a run of the baseline. `None` unless both have runs.
     pub superiority: Option<Superiority>,
 }
 
-/// Compares all arms with their baselines by each value that the study names.
+/// Compares all arms with their baselines by each value in the study's `compare`.
 pub fn comparisons<'a>(results: &Results<'a>) -> Vec<ArmComparison<'a>> {
     let study = results.study;
     let mut all = Vec::new();
@@ -32,7 +32,7 @@ pub fn comparisons<'a>(results: &Results<'a>) -> Vec<ArmComparison<'a>> {
         let mut of_value: Vec<ArmComparison<'a>> = Vec::new();
         for (arm, baseline) in study.selected_arms().filter_map(against) {
             let pairs = results.pairs(arm, baseline, value);
-            // One pair shows no difference between arms, such as that of two best champions.
+            // A single pair, such as that of two best champions, shows no difference between arms.
             if pairs.len() < 2 {
                 continue;
             }

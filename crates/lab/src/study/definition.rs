@@ -1,4 +1,4 @@
-//! A study as data that can be written as RON: arms, seeds, values and demands.
+//! The definition of a study, which is data in RON: arms, seeds, values and demands.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -17,60 +17,60 @@ use snakes_core::save::{
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
 
-/// A study: runs of several arms over several seeds, each of which is measured by the same values.
+/// A study: runs of several arms over several seeds, all measured by the same values.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// Its name, which is that of its files.
+    /// Name of the study, which is also the stem of its files.
     pub name: String,
-    /// Its title.
+    /// Title of the study in tables and pictures.
     pub title: String,
-    /// Its question, in a sentence or two.
+    /// Question of the study, in a sentence or two.
     #[serde(default)]
     pub about: String,
-    /// The preset of the arms that name none.
+    /// Preset of the arms without a preset of their own.
     #[serde(default = "default_preset")]
     pub preset: String,
-    /// The first seed.
+    /// First seed; the others follow one by one.
     #[serde(default = "default_first_seed")]
     pub first_seed: u64,
     /// Number of seeds.
     #[serde(default = "default_seeds")]
     pub seeds: u64,
-    /// Evaluations that a run may spend; none for the generations of the preset.
+    /// Evaluations that a run may spend. `None` for the generations of the preset.
     #[serde(default)]
     pub evaluations: Option<u32>,
-    /// Stairs of all arms, instead of those of their presets: a name, or the path of a file.
+    /// Stairs of all arms: a name, or the path of a file. `None` for the stairs of the presets.
     #[serde(default)]
     pub stairs: Option<String>,
-    /// Changed settings of all arms.
+    /// Settings that all arms change.
     #[serde(default)]
     pub settings: Changes,
     /// Whether trials last as long as those of the exam on other stairs.
     #[serde(default)]
     pub exam_length: bool,
-    /// Strategies that are crossed with controllers; each pair that fits together is an arm.
+    /// Strategies that are combined with controllers. Each pair that fits together is an arm.
     #[serde(default)]
     pub methods: Option<Methods>,
-    /// Arms beside those of `methods`.
+    /// Arms besides those of `methods`.
     #[serde(default)]
     pub arms: Vec<Arm>,
-    /// The arm with which the others are compared; the first, if none is named.
+    /// Name of the arm with which the others are compared. `None` for the first arm.
     #[serde(default)]
     pub baseline: Option<String>,
-    /// Suites of the exam that champions take, in files by their names.
+    /// Suites of the exam for champions, given in files by their names.
     #[serde(default, deserialize_with = "suites_by_name")]
     pub suites: Vec<ExamSuite>,
-    /// Values in the table and the picture, beside those that demands are about.
+    /// Names of the values in the table and the picture, besides those of the demands.
     #[serde(default)]
     pub show: Vec<String>,
-    /// Values that are compared with those of the baseline.
+    /// Names of the values that are compared with those of the baseline.
     #[serde(default)]
     pub compare: Vec<String>,
-    /// For a list of numbers: the published ones, which stand beside those of the runs.
+    /// Published numbers of lists of values, by the name of the list. They are shown beside the numbers of the runs.
     #[serde(default)]
     pub references: BTreeMap<String, Vec<f64>>,
-    /// Number of newborns whose motion is compared between the physics engines; none are, unless it is given.
+    /// Number of newborns whose motion is compared between the physics engines. `None` for no comparison.
     #[serde(default)]
     pub newborns: Option<u32>,
     /// Whether the built-in champions are examined in the other physics engine.
@@ -79,57 +79,57 @@ pub struct Study {
     /// Demands on the results.
     #[serde(default)]
     pub demands: Vec<Demand>,
-    /// The names of the arms that are made and shown; all, if it is empty. The others are only compared with.
+    /// Names of the arms that are run and shown; empty for all. Other arms serve only for comparison.
     #[serde(skip)]
     pub selected: Vec<String>,
 }
 
-/// Strategies and controllers. An empty list stands for all.
+/// Strategies and controllers to be combined. An empty list stands for all.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Methods {
-    /// The strategies.
+    /// Strategies of the arms.
     #[serde(default)]
     pub strategies: Vec<StrategyKind>,
-    /// The controllers.
+    /// Controllers of the arms.
     #[serde(default)]
     pub controllers: Vec<ControllerKind>,
 }
 
-/// An arm: runs with one preset, one list of changed settings and one budget, over all seeds.
+/// An arm: runs with one preset, one list of changed settings and one budget, with all seeds.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Arm {
-    /// Its name.
+    /// Name of the arm.
     pub name: String,
-    /// Its title in tables and pictures; the name, if it is empty.
+    /// Title in tables and pictures; empty for the name.
     #[serde(default)]
     pub title: String,
-    /// Its preset; that of the study, if none is named.
+    /// Preset of the arm; `None` for the preset of the study.
     #[serde(default)]
     pub preset: Option<String>,
-    /// Changed settings.
+    /// Settings that the arm changes.
     #[serde(default)]
     pub settings: Changes,
-    /// Evaluations that a run may spend, instead of those of the study.
+    /// Evaluations that a run of the arm may spend; `None` for those of the study.
     #[serde(default)]
     pub evaluations: Option<u32>,
-    /// How many times the evaluations of the study a run may spend instead.
+    /// Factor on the evaluations of the study; `None` for 1.
     #[serde(default)]
     pub evaluations_times: Option<u32>,
-    /// A goal.
+    /// Goal of a run, whose evaluations are counted; `None` for no goal.
     #[serde(default)]
     pub goal: Option<Goal>,
     /// Whether a run ends with the generation that reaches the goal.
     #[serde(default)]
     pub stops_at_goal: bool,
-    /// The champions that take the exam.
+    /// Which champions of the arm take the exam.
     #[serde(default)]
     pub examined: Examined,
-    /// The arm with which it is compared, instead of the study's.
+    /// Name of the arm with which this arm is compared; `None` for the baseline of the study.
     #[serde(default)]
     pub baseline: Option<String>,
-    /// Its strategy and controller, if it is one of the study's methods.
+    /// Strategy and controller, if the arm belongs to the study's methods.
     #[serde(skip)]
     pub method: Option<(StrategyKind, ControllerKind)>,
 }
@@ -137,21 +137,21 @@ pub struct Arm {
 /// The goal of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub enum Goal {
-    /// Any snake ends on the landing.
+    /// A snake ends on the landing.
     Landing,
-    /// The middle of a generation's champion moves so far towards the stairs, in m.
+    /// The middle of a generation's champion moves at least this far towards the stairs, in m.
     Way(f32),
-    /// A generation's champion climbs so many steps.
+    /// A generation's champion climbs at least this number of steps.
     Steps(u32),
 }
 
-/// Which champions take the exam.
+/// Which champions of an arm take the exam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 pub enum Examined {
     /// The champions of all seeds.
     #[default]
     All,
-    /// The best champion of all seeds: one that landed, of several the one with the most steps, of equals the fittest.
+    /// Only the best champion of all seeds: one that landed before others, then the one with the most steps, then the fittest.
     Best,
     /// No champion.
     Never,
@@ -161,37 +161,37 @@ pub enum Examined {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Demand {
-    /// The arms, each of which has to meet it.
+    /// Names of the arms that must meet the demand; empty for all.
     #[serde(default)]
     pub arms: Vec<String>,
     /// The measure of an arm that the demand bounds.
     pub measure: Measure,
-    /// The arm with which it is compared, where that is not the baseline.
+    /// Name of the arm with which an arm is compared; `None` for the baseline.
     #[serde(default)]
     pub against: Option<String>,
-    /// Whether less is better where more usually is.
+    /// Whether the measure must not exceed the bounds, for measures that usually must reach them.
     #[serde(default)]
     pub at_most: bool,
-    /// The bound that the measure has to reach.
+    /// Bound that the measure must meet.
     #[serde(default)]
     pub must: Option<f64>,
-    /// A bound that is hard to reach, but realistic.
+    /// Bound that is hard to meet, but realistic.
     #[serde(default)]
     pub hard: Option<f64>,
 }
 
-/// Settings by their names, with their values as a file may write them: `{"surface.friction": 0.8, "strategy": "ga"}`.
+/// Changed settings by their names, with values as a file may write them: `{"surface.friction": 0.8, "strategy": "ga"}`.
 pub type Changes = BTreeMap<String, Plain>;
 
-/// A value of a setting.
+/// A value of a setting in a file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Plain {
-    /// Yes or no.
+    /// True or false.
     Bool(bool),
     /// A whole number.
     Whole(i64),
-    /// Any number.
+    /// A number with a fraction.
     Number(f64),
     /// A word, or a number as text.
     Text(String),
@@ -213,10 +213,10 @@ fn suites_by_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Exam
     suites_named("suites", &names).map_err(D::Error::custom)
 }
 
-/// The suites of a list of names, each once, in the order of the list of suites.
+/// Returns the suites with these names, each once, in the usual order of suites.
 ///
 /// # Errors
-/// An unknown name.
+/// A name is unknown.
 pub fn suites_named(field: &str, names: &[String]) -> Result<Vec<ExamSuite>, Invalid> {
     let named = names.iter().map(|name| ExamSuite::named(field, name));
     let mut suites = named.collect::<Result<Vec<_>, _>>()?;
@@ -237,7 +237,7 @@ fn default_seeds() -> u64 {
     10
 }
 
-/// The built-in studies: name and definition.
+/// The built-in studies: name and text of the definition.
 const BUILT_IN: [(&str, &str); 10] = [
     ("table1", include_str!("../../../../assets/studies/table1.ron")),
     ("methods", include_str!("../../../../assets/studies/methods.ron")),
@@ -251,10 +251,10 @@ const BUILT_IN: [(&str, &str); 10] = [
     ("engines", include_str!("../../../../assets/studies/engines.ron")),
 ];
 
-/// The studies that come with the program.
+/// Returns the studies that are built into the program.
 ///
 /// # Errors
-/// None that a test did not find.
+/// A built-in study is broken. A test rules this out.
 pub fn built_in_studies() -> Result<Vec<Study>, SaveError> {
     BUILT_IN.iter().map(|(name, text)| built_in(name, text)).collect()
 }
@@ -265,10 +265,10 @@ fn built_in(name: &str, text: &str) -> Result<Study, SaveError> {
 }
 
 impl Study {
-    /// The built-in study of this name, or else the one in this file.
+    /// Loads the built-in study with this name, or else the study in the file with this path.
     ///
     /// # Errors
-    /// There is neither, or the file is no study.
+    /// There is neither, or the file does not define a study.
     pub fn load(named: &str) -> Result<Self, SaveError> {
         if let Some((name, text)) = BUILT_IN.iter().find(|(name, _)| *name == named) {
             return built_in(name, text);
@@ -287,10 +287,10 @@ impl Study {
         Ok(study)
     }
 
-    /// Makes an arm of each method, in the order in which strategies and controllers are named.
+    /// Makes an arm of each method, in the order of the named strategies and controllers.
     ///
     /// # Errors
-    /// A named strategy fits to no controller, or evolves stairs, so that results on different stairs would be compared.
+    /// A named strategy fits no controller, or it evolves stairs, so that results on different stairs would be compared.
     pub fn set_methods(&mut self) -> Result<(), Invalid> {
         self.arms.retain(|arm| arm.method.is_none());
         let Some(Methods { strategies, controllers }) = &self.methods else { return Ok(()) };
@@ -323,10 +323,10 @@ impl Study {
         Ok(())
     }
 
-    /// The arm of a name.
+    /// Returns the arm with this name.
     ///
     /// # Errors
-    /// There is none.
+    /// There is no such arm.
     pub fn named(&self, field: &str, name: &str) -> Result<&Arm, Invalid> {
         self.arms.iter().find(|arm| arm.name == name).ok_or_else(|| {
             let names: Vec<&str> = self.arms.iter().map(|arm| arm.name.as_str()).collect();
@@ -334,7 +334,7 @@ impl Study {
         })
     }
 
-    /// The arm with which another is compared; none for the baseline itself.
+    /// Returns the arm with which another arm is compared; `None` for the baseline itself.
     pub fn baseline_of(&self, arm: &Arm) -> Option<&Arm> {
         let name = arm.baseline.as_ref().or(self.baseline.as_ref());
         let baseline = match name {
@@ -344,18 +344,18 @@ impl Study {
         (baseline.name != arm.name).then_some(baseline)
     }
 
-    /// The seeds.
+    /// Returns the seeds of the study.
     pub fn seeds(&self) -> std::ops::Range<u64> {
         self.first_seed..self.first_seed + self.seeds
     }
 
-    /// The arms that are made and shown.
+    /// Returns the arms that are run and shown.
     pub fn selected_arms(&self) -> impl Iterator<Item = &Arm> {
         let is_selected = |name: &String| self.selected.is_empty() || self.selected.contains(name);
         self.arms.iter().filter(move |arm| is_selected(&arm.name))
     }
 
-    /// The demands, each with an arm that has to meet it, in the order of the arms.
+    /// Returns each pair of an arm and a demand that the arm must meet, in the order of the arms.
     pub fn demands_by_arm(&self) -> Vec<(&Arm, &Demand)> {
         let concerns =
             |demand: &Demand, arm: &Arm| demand.arms.is_empty() || demand.arms.contains(&arm.name);
@@ -366,7 +366,8 @@ impl Study {
         self.selected_arms().flat_map(of_arm).collect()
     }
 
-    /// The values that are shown: those that the study names, and those that its demands are about.
+    /// Returns the names of the values that are shown: those in `show` and `compare`, and those of the demands. If there are none,
+    /// returns some usual values.
     pub fn shown(&self) -> Vec<String> {
         let mut shown: Vec<String> = self.show.clone();
         let measured = self.demands.iter().flat_map(|demand| demand.measure.values());
@@ -384,7 +385,7 @@ impl Study {
 }
 
 impl Arm {
-    /// Its title, or its name if it has none.
+    /// Returns the title of the arm, or its name if the title is empty.
     pub fn title(&self) -> &str {
         if self.title.is_empty() { &self.name } else { &self.title }
     }

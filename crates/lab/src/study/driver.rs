@@ -1,4 +1,4 @@
-//! The driver of a study: it makes missing runs and exams, and writes the files of the results.
+//! The driver of a study: makes missing runs and exams, and writes the files of the results.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -22,22 +22,22 @@ use snakes_core::save::{
 };
 use snakes_core::score::ExamSuite;
 
-/// The files of a study.
+/// Paths of the files of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StudyFiles {
-    /// The finished runs, from which an interrupted study continues.
+    /// File of the finished runs, from which an interrupted study continues.
     pub ron: PathBuf,
-    /// A line for each run.
+    /// Table with a line for each run.
     pub runs: PathBuf,
-    /// A line for each result: values of arms, comparisons, and demands.
+    /// Table with a line for each result: values of arms, comparisons, and demands.
     pub results: PathBuf,
-    /// The picture.
+    /// Picture of the results.
     pub picture: PathBuf,
     champions: PathBuf,
 }
 
 impl StudyFiles {
-    /// The files of a study in a folder.
+    /// Returns the paths of a study's files in a folder.
     pub fn within(folder: &Path, study: &Study) -> Self {
         let named = |ending: &str| folder.join(format!("{}{ending}", study.name));
         Self {
@@ -49,23 +49,23 @@ impl StudyFiles {
         }
     }
 
-    /// The files that every study writes.
+    /// Returns the paths of the files that every study writes.
     pub fn all(&self) -> [&Path; 4] {
         [&self.ron, &self.runs, &self.results, &self.picture]
     }
 
-    /// The file of a run's champion, which is written if champions take an exam.
+    /// Returns the path of a run's champion, which is written only if champions take an exam.
     pub fn champion(&self, arm: &Arm, seed: u64) -> PathBuf {
         self.champions.join(format!("{}-seed{seed}.ron", arm.name))
     }
 }
 
-/// Makes the runs and exams that the study's files do not have yet, and writes the results. Each finished run is stored at once.
-/// `restarts` begins the selected arms again.
+/// Makes the runs and exams that are missing in the study's files, and writes the results. Each finished run is stored at once.
+/// `restarts` repeats all runs of the selected arms.
 ///
 /// # Errors
-/// An arm's settings are not allowed, or are other ones than those of its finished runs. A file cannot be read or written.
-/// `control` was cancelled.
+/// An arm's settings are not allowed, or differ from those of its finished runs; a file cannot be read or written; or `control` was
+/// cancelled.
 pub fn perform(
     study: &Study,
     files: &StudyFiles,
@@ -92,19 +92,19 @@ pub fn perform(
     let left: Vec<&PlannedRun<'_>> = planned.iter().filter(|run| !is_done(run)).collect();
     say(&format!("{}: {} of {} runs left", study.name, left.len(), planned.len()));
     let bar = bar_of(left.iter().map(|run| run.simulations()).sum(), "simulations");
-    // An estimate soon after the start, and one that goes on while long generations run.
+    // The steady tick shows an estimate soon after the start, and keeps it up to date during long generations.
     bar.enable_steady_tick(Duration::from_secs(1));
     let work = |index: usize, single: &dyn Evaluator| {
         left[index].make(single, control, &|simulations| bar.inc(simulations))
     };
     let done = |FinishedRun { arm, protocol, run, champion }: FinishedRun<'_>| {
-        // The champion first: a run without its file is made again.
+        // The champion is stored first: a run whose champion has no file is made again.
         if let Some(champion) = champion.filter(|_| keeps_champions) {
             store_champion(&files.champion(arm, run.seed), &champion, None)?;
         }
         bar.suspend(|| say(&in_one_line(arm, &run)));
         finished.add(&arm.name, &protocol, run);
-        // After each run, so that a kill loses none that is finished.
+        // The runs are stored after each run, so that a kill loses no finished run.
         Ok(store_study(&files.ron, &finished)?)
     };
     let result = whole_runs(left.len(), evaluator, control, work, done);
@@ -123,7 +123,7 @@ pub fn perform(
     Ok((finished, findings))
 }
 
-/// The picture of a study's results.
+/// Draws the picture of a study's results.
 ///
 /// # Errors
 /// The plotting library failed.
@@ -131,7 +131,8 @@ pub fn picture(results: &Results<'_>) -> Result<Picture, HeadlessError> {
     Ok(plot::figure(&study_figure(results))?)
 }
 
-/// The runs that are finished. A restart forgets those of the selected arms; runs of these under another protocol are refused.
+/// Returns the finished runs. A restart drops those of the selected arms. Runs of a selected arm under another protocol are
+/// refused.
 fn earlier_runs(
     study: &Study,
     ron: &Path,
@@ -165,13 +166,13 @@ fn earlier_runs(
     Ok(finished)
 }
 
-/// The suites of the study of which a run has no results.
+/// Returns the suites of the study for which a run has no results.
 fn left_suites(study: &Study, run: &StudiedRun) -> Vec<ExamSuite> {
     let is_left = |suite: &ExamSuite| run.number(&of_suite(*suite, "_trials")).is_none();
     study.suites.iter().copied().filter(is_left).collect()
 }
 
-/// Examines champions of which results are missing, and adds these to their runs and to their files.
+/// Examines champions whose results are missing, and adds the results to their runs and to their files.
 fn examine_champions(
     study: &Study,
     files: &StudyFiles,
@@ -217,7 +218,7 @@ fn examine_champions(
     Ok(())
 }
 
-/// The seeds of the runs of an arm whose champions are examined.
+/// Returns the seeds of the runs of an arm whose champions take the exam.
 fn seeds_to_examine(arm: &Arm, runs: &[StudiedRun], seeds: &std::ops::Range<u64>) -> Vec<u64> {
     let runs =
         runs.iter().filter(|run| seeds.contains(&run.seed) && run.number("fitness").is_some());
@@ -228,14 +229,14 @@ fn seeds_to_examine(arm: &Arm, runs: &[StudiedRun], seeds: &std::ops::Range<u64>
         Examined::Never => Vec::new(),
         Examined::All => runs.map(|run| run.seed).collect(),
         Examined::Best => {
-            // Of equals the one with the lowest seed.
+            // Of equally good runs the first is chosen.
             let best = runs.reduce(|best, run| if rank(run) > rank(best) { run } else { best });
             best.map(|run| run.seed).into_iter().collect()
         }
     }
 }
 
-/// A finished run in a line.
+/// Describes a finished run in a line.
 fn in_one_line(arm: &Arm, run: &StudiedRun) -> String {
     let number = |name: &str, digits: usize| {
         run.number(name).map(|value| super::values::number(value, digits))

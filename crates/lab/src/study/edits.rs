@@ -1,20 +1,20 @@
-//! How much the fitness of adapted snakes changes when one of their blocks is split, and when one is inserted.
+//! Changes in the fitness of adapted snakes when one of their blocks is split, and when one is inserted.
 
 use crate::run::{Cancelled, Evaluator, Generation, Job, RunControl, evaluate_in_order};
 use snakes_core::evolve::{RunPlan, ranking};
 use snakes_core::genome::{BodyChange, Genome};
 use snakes_core::rng::{Purpose, stream};
 
-/// Number of the best snakes of the last generation that are changed.
+/// Number of the best snakes of the last generation whose bodies are changed.
 const CHANGED: usize = 20;
-/// Attempts to change a body within its limits.
+/// Maximum number of attempts to change a body within its limits.
 const ATTEMPTS: usize = 20;
 
-/// The name of a value, and its numbers.
+/// Name of a value, and its numbers: changes in fitness, one for each snake.
 pub(super) type EditChanges = (&'static str, Vec<Option<f64>>);
 
-/// The values of both changes at a random place, a number for each of the best snakes of a generation whose body allows the
-/// change. A snake that is disqualified then has lost its whole fitness.
+/// Splits a block, or inserts one, at a random place in each of the best snakes of a generation whose body allows it. Returns the
+/// changes in fitness of both. A snake that is disqualified after the change loses its whole fitness.
 ///
 /// # Errors
 /// `control` was cancelled.

@@ -11,13 +11,13 @@ use snakes_core::save::{CURVE_POINTS, Protocol, StudiedArm, StudiedRun};
 
 /// Maximum number of charts with the values of runs.
 const MOST_CHARTS: usize = 6;
-/// Maximum number of arms whose names leave room for so many charts.
+/// Maximum number of arms whose names leave space for `MOST_CHARTS` charts.
 const MOST_ARMS: usize = 8;
-/// Maximum number of charts of more arms.
+/// Maximum number of charts with the values of runs, if there are more arms.
 const FEWER_CHARTS: usize = 4;
 
-/// The figure of a study: of methods their learning curves, a chart for each controller; of other studies the means of generations
-/// that are shown, or the values of all runs.
+/// Makes the figure of a study. A study of methods shows learning curves, a chart for each controller. Other studies show means by
+/// generation if these are among their values, otherwise the values of all runs.
 pub(super) fn study_figure(results: &Results<'_>) -> Figure {
     let study = results.study;
     let generations = generation_charts(results);
@@ -34,14 +34,14 @@ pub(super) fn study_figure(results: &Results<'_>) -> Figure {
     Figure::of_several(&study.title, charts).with_note(note)
 }
 
-/// The controllers of some arms, in their usual order.
+/// Returns the controllers of some arms, in their usual order.
 pub fn controllers(arms: &[StudiedArm]) -> Vec<ControllerKind> {
     let is_used = |kind: &ControllerKind| arms.iter().any(|arm| arm.protocol.controller == *kind);
     ControllerKind::ALL.iter().copied().filter(is_used).collect()
 }
 
-/// The learning curve of an arm: quartiles of the best fitness so far, at each hundredth of the budget at which all runs have a
-/// best.
+/// Returns the learning curve of an arm: the quartiles of the best fitness so far at each hundredth of the budget. Points at which
+/// a run has no best fitness yet are left out.
 pub fn curve(runs: &[StudiedRun]) -> Vec<(usize, Quartiles)> {
     let at = |point: usize| {
         let values: Option<Vec<f64>> =
@@ -51,7 +51,7 @@ pub fn curve(runs: &[StudiedRun]) -> Vec<(usize, Quartiles)> {
     (0..CURVE_POINTS).filter_map(at).collect()
 }
 
-/// The learning curves of the arms with a controller, each in the colour of its strategy.
+/// Makes a chart of the learning curves of the arms with a controller, each in the colour of its strategy.
 pub fn curves(arms: &[StudiedArm], controller: ControllerKind) -> Chart {
     let of_controller = arms.iter().filter(|arm| arm.protocol.controller == controller);
     let of_controller: Vec<&StudiedArm> = of_controller.collect();
@@ -84,19 +84,19 @@ pub fn curves(arms: &[StudiedArm], controller: ControllerKind) -> Chart {
     Chart::new(x, Axis::new("Best fitness so far", unit, y), series).named(controller.name())
 }
 
-/// The title of a strategy without its explanation.
+/// Returns the title of a strategy without its explanation in parentheses.
 pub fn short_title(protocol: &Protocol) -> &'static str {
     protocol.strategy.title().split(" (").next().unwrap_or_default()
 }
 
-/// The range of some values, with a margin.
+/// Returns the range of some values, with a margin.
 fn range(values: impl Iterator<Item = f64>) -> std::ops::RangeInclusive<f64> {
     let Some([least, most]) = extent(values) else { return 0.0..=1.0 };
     let margin = ((most - least) * 0.06).max(1e-3 * least.abs().max(most.abs())).max(1e-9);
     least - margin..=most + margin
 }
 
-/// For each shown list of numbers by generation, the lists of all runs, their mean, and the published one.
+/// Makes a chart for each shown list of numbers by generation: the lists of all runs, their mean, and the published numbers.
 fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
     let study = results.study;
     let shown = study.shown();
@@ -136,10 +136,10 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
     values().iter().filter(is_shown).map(chart).collect()
 }
 
-/// For each shown number, the values of all runs, arm by arm.
+/// Makes a chart for each shown number: the values of all runs, arm by arm.
 fn value_charts(results: &Results<'_>) -> Vec<Chart> {
     let study = results.study;
-    // Numbers that the study names come first, in its order.
+    // Numbers that the study names in `show` come first, in its order.
     let mut shown = study.show.clone();
     shown.extend(study.shown().into_iter().filter(|name| !study.show.contains(name)));
     let infos = shown.iter().filter_map(|name| value("show", name).ok());
@@ -156,7 +156,7 @@ fn value_chart(results: &Results<'_>, arms: &[&Arm], info: &ValueInfo) -> Chart 
     let (mut points, mut bands, mut medians) = (Vec::new(), Vec::new(), Vec::new());
     for (place, arm) in (0..).map(f64::from).zip(arms) {
         let numbers = results.values(arm, info);
-        // Equal values lie beside each other.
+        // Equal values are drawn beside each other.
         for (index, number) in numbers.iter().enumerate().filter(|(_, number)| number.is_finite()) {
             let is_equal = |other: &&f64| (*other - number).abs() < 1e-9;
             let equal = numbers[..index].iter().filter(is_equal).count();

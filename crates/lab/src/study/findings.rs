@@ -1,4 +1,4 @@
-//! Measurements beside the runs of a study: motions of newborns, and built-in champions in the other engine.
+//! Measurements besides the runs of a study: motions of newborns, and built-in champions in the other physics engine.
 
 use super::definition::Study;
 use super::newborns::{NewbornStatistics, newborn_statistics};
@@ -9,26 +9,26 @@ use snakes_core::save::library::shipped_champions;
 use snakes_core::save::load_preset;
 use snakes_core::score::ExamSuite;
 
-/// Measurements beside the runs of a study.
+/// Results of the measurements besides the runs of a study.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
-    /// Motions of newborns.
+    /// Statistics of the newborns' motions; empty if they were not measured.
     pub newborns: Vec<NewbornStatistics>,
-    /// Number of newborns that are healthy in both engines, and of all.
+    /// Number of newborns that are healthy in both engines, and number of all newborns.
     pub healthy: [usize; 2],
-    /// The share of its way that each built-in champion keeps in the other engine, by its name.
+    /// Name of each built-in champion, and the share of its way that it keeps in the other engine. Empty if not measured.
     pub built_in: Vec<(String, f32)>,
 }
 
 impl Findings {
-    /// The greatest relative difference of a quartile of newborns between the engines; none without newborns.
+    /// Returns the greatest relative difference of a quartile of newborns between the engines; `None` without newborns.
     pub fn greatest_difference(&self) -> Option<f64> {
         let differences: Option<Vec<f64>> =
             self.newborns.iter().map(NewbornStatistics::greatest_difference).collect();
         differences?.into_iter().reduce(f64::max)
     }
 
-    /// Makes the measurements that a study asks for.
+    /// Makes the measurements that the definition of the study requests.
     ///
     /// # Errors
     /// `control` was cancelled, or the study's preset cannot be read.

@@ -1,82 +1,83 @@
-//! The measures that a demand may name.
+//! The measures that a demand can name.
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-/// A measure of an arm, in terms of the values of its runs.
+/// A measure of an arm, computed from the values of its runs.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Measure {
-    /// The median of a value over the runs, or of its difference to another value of the same run.
+    /// Median of a value over the runs, or of its difference to another value of the same run.
     Median {
-        /// The value.
+        /// Name of the value.
         of: String,
-        /// The value that is subtracted.
+        /// Name of the value that is subtracted; `None` for none.
         #[serde(default)]
         less: Option<String>,
     },
-    /// The share of the runs in which each of these values is at least the number beside it.
+    /// Share of the runs in which each of these values reaches its minimum.
     Share {
-        /// Values and their least numbers.
+        /// Names of values, with their minima.
         of: BTreeMap<String, f64>,
     },
-    /// The median size of all numbers of a list, over all runs.
+    /// Median absolute value of all numbers in a list, over all runs.
     MedianSize {
-        /// The list.
+        /// Name of the list.
         of: String,
     },
-    /// The number of different texts.
+    /// Number of different texts that a value has over the runs.
     Distinct {
-        /// The text.
+        /// Name of the value, which must be a text.
         of: String,
     },
-    /// The median difference to the baseline, seed by seed.
+    /// Median difference to the baseline, seed by seed.
     Difference {
-        /// The value.
+        /// Name of the value.
         of: String,
     },
-    /// The probability of such a difference to the baseline by chance, by the sign test; 1 if the baseline is not lower.
+    /// Probability of such a difference to the baseline by chance, by the sign test. 1 unless the arm wins more pairs than the
+    /// baseline.
     SignTest {
-        /// The value.
+        /// Name of the value.
         of: String,
     },
-    /// The median ratio to the baseline, seed by seed.
+    /// Median ratio to the baseline, seed by seed.
     Ratio {
-        /// The value.
+        /// Name of the value.
         of: String,
     },
-    /// The sum over all runs, divided by that of the baseline; per trial, if the value of their number is named.
+    /// Sum of a value over all runs, divided by the sum of the baseline. If `trials` is given, both sums are per trial.
     TotalRatio {
-        /// The value.
+        /// Name of the value, such as the successes of an exam.
         of: String,
-        /// The number of trials in which it was counted.
+        /// Name of the value with the number of trials; `None` for plain sums.
         #[serde(default)]
         trials: Option<String>,
     },
-    /// 1 if the interval of the share of successful trials lies above that of the baseline, else 0.
+    /// 1 if the interval of the share of successful trials lies above the interval of the baseline, otherwise 0.
     Apart {
-        /// The value that counts the successful trials.
+        /// Name of the value with the successful trials, as a percentage.
         of: String,
-        /// The value that counts all.
+        /// Name of the value with the number of all trials.
         trials: String,
     },
-    /// 1 if the 95 % intervals of the median and of the baseline's median overlap, else 0.
+    /// 1 if the 95 % intervals of the median and of the baseline's median overlap, otherwise 0.
     Overlap {
-        /// The value.
+        /// Name of the value.
         of: String,
     },
-    /// The greatest relative difference of a quartile of newborns between the physics engines.
+    /// Greatest relative difference of a quartile of newborns between the physics engines.
     Newborns,
-    /// The share of the built-in champions that keep at least this share of their way in the other physics engine.
+    /// Share of the built-in champions that keep at least the share `keep` of their way in the other physics engine.
     BuiltInChampions {
-        /// The share of the way.
+        /// Minimum share of the way, 0 to 1.
         keep: f64,
     },
 }
 
 impl Measure {
-    /// The names of the values that it is about.
+    /// Returns the names of the values that the measure uses.
     pub fn values(&self) -> Vec<String> {
         match self {
             Self::Median { of, less } => [of].into_iter().chain(less).cloned().collect(),

@@ -1,6 +1,6 @@
-//! Studies: runs of several arms over several seeds, measured by the same values, compared, and held against demands.
+//! Studies: runs of several arms over several seeds, measured by the same values, compared, and checked against demands.
 //!
-//! A study is data, built in or written by a user: see `docs/studies.md`. POET alone is studied in a way of its own.
+//! A study is data, built in or written by a user: see `docs/studies.md`. Only POET has a study with code of its own.
 
 mod bodies;
 mod champion;

@@ -1,4 +1,4 @@
-//! The motions of newborns in both engines.
+//! Motions of newborns in both physics engines.
 
 use crate::run::{Cancelled, EvaluationResult, Evaluator, Job, RunControl, evaluate_in_order};
 use crate::statistics::Quartiles;
@@ -9,17 +9,17 @@ use snakes_core::schema::Choices;
 use snakes_core::score::Evaluation;
 use snakes_core::world::PhysicsEngine;
 
-/// A measure of a newborn's motion, in both engines.
+/// Statistics of a measure of newborns' motion, in both engines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewbornStatistics {
-    /// The measure, with its unit.
+    /// Name of the measure, with its unit.
     pub measure: &'static str,
-    /// Its quartiles in rapier and in lanes; none without healthy newborns.
+    /// Quartiles of the measure in rapier and in lanes; `None` without healthy newborns.
     pub quartiles: Option<[Quartiles; 2]>,
 }
 
 impl NewbornStatistics {
-    /// The greatest relative difference of a quartile between the engines.
+    /// Returns the greatest relative difference of a quartile between the engines; `None` without quartiles.
     pub fn greatest_difference(&self) -> Option<f64> {
         let [a, b] = self.quartiles.as_ref()?;
         let pairs = [(a.low, b.low), (a.median, b.median), (a.high, b.high)];
@@ -32,7 +32,7 @@ impl NewbornStatistics {
 }
 
 /// Simulates newborns of a run with these settings and seed in both engines, and compares their motions. Only newborns that are
-/// healthy in both count; their number is the second result.
+/// healthy in both engines count. Also returns their number.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was cancelled.
@@ -74,7 +74,7 @@ pub fn newborn_statistics(
     Ok((statistics.to_vec(), pairs.len()))
 }
 
-/// A measure, and its value for an evaluation that began at a place on the y axis.
+/// Name of a measure, and a function that computes it from an evaluation and the y coordinate of its start, in m.
 type NewbornMeasure = (&'static str, fn(&Evaluation, f32) -> f64);
 
 const MEASURES: [NewbornMeasure; 4] = [

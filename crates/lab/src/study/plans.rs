@@ -1,4 +1,4 @@
-//! The plans of an arm's runs: settings of a preset with the changes of the study and of the arm.
+//! Plans of an arm's runs: the settings of a preset, with the changes of the study and of the arm.
 
 use super::definition::{Arm, Plain, Study};
 use snakes_core::check::{Invalid, within};
@@ -15,10 +15,10 @@ use snakes_core::world::PhysicsEngine;
 const MAX_EVALUATIONS: u32 = 10_000_000;
 
 impl Study {
-    /// The plan of a run.
+    /// Returns the plan of a run of an arm with this seed.
     ///
     /// # Errors
-    /// The arm's preset cannot be read.
+    /// The arm's preset or the study's stairs cannot be read, or the arm's settings are not allowed.
     pub fn plan(&self, arm: &Arm, seed: u64) -> Result<RunPlan, SaveError> {
         let preset = load_preset(arm.preset.as_ref().unwrap_or(&self.preset));
         let mut preset = preset.map_err(|error| match error {
@@ -31,25 +31,25 @@ impl Study {
             preset.settings.trial.stairs = load_stairs(named)?.stairs;
         }
         let settings = self.settings_of(arm, &preset.settings).map_err(|invalid| {
-            // The flag --set gives this name to a setting that does not exist.
+            // For a setting that does not exist, the error names the flag --set, which a study does not use.
             let field = if invalid.field == "set" { "settings" } else { &invalid.field };
             SaveError::Study(Invalid { field: format!("{field} of {}", arm.name), ..invalid })
         })?;
         Ok(RunPlan::new(&preset.name, seed, settings))
     }
 
-    /// The settings of an arm, from those of its preset.
+    /// Returns the settings of an arm: those of its preset with all changes.
     ///
     /// # Errors
-    /// The budget is too small for one generation, the settings do not fit together, one of the arm's has no effect, or the stairs
-    /// evolve, so that results on different stairs would be compared.
+    /// The budget is too small for one generation, the settings do not fit together, a setting of the arm has no effect, or the
+    /// stairs evolve, so that results on different stairs would be compared.
     fn settings_of(&self, arm: &Arm, preset: &Settings) -> Result<Settings, Invalid> {
         let text = |(name, value): (&String, &Plain)| (name.clone(), value.to_string());
         let changes: Vec<(String, String)> =
             self.settings.iter().chain(&arm.settings).map(text).collect();
         let mut settings = preset.clone();
         let mut others = Vec::new();
-        // The method first, because it decides which bodies there are, and so what the other settings may be.
+        // The method is set first, because it decides about the bodies and thus about the allowed values of other settings.
         for (name, value) in &changes {
             if is_short_for("evolution.strategy", name) {
                 settings.evolution.strategy = StrategyKind::named(name, value)?;
@@ -69,7 +69,7 @@ impl Study {
         }
         settings.genome.bodies.vary = info.varies_bodies;
         if settings.genome.has_creatures() {
-            // The preset's engine may simulate nothing but limbs in a row.
+            // The preset's engine may only be able to simulate limbs in a row.
             settings.trial.physics.engine = PhysicsEngine::Rapier;
         }
         let mut settings = with_fields(&settings, others)?;
@@ -85,8 +85,8 @@ impl Study {
         let times = arm.evaluations_times.unwrap_or(1);
         if let Some(evaluations) = own.map(|evaluations| evaluations.saturating_mul(times)) {
             let evolution = &mut settings.evolution;
-            // The report's method gets the report's number of generations: its mutation range halves with each, so more would
-            // change nothing. The others keep the population of the settings.
+            // The report's method gets the report's number of generations: its mutation range halves with each generation, so more
+            // would change nothing. Other methods keep the population of the settings.
             let fixed_generations = info.compared_generations;
             if let Some(generations) = fixed_generations {
                 evolution.generations = generations;
@@ -104,7 +104,7 @@ impl Study {
 }
 
 impl Arm {
-    /// The protocol of its runs, from the plan of one of them.
+    /// Returns the protocol of the arm's runs, given the plan of one of them.
     ///
     /// # Errors
     /// The preset of the plan cannot be read.
@@ -124,10 +124,10 @@ impl Arm {
     }
 }
 
-/// Whether a name is that of a setting, or its end.
+/// Returns whether `name` is the full dotted name of a setting, or its last parts.
 pub(super) fn is_short_for(field: &str, name: &str) -> bool {
     field.strip_suffix(name).is_some_and(|rest| rest.is_empty() || rest.ends_with('.'))
 }
 
-/// The setting of the duration of trials.
+/// Full name of the setting for the duration of trials.
 pub const DURATION: &str = "trial.duration_s";

@@ -1,4 +1,4 @@
-//! The results of a study as records of tables, and as lines of JSON.
+//! The results of a study as records of tables and as lines of JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -10,7 +10,7 @@ use super::values::{Form, ValueInfo, values};
 use crate::statistics::Quartiles;
 use snakes_core::save::{StudiedRun, StudyValue};
 
-/// The values that any of the runs has, in their usual order.
+/// Returns the values that at least one run has, in their usual order.
 fn known_values(results: &Results<'_>) -> Vec<&'static ValueInfo> {
     let runs: Vec<&StudiedRun> =
         results.study.selected_arms().flat_map(|arm| results.of(arm)).collect();
@@ -18,7 +18,7 @@ fn known_values(results: &Results<'_>) -> Vec<&'static ValueInfo> {
     values().iter().filter(is_known).collect()
 }
 
-/// The records of the file of runs, the header first: one per run.
+/// Returns the records of the file of runs, the header first and then one for each run.
 pub(super) fn run_records(results: &Results<'_>) -> Vec<Vec<String>> {
     let columns = known_values(results);
     let names = columns.iter().map(|info| info.name.as_str());
@@ -49,7 +49,7 @@ fn text_of(value: &StudyValue) -> String {
     }
 }
 
-/// The lines of JSON, each with its `type`: `run`, `arm`, `comparison`, `demand`, and at last `done`.
+/// Returns the results as lines of JSON. Each has a `type`: `run`, `arm`, `comparison`, `demand`, or for the last line `done`.
 pub fn json_lines(results: &Results<'_>, files: &StudyFiles) -> Vec<Value> {
     let study = results.study;
     let mut lines = Vec::new();
@@ -73,7 +73,7 @@ pub fn json_lines(results: &Results<'_>, files: &StudyFiles) -> Vec<Value> {
     lines
 }
 
-/// The results of arms, comparisons and demands, each with its `type` and the study.
+/// Returns the results of arms, comparisons and demands. Each has its `type` and the name of the study.
 fn typed_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
     let kinds = [
         ("arm", arm_results(results)),
@@ -90,7 +90,7 @@ fn typed_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
     kinds.into_iter().flat_map(typed).collect()
 }
 
-/// The fields of an object.
+/// Returns the fields of a JSON object.
 fn fields(value: Value) -> Map<String, Value> {
     match value {
         Value::Object(fields) => fields,
@@ -98,12 +98,12 @@ fn fields(value: Value) -> Map<String, Value> {
     }
 }
 
-/// An infinite number is no JSON.
+/// Converts a number to JSON. An infinite number becomes null, because JSON has none.
 fn finite(value: Option<f64>) -> Value {
     json!(value.filter(|value| value.is_finite()))
 }
 
-/// For each arm and shown value, the number of runs that have it, and its quartiles.
+/// Returns, for each arm and shown value, the number of runs that have the value, and its quartiles.
 fn arm_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
     let mut all = Vec::new();
     for arm in results.study.selected_arms() {
@@ -164,7 +164,7 @@ fn demand_results(results: &Results<'_>) -> Vec<Map<String, Value>> {
     results.study.demands_by_arm().into_iter().map(one).collect()
 }
 
-/// The records of the file of results, the header first: a line for each value of an arm, each comparison and each demand.
+/// Returns the records of the file of results, the header first: one for each value of an arm, each comparison and each demand.
 pub(super) fn result_records(results: &Results<'_>) -> Vec<Vec<String>> {
     let records = typed_results(results);
     let mut columns: Vec<&str> = ["study", "type", "arm"].to_vec();

@@ -1,4 +1,4 @@
-//! The results of a study as tables for people.
+//! The results of a study as tables for readers.
 
 use super::compare::{ArmComparison, comparisons};
 use super::definition::Arm;
@@ -8,10 +8,10 @@ use crate::run::markdown::markdown_table;
 use crate::statistics::Quartiles;
 use snakes_core::score::Fitness;
 
-/// The start of the names of lists with a number for each generation.
+/// Prefix of the names of lists with a number for each generation.
 const OF_GENERATIONS: &str = "generation_";
 
-/// All tables of a study as Markdown: the arms, the generations, the comparisons, and the demands with their verdicts.
+/// Returns all tables of a study as Markdown: the arms, the generations, the comparisons, and the demands with their verdicts.
 pub fn tables(results: &Results<'_>) -> String {
     let study = results.study;
     let mut text = format!("{}\n\n", study.title);
@@ -68,17 +68,17 @@ fn cell(results: &Results<'_>, arm: &Arm, info: &ValueInfo) -> String {
         None => "–".to_owned(),
         Some(_) if info.form == Form::Flag => number(sum, 0),
         Some(quartiles) => {
-            // The unit stands in the head of the column.
+            // The unit is left out of the cell, because the head of the column has it.
             let words = quartiles_text(&quartiles, count, &ValueInfo { unit: "", ..info.clone() });
             if info.form == Form::Until { format!("{words}: {came} of {count}") } else { words }
         }
     }
 }
 
-/// Means of a generation over the runs of an arm.
+/// Statistics of a number of one generation over the runs of an arm.
 struct Spread {
     mean: f64,
-    /// Standard deviation between the runs (divided by n - 1); 0 for one run.
+    /// Standard deviation between the runs (divided by n - 1); 0 for a single run.
     std: f64,
     least: f64,
     greatest: f64,
@@ -95,7 +95,7 @@ impl Spread {
     }
 }
 
-/// The table of an arm's generations: the published numbers, and mean and spread over the runs of the lists that are shown.
+/// Makes the table of an arm's generations: the published numbers, and mean and spread over the runs, for each shown list.
 fn generations(results: &Results<'_>, arm: &Arm) -> Vec<Vec<String>> {
     let study = results.study;
     let shown = study.shown();
@@ -107,7 +107,7 @@ fn generations(results: &Results<'_>, arm: &Arm) -> Vec<Vec<String>> {
     }
     let runs = results.of(arm);
     let trial = study.plan(arm, study.first_seed).ok().map(|plan| plan.settings.trial);
-    // The words of the report are about this fitness.
+    // The words of the report describe only this kind of fitness.
     let trial = trial.filter(|trial| trial.fitness == Fitness::Centre);
     let mut columns: Vec<Vec<String>> = Vec::new();
     let mut length = 0;
@@ -138,7 +138,7 @@ fn generations(results: &Results<'_>, arm: &Arm) -> Vec<Vec<String>> {
             }
         }
         column(&info.title, &|_, spread| fixed(spread.mean));
-        // Of a count the mean is enough.
+        // For a count the mean is enough.
         if digits > 0 {
             column("std.dev.", &|_, spread| fixed(spread.std));
             column("least", &|_, spread| fixed(spread.least));
@@ -164,7 +164,7 @@ fn comparison_rows(compared: &[ArmComparison<'_>]) -> Vec<Vec<String>> {
         let signed = |value: f64| signed(value, of.value.digits.max(1));
         let difference = match of.difference.median {
             None => "–".to_owned(),
-            // Fewer than six seeds have no interval.
+            // With fewer than six seeds there is no interval.
             Some((median, None)) => signed(median),
             Some((median, Some([from, to]))) => {
                 format!("{} [{} {}]", signed(median), signed(from), signed(to))
@@ -187,7 +187,7 @@ fn comparison_rows(compared: &[ArmComparison<'_>]) -> Vec<Vec<String>> {
     [head.map(str::to_owned).to_vec()].into_iter().chain(compared.iter().map(row)).collect()
 }
 
-/// A row for each demand: arm, demand, must, hard, measured, and whether it is met.
+/// Makes a row for each demand: arm, demand, must, hard, measured, and whether it is met.
 fn demand_rows(results: &Results<'_>) -> Vec<Vec<String>> {
     let head = ["arm", "demand", "must", "hard", "measured", "met"].map(str::to_owned).to_vec();
     let rows = results.study.demands_by_arm().into_iter().map(|(arm, demand)| {
@@ -214,7 +214,7 @@ fn demand_rows(results: &Results<'_>) -> Vec<Vec<String>> {
     [head].into_iter().chain(rows).collect()
 }
 
-/// The tables of newborns and of built-in champions.
+/// Makes the tables of newborns and of built-in champions; empty if they were not measured.
 fn findings(results: &Results<'_>) -> String {
     let findings = results.findings;
     let mut text = String::new();
@@ -251,7 +251,7 @@ fn findings(results: &Results<'_>) -> String {
     text
 }
 
-/// A page with all values that a study may name: `docs/studies.md` has it as a table.
+/// Returns a table in Markdown with all values that a study may name, as `docs/studies.md` has it.
 pub fn values_as_markdown() -> String {
     let head = ["value", "unit", "meaning"].map(str::to_owned).to_vec();
     let row = |info: &ValueInfo| {

@@ -1,4 +1,4 @@
-//! The results of a study: the measures of its arms, each as a number and as a text, held against the demands.
+//! The results of a study: the measures of its arms, each as a number and as text, checked against the demands.
 
 use std::collections::BTreeSet;
 
@@ -9,69 +9,69 @@ use super::values::{Form, ValueInfo, info_of, number, signed, values};
 use crate::statistics::{PairedDifference, Quartiles, Share, median_difference, sign_test};
 use snakes_core::save::{StudiedRun, StudyRuns, StudyValue};
 
-/// A measured number.
+/// A measured number, with its text.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
-    /// The number that is held against the demand.
+    /// Number that is compared with the bounds of the demand.
     pub value: f64,
-    /// The number with its spread and the number of runs.
+    /// Text with the number, its spread and the number of runs.
     pub text: String,
 }
 
-/// Whether a demand is met.
+/// Verdict on a demand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// The measured number; none if there are no results for it yet.
+    /// Measured number; `None` if there are no results for it yet.
     pub measured: Option<Measured>,
-    /// Whether it is what it must be; none without a result, or if nothing must be.
+    /// Whether the number meets the bound `must`; `None` without a number or a bound.
     pub meets_must: Option<bool>,
-    /// Whether it is what would be hard; none likewise.
+    /// Whether the number meets the bound `hard`; `None` without a number or a bound.
     pub meets_hard: Option<bool>,
 }
 
-/// The results of a study.
+/// The results of a study, on which tables and figures are based.
 #[derive(Debug, Clone, Copy)]
 pub struct Results<'a> {
-    /// The study.
+    /// Definition of the study.
     pub study: &'a Study,
-    /// The runs.
+    /// Finished runs of the study.
     pub runs: &'a StudyRuns,
-    /// The measurements beside the runs.
+    /// Measurements besides the runs.
     pub findings: &'a Findings,
 }
 
 impl<'a> Results<'a> {
-    /// The runs of an arm with one of the study's seeds.
+    /// Returns the runs of an arm whose seeds belong to the study.
     pub fn of(&self, arm: &Arm) -> Vec<&'a StudiedRun> {
         let seeds = self.study.seeds();
         self.runs.of_arm(&arm.name).iter().filter(|run| seeds.contains(&run.seed)).collect()
     }
 
-    /// The numbers of a value, each with the seed of its run.
+    /// Returns the numbers of a value over the runs of an arm, each with the seed of its run.
     pub fn numbers(&self, arm: &Arm, info: &ValueInfo) -> Vec<(u64, f64)> {
         let of_run = |run: &&StudiedRun| Some((run.seed, number_of(info, run)?));
         self.of(arm).iter().filter_map(of_run).collect()
     }
 
-    /// The numbers of a value alone.
+    /// Returns the numbers of a value over the runs of an arm.
     pub fn values(&self, arm: &Arm, info: &ValueInfo) -> Vec<f64> {
         self.of(arm).iter().filter_map(|run| number_of(info, run)).collect()
     }
 
-    /// The different texts of a value.
+    /// Returns the different texts of a value over the runs of an arm.
     pub fn texts(&self, arm: &Arm, name: &str) -> BTreeSet<&'a str> {
         self.of(arm).into_iter().filter_map(|run| text_of(run, name)).collect()
     }
 
-    /// The values that are shown, without lists.
+    /// Returns the values that are shown, without lists.
     pub fn shown(&self) -> Vec<&'static ValueInfo> {
         let shown = self.study.shown();
         let is_shown = |info: &&ValueInfo| shown.contains(&info.name) && info.form != Form::List;
         values().iter().filter(is_shown).collect()
     }
 
-    /// The values of an arm and of the one with which it is compared, for each seed that both have. A run without a healthy snake
-    /// has none. A run with one that was not measured, such as a champion that took no exam, is left out.
+    /// Returns the values of two arms for each seed that both have. A run without a healthy snake has `None`. Runs whose value was
+    /// not measured, such as those of a champion that took no exam, are left out.
     pub fn pairs(&self, arm: &Arm, against: &Arm, info: &ValueInfo) -> Vec<[Option<f64>; 2]> {
         let others = self.of(against);
         let value = |run: &StudiedRun| {
@@ -85,7 +85,7 @@ impl<'a> Results<'a> {
         self.of(arm).iter().filter_map(pair).collect()
     }
 
-    /// Holds the results of an arm against a demand.
+    /// Checks the results of an arm against a demand.
     pub fn verdict(&self, arm: &Arm, demand: &Demand) -> Verdict {
         let measured = demand.measure.of(arm, demand.against(self.study, arm), self);
         let is_at_most = demand.is_at_most();
@@ -98,7 +98,7 @@ impl<'a> Results<'a> {
     }
 }
 
-/// A value of a run as a number: infinite for an event that never came.
+/// Returns a value of a run as a number. An event that never came counts as infinite.
 pub(super) fn number_of(info: &ValueInfo, run: &StudiedRun) -> Option<f64> {
     match info.form {
         Form::Until => Some(run.number(&info.name).unwrap_or(f64::INFINITY)),
@@ -107,7 +107,7 @@ pub(super) fn number_of(info: &ValueInfo, run: &StudiedRun) -> Option<f64> {
 }
 
 impl Demand {
-    /// The arm with which an arm is compared.
+    /// Returns the arm with which an arm is compared, if there is one.
     pub(super) fn against<'a>(&self, study: &'a Study, arm: &Arm) -> Option<&'a Arm> {
         match &self.against {
             Some(name) => study.arms.iter().find(|arm| arm.name == *name),
@@ -115,7 +115,7 @@ impl Demand {
         }
     }
 
-    /// Whether less is better.
+    /// Returns whether the measure must not exceed its bounds.
     pub fn is_at_most(&self) -> bool {
         self.at_most
             || match &self.measure {
@@ -129,7 +129,7 @@ impl Demand {
 }
 
 impl Measure {
-    /// The measure of an arm; none if there are no results for it.
+    /// Computes the measure of an arm; `None` if there are no results for it.
     fn of(&self, arm: &Arm, against: Option<&Arm>, results: &Results<'_>) -> Option<Measured> {
         match self {
             Self::Median { of, less } => {
@@ -148,7 +148,7 @@ impl Measure {
                     of.iter()
                         .all(|(name, least)| run.number(name).is_some_and(|value| value >= *least))
                 };
-                // An arm of which only the best champion was examined has no share of those.
+                // If only the best champion of an arm was examined, only its run counts for values of the exam.
                 let known = |run: &&&StudiedRun| {
                     of.keys().all(|name| !name.starts_with("exam_") || run.number(name).is_some())
                 };
@@ -214,7 +214,7 @@ impl Measure {
             Self::Overlap { of } => {
                 let info = info_of(of)?;
                 let interval = |arm: &Arm| {
-                    // A run that never came so far has spent all its evaluations.
+                    // A run that never reached the event counts with all its evaluations.
                     let of_run = |run: &&StudiedRun| match info.form {
                         Form::Until => run.number(of).or(run.number("evaluations")),
                         _ => run.number(of),
@@ -259,14 +259,14 @@ fn text_of<'a>(run: &'a StudiedRun, name: &str) -> Option<&'a str> {
     }
 }
 
-/// The sum of a value over all runs of an arm, and of the trials in which it was counted (1 if none are named).
+/// Sums up a value over all runs of an arm, and the trials in which it was counted (1 if `trials` is `None`).
 fn totals(arm: &Arm, of: &str, trials: Option<&str>, results: &Results<'_>) -> Option<[f64; 2]> {
     let runs = results.of(arm);
     let sum = |name: &str| {
         let numbers: Vec<f64> = runs.iter().filter_map(|run| run.number(name)).collect();
         (!numbers.is_empty()).then(|| numbers.iter().sum::<f64>())
     };
-    // The landings of an exam are stored as those of 100 trials.
+    // The landings of an exam are stored as a percentage of its trials.
     match trials {
         None => Some([sum(of)?, 1.0]),
         Some(trials) => {
@@ -287,7 +287,7 @@ fn with_interval(count: f64, of: f64) -> String {
     format!("{seen:.2} [{least:.2}, {most:.2}]")
 }
 
-/// A count of runs with the interval of their share.
+/// Returns the share of a count of runs, with its interval as text; `None` without runs.
 fn share(count: usize, of: usize) -> Option<Measured> {
     let Share { seen, least, most } = Share::of(count as u32, of as u32);
     let percent = [seen, least, most].map(|share| share * 100.0);
@@ -297,7 +297,7 @@ fn share(count: usize, of: usize) -> Option<Measured> {
     })
 }
 
-/// The median with its quartiles and the number of values.
+/// Returns the median, with its quartiles and the number of values as text; `None` without values.
 fn median(values: impl IntoIterator<Item = f64>, info: &ValueInfo) -> Option<Measured> {
     let values: Vec<f64> = values.into_iter().collect();
     let count = values.len();
@@ -306,7 +306,7 @@ fn median(values: impl IntoIterator<Item = f64>, info: &ValueInfo) -> Option<Mea
     Some(Measured { value: quartiles.median, text })
 }
 
-/// A median, with its quartiles if there are several values.
+/// Formats a median, with its quartiles if there are several values.
 pub(super) fn quartiles_text(quartiles: &Quartiles, count: usize, info: &ValueInfo) -> String {
     let [low, median, high] =
         [quartiles.low, quartiles.median, quartiles.high].map(|value| number(value, info.digits));
@@ -314,7 +314,7 @@ pub(super) fn quartiles_text(quartiles: &Quartiles, count: usize, info: &ValueIn
     if count == 1 { format!("{median}{unit}") } else { format!("{median}{unit} [{low} {high}]") }
 }
 
-/// The difference to another arm: seed by seed, or between the best champions, where only these were examined.
+/// Returns the difference to another arm: the median over the seeds, or between the best champions if only these were examined.
 fn difference(
     arm: &Arm,
     against: &Arm,

@@ -12,37 +12,37 @@ use snakes_core::evolve::{Champion, RunPlan, check_effects};
 use snakes_core::save::{CURVE_POINTS, Protocol, SaveError, StudiedRun, StudyRuns, StudyValue};
 use snakes_core::score::Fitness;
 
-/// A run that is to be made.
+/// A run of a study that is to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedRun<'a> {
-    /// Its arm.
+    /// Arm of the run.
     pub arm: &'a Arm,
-    /// Its plan.
+    /// Plan of the run.
     pub plan: RunPlan,
-    /// The protocol of its arm.
+    /// Protocol of the arm.
     pub protocol: Protocol,
-    /// Whether bodies are measured.
+    /// Whether the run's bodies are measured.
     measures_bodies: bool,
 }
 
-/// A run that is finished.
+/// A finished run of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FinishedRun<'a> {
-    /// Its arm.
+    /// Arm of the run.
     pub arm: &'a Arm,
-    /// The protocol of its arm.
+    /// Protocol of the arm.
     pub protocol: Protocol,
-    /// Its values.
+    /// Seed, values and learning curve of the run.
     pub run: StudiedRun,
-    /// Its champion; none if all snakes were disqualified.
+    /// Champion of the run; `None` if all snakes were disqualified.
     pub champion: Option<Champion>,
 }
 
 impl Study {
-    /// The runs of the study, seed by seed, so that one that is interrupted has about as many of each arm.
+    /// Returns the runs of the study, seed by seed, so that an interrupted study has about equal numbers of runs for each arm.
     ///
     /// # Errors
-    /// A preset cannot be read, or an arm's settings are not allowed. No arm uses a setting of the study.
+    /// A preset cannot be read, an arm's settings are not allowed, or no arm uses a setting of the study.
     pub fn planned(&self) -> Result<Vec<PlannedRun<'_>>, SaveError> {
         let measures_bodies = self.shown().iter().any(|name| is_of_bodies(name));
         let mut of_arms = Vec::new();
@@ -79,18 +79,18 @@ impl Study {
 }
 
 impl<'a> PlannedRun<'a> {
-    /// Its result, if it is among the finished runs.
+    /// Returns the result of this run, if it is among the finished runs.
     pub fn result<'r>(&self, finished: &'r StudyRuns) -> Option<&'r StudiedRun> {
         let arm = finished.arm(&self.arm.name).filter(|arm| arm.protocol == self.protocol)?;
         arm.runs.iter().find(|run| run.seed == self.plan.seed)
     }
 
-    /// Number of simulated trials that its generations may spend.
+    /// Returns the number of simulated trials that the run's generations may spend.
     pub fn simulations(&self) -> u64 {
         u64::from(self.plan.settings.trial.most_simulations()) * self.plan.budget()
     }
 
-    /// Makes the run. Calls `spent` with numbers of simulated trials, in total those of [`Self::simulations`].
+    /// Makes the run. Calls `spent` with numbers of simulated trials, whose sum is [`Self::simulations`].
     ///
     /// # Errors
     /// `control` was cancelled.
@@ -139,13 +139,13 @@ impl<'a> PlannedRun<'a> {
     }
 }
 
-/// The best individual so far on the stairs of the run's trial; none while a ladder has not led to them.
+/// Returns the best individual so far on the stairs of the run's trial; `None` while a ladder has not reached these stairs.
 fn best_of<'e>(experiment: &'e Experiment, plan: &RunPlan) -> Option<&'e Champion> {
     let goal = &plan.settings.trial.stairs;
     experiment.best().filter(|best| best.trial.stairs == *goal)
 }
 
-/// Numbers that are noted after each generation.
+/// Numbers that are recorded after each generation.
 #[derive(Debug)]
 struct RunProgress {
     first_landing: Option<u64>,
@@ -190,7 +190,7 @@ impl RunProgress {
         self.means.push(report.statistics.map(|statistics| statistics.mean));
         self.disqualified.push(Some(report.disqualified.into()));
         let best = best_of(experiment, &run.plan).map(|best| best.evaluation.fitness);
-        // A point of the curve is the best fitness when that share of the budget was spent.
+        // A point of the curve is the best fitness at the time when this share of the budget was spent.
         let reached =
             (experiment.evaluated() * CURVE_POINTS as u64).div_ceil(run.plan.budget().max(1));
         self.curve.iter_mut().skip((reached as usize).saturating_sub(1)).for_each(|at| *at = best);
@@ -207,7 +207,7 @@ impl RunProgress {
         ] {
             number.map(|number| add(name, StudyValue::Number(number)));
         }
-        // A list for each of hundreds of generations would say no more than the curve.
+        // The lists of runs with many generations are left out, because the curve shows them well enough.
         if self.means.len() <= MOST_GENERATIONS {
             add("generation_means", StudyValue::Numbers(self.means.clone()));
             add("generation_disqualified", StudyValue::Numbers(self.disqualified.clone()));
@@ -215,5 +215,5 @@ impl RunProgress {
     }
 }
 
-/// Maximum number of generations of a run whose means are kept one by one.
+/// Maximum number of generations of a run whose means are stored one by one.
 const MOST_GENERATIONS: usize = 20;

@@ -9,7 +9,7 @@ use snakes_core::genome::ControllerKind;
 use snakes_core::save::{Protocol, StudiedRun, StudyRuns, StudyValue, parse_definition};
 use snakes_core::score::Fitness;
 
-/// A study of two arms with short trials, of which one stops at its goal.
+/// A study of two arms with short trials and a demand.
 const TINY: &str = r#"(
     name: "tiny",
     title: "Two strategies",
@@ -73,7 +73,7 @@ fn a_study_has_the_same_results_for_any_number_of_threads_and_continues_with_wha
     let generations = run.numbers("generation_means").len() as f64;
     let evaluations = run.number("evaluations").expect("counted");
     assert!(generations >= 1.0 && evaluations <= 12.0, "{run:?}");
-    // In each generation two candidates try three trials each; the exam has five step rates and the own trial.
+    // Two candidates take three trials each in each generation. The exam has five step rates and the undisturbed trial.
     let simulations = evaluations + generations * 2.0 * 3.0 + 6.0;
     assert_eq!(run.number("simulations"), Some(simulations));
     assert_eq!(
@@ -181,10 +181,10 @@ fn methods_are_crossed_in_the_order_in_which_they_are_named() {
     );
 }
 
-/// Values by their names, each with a number for each run; an infinite one stands for none.
+/// Values by their names, each with a number for each run. An infinite number stands for a missing one.
 type Values<'a> = &'a [(&'a str, &'a [f64])];
 
-/// Runs with these values, one for each seed from 1 on.
+/// Makes runs with these values, one for each seed from 1 on.
 fn runs(arms: &[(&str, Values<'_>)]) -> StudyRuns {
     let protocol = Protocol {
         preset: "climb".to_owned(),
@@ -215,7 +215,7 @@ fn runs(arms: &[(&str, Values<'_>)]) -> StudyRuns {
     runs
 }
 
-/// The verdict on the demand of arm `a`, which is compared with `b`.
+/// Returns the verdict on a demand on arm `a`, whose baseline is `b`.
 fn verdict(demand: &str, runs: &StudyRuns) -> Verdict {
     verdict_of("All", demand, runs)
 }

@@ -1,4 +1,4 @@
-//! The values that a run is measured by: their names, titles, units and digits.
+//! The values by which runs are measured: their names, titles, units and digits.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -12,38 +12,38 @@ use snakes_core::score::{ExamSuite, SuiteResult};
 /// The form of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// A number; a run without it is left out.
+    /// A number. A run without the value is left out.
     Number,
-    /// A number of evaluations up to an event; a run without it never came there, which counts as infinite.
+    /// A number of evaluations up to an event. For a run without the value, the event never came, which counts as infinite.
     Until,
-    /// 1 or 0.
+    /// 1 if a condition is met, otherwise 0.
     Flag,
     /// A text.
     Text,
-    /// A list of numbers.
+    /// A list of numbers, such as one for each generation.
     List,
 }
 
 /// A value by which runs are measured.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ValueInfo {
-    /// Its name in files.
+    /// Name of the value in files.
     pub name: String,
-    /// Its title in tables.
+    /// Title of the value in tables.
     pub title: String,
-    /// Its unit; empty for a count or a share.
+    /// Unit of the value; empty for a count or a share.
     pub unit: &'static str,
-    /// Maximum number of digits after the point in tables.
+    /// Maximum number of decimal places in tables.
     pub digits: usize,
-    /// Its form.
+    /// Form of the value.
     pub form: Form,
-    /// The value in a sentence.
+    /// Description of the value in a sentence.
     pub about: String,
 }
 
 use Form::{Flag, List, Number, Text, Until};
 
-/// Name, title, unit, digits, form, sentence.
+/// Name, title, unit, digits, form and description of a value.
 type ValueRow = (&'static str, &'static str, &'static str, usize, Form, &'static str);
 
 const ROWS: [ValueRow; 26] = [
@@ -187,21 +187,21 @@ const ROWS: [ValueRow; 26] = [
     ),
 ];
 
-/// The values that only runs of evolving bodies are measured for, at the price of more simulations.
+/// Values that are measured only if a study shows them, because they take more simulations. They describe evolving bodies.
 const OF_BODIES: [&str; 6] =
     ["changes", "late_changes", "filled_cells", "qd_score", "split_changes", "insertion_changes"];
 
-/// Whether a value needs the measurements of evolving bodies.
+/// Returns whether a value needs the measurements of evolving bodies.
 pub(super) fn is_of_bodies(name: &str) -> bool {
     OF_BODIES.contains(&name)
 }
 
-/// The name of a suite in names of values.
+/// Returns the name of a suite as a part of names of values.
 fn suite_name(suite: ExamSuite) -> String {
     suite.choice().name.replace('-', "_")
 }
 
-/// The values of a suite: ending of the name, title, digits, sentence.
+/// Values of each suite: suffix of the name, suffix of the title, digits, description.
 const OF_SUITE: [(&str, &str, usize, &str); 5] = [
     ("", "", 1, "Landings of 100 trials"),
     ("_trials", " trials", 0, "Number of trials"),
@@ -215,7 +215,7 @@ const OF_SUITE: [(&str, &str, usize, &str); 5] = [
     ),
 ];
 
-/// All values, in the order of tables and files.
+/// Returns all values, in the order of tables and files.
 pub fn values() -> &'static [ValueInfo] {
     static VALUES: OnceLock<Vec<ValueInfo>> = OnceLock::new();
     VALUES.get_or_init(listed)
@@ -257,10 +257,10 @@ fn listed() -> Vec<ValueInfo> {
     values
 }
 
-/// The value of a name.
+/// Returns the value with this name.
 ///
 /// # Errors
-/// There is none.
+/// There is no such value.
 pub fn value(field: &str, name: &str) -> Result<&'static ValueInfo, Invalid> {
     values().iter().find(|info| info.name == name).ok_or_else(|| {
         let names: Vec<&str> = values().iter().map(|info| info.name.as_str()).collect();
@@ -268,13 +268,13 @@ pub fn value(field: &str, name: &str) -> Result<&'static ValueInfo, Invalid> {
     })
 }
 
-/// The value of a name; none for an unknown one, which the check of the study refuses.
+/// Returns the value with this name; `None` for an unknown name, which the check of the study refuses.
 pub(super) fn info_of(name: &str) -> Option<&'static ValueInfo> {
     value("of", name).ok()
 }
 
 impl ValueInfo {
-    /// Title and unit.
+    /// Returns the title with the unit.
     pub fn label(&self) -> String {
         match self.unit {
             "" => self.title.clone(),
@@ -283,7 +283,7 @@ impl ValueInfo {
     }
 }
 
-/// A number with as many digits as it needs, `digits` at most; – for an infinite one.
+/// Formats a number with as many decimal places as it needs, at most `digits`. An infinite number becomes a dash.
 pub fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -294,18 +294,18 @@ pub fn number(value: f64, digits: usize) -> String {
     (if text == "-0" { "0" } else { text }).to_owned()
 }
 
-/// A number with its sign and at most `digits` decimal places.
+/// Formats a number with its sign and at most `digits` decimal places.
 pub(super) fn signed(value: f64, digits: usize) -> String {
     let sign = if value >= 0.0 && value.is_finite() { "+" } else { "" };
     format!("{sign}{}", number(value, digits))
 }
 
-/// A 32-bit number with the fewest digits that give it back.
+/// Converts a 32-bit number so that it is stored with the fewest digits that give it back.
 pub(super) fn short(value: f32) -> StudyValue {
     StudyValue::Number(crate::run::short(value).as_f64().unwrap_or(0.0))
 }
 
-/// The name of a suite's value, such as `exam_held_out_trials`.
+/// Returns the name of a suite's value, such as `exam_held_out_trials`.
 pub fn of_suite(suite: ExamSuite, ending: &str) -> String {
     format!("exam_{}{ending}", suite_name(suite))
 }

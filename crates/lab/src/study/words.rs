@@ -1,11 +1,11 @@
-//! Demands in words.
+//! The demands of a study in words.
 
 use super::definition::{Arm, Demand, Study};
 use super::measure::Measure;
 use super::values::{Form, info_of, number};
 
 impl Demand {
-    /// The measure in words.
+    /// Describes the measure in words.
     pub fn words(&self, study: &Study, arm: &Arm) -> String {
         let against = self.against(study, arm).map_or("", |arm| arm.name.as_str());
         let title = |name: &str| info_of(name).map_or(name.to_owned(), |info| info.title.clone());
@@ -44,7 +44,7 @@ impl Demand {
         }
     }
 
-    /// A bound in words; a dash if there is none.
+    /// Describes a bound in words; a dash for `None`.
     pub fn bound(&self, bound: Option<f64>) -> String {
         let Some(bound) = bound else { return "–".to_owned() };
         let sign = if self.is_at_most() { "≤" } else { "≥" };

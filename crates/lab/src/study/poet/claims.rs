@@ -1,16 +1,16 @@
-//! The verdicts of the study, as tables.
+//! The claims about POET with their verdicts, as tables.
 
 use super::controls::{SEEDS, is_enough};
 use super::hardest::{HARDEST, TRIALS};
 use crate::run::markdown::markdown_table;
 use snakes_core::save::{HardStairs, PoetStudy};
 
-/// Number of the hardest stairs that only POET must solve.
+/// Number of the hardest stairs that POET must solve but no direct search may.
 const ONLY_POET: usize = 3;
 /// Wall-clock time that the run may take on two cores, in minutes.
 const MINUTES: f64 = 60.0;
 
-/// The verdict on hard stairs.
+/// Verdict on hard stairs: which search solves them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SolvedBy {
     OnlyPoet,
@@ -29,7 +29,7 @@ fn verdict(study: &PoetStudy, hard: &HardStairs) -> SolvedBy {
     }
 }
 
-/// The results as Markdown: the hardest stairs with the best of the direct searches, and each claim with its verdict.
+/// Returns the results as Markdown: the hardest stairs with the best direct search on each, and each claim with its verdict.
 pub fn poet_claims(study: &PoetStudy) -> String {
     let head = ["stairs", "shape", "all agents", "POET", "trials", "direct", "solved by"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
@@ -82,7 +82,7 @@ fn only_poet(study: &PoetStudy) -> Vec<String> {
     let count =
         |of: SolvedBy| study.hardest.iter().filter(|hard| verdict(study, hard) == of).count();
     let (only, open) = (count(SolvedBy::OnlyPoet), count(SolvedBy::NotMeasured));
-    // The missing ones cannot change a verdict that is certain.
+    // A verdict is shown once no missing search can change it.
     let is_certain = only >= ONLY_POET || only + open < ONLY_POET || open == 0;
     let measured = (study.rounds > 0 && is_certain).then(|| {
         let unknown = if open > 0 { format!(", {open} not measured") } else { String::new() };
@@ -110,7 +110,7 @@ fn fast(study: &PoetStudy) -> Vec<String> {
     claim("time of the run", format!("less than {MINUTES} minutes on two cores"), measured)
 }
 
-/// The direct searches as records for a CSV file, the names of the columns first.
+/// Returns the direct searches as records of a CSV file, the header first.
 pub fn poet_records(study: &PoetStudy) -> Vec<Vec<String>> {
     let head = ["stairs", "shape", "seed", "evaluations", "share"];
     let shape = |node: u32| {
@@ -165,7 +165,7 @@ mod tests {
             (count("| yes"), count("| no "), count("not measured"))
         };
         assert_eq!(verdicts(&study), (2, 0, 6));
-        // Three stairs that a direct search climbs leave two at most.
+        // If direct searches climb three of the five hardest stairs, at most two are left for POET alone.
         study.controls = [7, 5, 4].map(|node| control(node, 2, 0.6)).to_vec();
         assert_eq!(verdicts(&study), (2, 1, 3));
         study.controls = [7, 5, 4]

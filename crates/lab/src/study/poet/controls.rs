@@ -1,4 +1,4 @@
-//! Direct searches on hard stairs.
+//! Direct searches on the hardest stairs, as a control of POET.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
@@ -11,24 +11,24 @@ use crate::run::{Cancelled, RunControl};
 use snakes_core::evolve::{RestartKind, RunPlan, StrategyKind};
 use snakes_core::save::{ControlRun, PoetStudy};
 
-/// Individuals of a generation of a direct search.
+/// Number of individuals in a generation of a direct search.
 const POPULATION: u32 = 12;
-/// Direct searches on each of the hardest stairs.
+/// Number of direct searches on each of the hardest stairs.
 pub(super) const SEEDS: u64 = 10;
-/// Share of the way that none of the direct searches may cover on stairs that only POET solves.
+/// Share of the way that all direct searches must miss on stairs that only POET solves.
 const DIRECT: f32 = 0.55;
 
-/// A direct search that is to be made.
+/// A direct search that is still to be made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlannedControl {
-    /// Index of its stairs in the run of POET.
+    /// Index of the stairs in the tree of POET's run.
     pub node: u32,
-    /// Its plan.
+    /// Plan of the direct search.
     pub plan: RunPlan,
 }
 
-/// The direct searches that a study does not have yet, one seed of all stairs after the other. Stairs on which one has come far
-/// enough need no more.
+/// Returns the direct searches that a study lacks: for each seed, one on each of the hardest stairs. Stairs on which a search has
+/// already come far enough need no others.
 pub fn planned_controls(study: &PoetStudy, poet: &RunPlan) -> Vec<PlannedControl> {
     let mut planned = Vec::new();
     for number in 1..=SEEDS {
@@ -55,13 +55,13 @@ pub fn planned_controls(study: &PoetStudy, poet: &RunPlan) -> Vec<PlannedControl
     planned
 }
 
-/// Whether a direct search has come so far that its stairs are not solved by POET alone.
+/// Returns whether a direct search has come so far that POET is not the only one to solve its stairs.
 pub fn is_enough(run: &ControlRun) -> bool {
     run.share.is_some_and(|share| share >= DIRECT)
 }
 
-/// Makes direct searches, as many at the same time as `evaluator` has workers. A search ends once it has come far enough, and so
-/// do the others on its stairs. Calls `done` with each finished run, one at a time.
+/// Makes direct searches, as many at the same time as `evaluator` has workers. Once a search has come far enough, it ends, and so
+/// do the other searches on its stairs. Calls `spent` with numbers of trials, and `done` with each finished search, one at a time.
 ///
 /// # Errors
 /// `control` was cancelled, workers could not be started, or `done` failed.

@@ -1,4 +1,4 @@
-//! The hardest of the stairs that a run of POET has solved.
+//! The hardest stairs that a run of POET has solved.
 
 use crate::run::exam::exam_ends;
 use crate::run::{Cancelled, RunControl};
@@ -8,16 +8,17 @@ use snakes_core::genome::Genome;
 use snakes_core::save::HardStairs;
 use snakes_core::score::{PerturbationRange, Trial, varied};
 
-/// Share of the way from which on a trial is a success.
+/// Minimum share of the way for a trial to count as a success.
 const SUCCESS: f32 = 0.85;
-/// Perturbed trials of the agent of solved stairs.
+/// Number of perturbed trials in which the agent of solved stairs is tested.
 pub(super) const TRIALS: u32 = 10;
-/// Number of them that have to succeed.
+/// Number of perturbed trials that must succeed.
 const MUST_SUCCEED: u32 = 8;
-/// Number of the hardest stairs.
+/// Number of the hardest stairs that a study uses.
 pub(super) const HARDEST: usize = 5;
 
-/// The hardest solved stairs of a run, the hardest first: those whose agent succeeds in enough perturbed trials.
+/// Returns the hardest solved stairs of a run, the hardest first. Only stairs whose agent succeeds in enough perturbed trials
+/// count.
 ///
 /// # Errors
 /// [`Cancelled`], if `control` was cancelled.
@@ -63,13 +64,13 @@ pub fn hardest_stairs(
     Ok(found)
 }
 
-/// A staircase and all its ancestors.
+/// Returns the index of a staircase and those of all its ancestors.
 fn ancestors(tree: &StairsTree, node: usize) -> impl Iterator<Item = usize> {
     let parent = |&node: &usize| tree.nodes.get(node)?.parent.map(|parent| parent as usize);
     std::iter::successors(Some(node), parent)
 }
 
-/// The share that each job covers.
+/// Evaluates jobs, and returns the share of the way that each covers, 0 if it was disqualified.
 fn shares(
     trials: &[Trial],
     jobs: &[Job<'_>],

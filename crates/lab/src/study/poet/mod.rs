@@ -1,7 +1,8 @@
-//! A study of POET: whether it solves stairs that a direct search does not, after the control experiment of Wang et al. (2019).
+//! A study of POET: whether it solves stairs that a direct search does not solve, after the control experiment of Wang et al.
+//! (2019).
 //!
-//! Of the stairs that a run of POET has solved, the hardest are those on which the agents of all its stairs do worst on average.
-//! For each of them, direct searches from scratch may spend as many trials as POET did on these stairs and all their ancestors.
+//! Among the stairs that a run of POET has solved, the hardest are those on which the agents of all its stairs do worst on average.
+//! Direct searches from scratch on each of them may spend as many trials as POET did on these stairs and all their ancestors.
 
 mod claims;
 mod controls;
