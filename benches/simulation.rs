@@ -1,6 +1,5 @@
-//! Benchmarks of a step, of an evaluation, of seeking, and of listing a large folder of saves. Compare with
-//! `cargo bench -- --save-baseline before` and `cargo bench -- --baseline before`; `snakes bench` measures the
-//! ratio to bare rapier.
+//! Benchmarks of a step, of an evaluation, of seeking, and of listing a large folder of saves. `cargo bench -- --save-baseline
+//! before` and `cargo bench -- --baseline before` compare two versions; `snakes bench` measures the ratio to bare rapier.
 
 #![expect(clippy::expect_used, reason = "a benchmark that cannot start has to fail")]
 
@@ -19,7 +18,7 @@ fn random_genome(trial: &Trial) -> Genome {
     GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
 }
 
-/// One step in the middle of a rollout, when the snake is in contact and in motion.
+/// Measures one step in the middle of a rollout, when the snake moves and touches the ground.
 fn one_step(criterion: &mut Criterion) {
     let trial = Trial { duration_s: 600.0, ..Default::default() };
     let genome = random_genome(&Trial::default());
@@ -33,7 +32,7 @@ fn one_step(criterion: &mut Criterion) {
     });
 }
 
-/// One evaluation of the default trial: building the world and 300 steps.
+/// Measures one evaluation of the default trial: building the world and 300 steps.
 fn one_evaluation(criterion: &mut Criterion) {
     let trial = Trial::default();
     let genome = random_genome(&trial);
@@ -42,8 +41,8 @@ fn one_evaluation(criterion: &mut Criterion) {
     });
 }
 
-/// Seeking to the middle and to the end of the shipped champion's 15 s from the nearest keyframe, as the studio's
-/// timeline does; and, for comparison, computing the whole history, which the studio does once in the background.
+/// Measures seeking from the nearest keyframe to the middle and to the end of the shipped champion's 15 s, as in the studio's
+/// timeline. Also measures computing the whole history, which the studio does once in the background.
 fn seeking(criterion: &mut Criterion) {
     let champion = shipped_champion().expect("well formed").champion;
     let whole_history =

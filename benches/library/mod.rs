@@ -4,7 +4,7 @@ use criterion::Criterion;
 use snakes_core::save::SavesFolder;
 use snakes_core::save::library::{SavePlace, list, read_entry};
 
-/// Ten thousand files of a few bytes: their contents are not read.
+/// Lists a folder of ten thousand small files, whose contents are not read.
 pub fn listing(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder");
     for number in 0..10_000 {

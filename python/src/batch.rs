@@ -1,4 +1,4 @@
-//! Evaluates many genomes on many threads, without Python's lock, and ends when the user interrupts Python.
+//! Evaluates many genomes on many threads, without Python's lock, until done or interrupted by the user.
 
 use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -14,7 +14,7 @@ use snakes_lab::run::{
 use crate::convert::whole_as;
 use crate::errors::{crashed, no_threads};
 
-/// The number of threads that was asked for; all cores if none was.
+/// Returns the requested number of threads; all cores for `None`.
 pub fn threads_of(threads: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     let (least, most) = (*THREADS_RANGE.start() as u64, *THREADS_RANGE.end() as u64);
     let Some(threads) = threads else { return Ok(available_cores().min(most as usize)) };
@@ -22,16 +22,16 @@ pub fn threads_of(threads: Option<&Bound<'_, PyAny>>) -> PyResult<usize> {
     Ok(whole_as("threads", threads, least..=most, &allowed)? as usize)
 }
 
-/// The result for a genome whose simulation panicked: what a run counts, too.
+/// Returns the result of a genome whose simulation panicked, as a run counts it.
 fn void() -> Scored {
     Scored { evaluation: Evaluation::void(), episode: None }
 }
 
-/// Time between two looks for an interrupt. Python itself reacts in some milliseconds.
+/// Time between two checks for an interrupt. Python itself reacts within milliseconds.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Scores all genomes in a trial; the results are in their order. An interrupt lets the snakes that are being simulated end
-/// first, so that it takes at most as long as the longest evaluation.
+/// Scores all genomes in a trial, and returns the results in their order. After an interrupt, the evaluations in progress are
+/// finished, so it takes at most as long as the longest evaluation.
 pub fn score_all(
     py: Python<'_>,
     genomes: &[Genome],
@@ -54,7 +54,7 @@ pub fn score_all(
             let (control, pool, store) = (&control, &pool, &store);
             scope.spawn(move || {
                 let jobs: Vec<&Genome> = genomes.iter().collect();
-                // Only an interrupt cancels.
+                // Only an interrupt cancels the control.
                 let _ = pool.evaluate_batch(trial, &jobs, control, &|index, result| {
                     store(index, result.unwrap_or_else(|_| void()));
                 });
@@ -76,10 +76,10 @@ pub fn score_all(
     if let Some(interrupt) = interrupted {
         return Err(interrupt);
     }
-    // It may also have come during the last wait.
+    // An interrupt may also have come during the last wait.
     py.check_signals()?;
     let results = results.into_inner().map_err(|_| crashed("a thread panicked".to_owned()))?;
-    // An evaluator may leave genomes out; none is lost.
+    // Genomes that the evaluator left out are evaluated on this thread.
     let scored = results.into_iter().zip(genomes).map(|(scored, genome)| {
         scored.unwrap_or_else(|| evaluate_caught(genome, trial).unwrap_or_else(|_| void()))
     });

@@ -23,7 +23,7 @@ use crate::convert::{parsed, to_python};
 use crate::errors::{crashed, unusable};
 use crate::evaluations::Evaluations;
 
-/// A saved champion.
+/// A saved champion, as a Python class.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Champion {
     loaded: LoadedChampion,
@@ -34,13 +34,13 @@ impl Champion {
         &self.loaded.champion.genome
     }
 
-    /// A snake of this program as a champion.
+    /// Makes a champion of this engine, without a recording and an exam.
     pub fn new(champion: evolve::Champion) -> Self {
         let engine = Engine::THIS;
         Self { loaded: LoadedChampion { champion, engine, recording: None, exam: Vec::new() } }
     }
 
-    /// Writes its file.
+    /// Writes the champion to a file.
     pub fn store(&self, path: &Path) -> PyResult<()> {
         save::store_champion(path, &self.loaded.champion, None).map_err(unusable)
     }
@@ -85,7 +85,7 @@ impl Champion {
     }
 }
 
-/// Evaluates a snake as the champion that it is to be.
+/// Evaluates a snake, and makes it a champion with this origin.
 pub fn evaluated(
     py: Python<'_>,
     genome: Genome,
@@ -99,14 +99,14 @@ pub fn evaluated(
     Ok(Champion::new(evolve::Champion { genome, trial, evaluation, chosen_by: None, origin }))
 }
 
-/// Reads a champion's file.
+/// Reads a champion from its file.
 #[pyfunction]
 pub fn load_champion(path: PathBuf) -> PyResult<Champion> {
     let loaded = save::load_champion(&path).map_err(unusable)?;
     Ok(Champion { loaded })
 }
 
-/// Reads a run's folder.
+/// Reads a run from its folder, as a dictionary with its settings, generations and champions.
 #[pyfunction]
 pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let (plan, records) = load_log(&folder).map_err(unusable)?;
@@ -128,7 +128,8 @@ pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, Py
     Ok(run)
 }
 
-/// The result that `snakes replay FILE --no-render --json` prints; `matches` is false if the record differs.
+/// Returns the result that `snakes replay FILE --no-render --json` prints. Its `matches` is false if the replay differs from the
+/// record.
 #[pyfunction]
 pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
     let mut out = Vec::new();
@@ -146,7 +147,7 @@ pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>
 
 #[pymethods]
 impl Champion {
-    /// The champion as a dictionary: the whole file without the poses.
+    /// Returns the champion as a dictionary with the contents of its file, without the poses.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         to_python(py, &self.json()?)
     }
@@ -157,13 +158,13 @@ impl Champion {
         format!("<Champion of {}, seed {}: {}>", origin.preset, origin.seed, champion.reached())
     }
 
-    /// The recorded trace hash.
+    /// Trace hash of the record.
     #[getter]
     fn trace_hash(&self) -> u64 {
         self.loaded.champion.evaluation.trace_hash
     }
 
-    /// Simulates it again in its trial.
+    /// Simulates the champion again in its trial.
     fn evaluate(&self, py: Python<'_>) -> PyResult<Evaluations> {
         let champion = &self.loaded.champion;
         let scored = score_all(py, std::slice::from_ref(&champion.genome), &champion.trial, 1)?;
@@ -171,7 +172,7 @@ impl Champion {
         Ok(Evaluations::new(genomes, scored, &champion.trial.stairs))
     }
 
-    /// Its motion, simulated again: arrays with a row per moment, the first before the first step.
+    /// Returns the motion of the champion, simulated again: arrays with a row for each moment, beginning before the first step.
     fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let champion = &self.loaded.champion;
         let motion = py.detach(|| run::caught(|| Motion::of(champion))).map_err(crashed)?;
@@ -179,7 +180,7 @@ impl Champion {
     }
 }
 
-/// The motion of a snake: limbs head first, joints from the head.
+/// Motion of a snake, moment by moment: limbs from the head on, then joints from the head on.
 #[derive(Default)]
 struct Motion {
     limbs: usize,

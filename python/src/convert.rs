@@ -1,4 +1,4 @@
-//! Values of Python as texts of settings, and values of the core as dictionaries.
+//! Conversions of Python's values into texts of settings, and of the core's values into dictionaries.
 
 use std::ops::RangeInclusive;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::errors::{crashed, refused};
 
-/// A value as `--set` takes it: `5`, `0.3`, `true`, `none`, `[0.4, 0.5]`.
+/// Returns a value in the form that `--set` takes: `5`, `0.3`, `true`, `none`, `[0.4, 0.5]`.
 pub fn text_of(field: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if value.is_none() {
         return Ok("none".to_owned());
@@ -32,7 +32,7 @@ pub fn text_of(field: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     if value.is_instance_of::<PyFloat>() {
         return Ok(number(value.extract()?));
     }
-    // NumPy's numbers and arrays know how to become Python's.
+    // NumPy's numbers and arrays can convert themselves into Python's.
     if value.hasattr("tolist")? {
         return text_of(field, &value.call_method0("tolist")?);
     }
@@ -40,18 +40,18 @@ pub fn text_of(field: &str, value: &Bound<'_, PyAny>) -> PyResult<String> {
     Err(refused(field, format!("a {kind}"), "a number, a bool, a string, None, or a list of these"))
 }
 
-/// A number as settings spell it: whole ones without a point, so that 5.0 steps are 5.
+/// Formats a number as settings spell it: a whole number has no point, so that 5.0 becomes 5.
 fn number(value: f64) -> String {
     value.to_string()
 }
 
-/// A whole number of a range. By itself, Python's conversion tells of one that does not fit neither the name nor the range.
+/// Reads a whole number within a range. Errors name the field and the range, which errors of Python's own conversion do not.
 pub fn whole(field: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<u64>) -> PyResult<u64> {
     let allowed = format!("{} to {}", range.start(), range.end());
     whole_as(field, value, range, &allowed)
 }
 
-/// A whole number of a range. An error says `allowed` instead of the limits of the range.
+/// Reads a whole number within a range. Errors have `allowed` in place of the range's limits.
 pub fn whole_as(
     field: &str,
     value: &Bound<'_, PyAny>,
@@ -66,24 +66,24 @@ pub fn whole_as(
     match number.extract() {
         Ok(number) if range.contains(&number) => Ok(number),
         _ => {
-            // Python does not write down numbers of thousands of digits.
+            // Python refuses to format numbers of thousands of digits.
             let text = number.str().map_or("too large".to_owned(), |text| text.to_string());
             Err(refused(field, text, allowed))
         }
     }
 }
 
-/// A whole number of 32 bits.
+/// Reads a whole number of 32 bits without a sign.
 pub fn whole_u32(field: &str, value: &Bound<'_, PyAny>) -> PyResult<u32> {
     Ok(whole(field, value, 0..=u32::MAX.into())? as u32)
 }
 
-/// A seed.
+/// Reads a seed, a whole number of 64 bits without a sign.
 pub fn seed_of(value: &Bound<'_, PyAny>) -> PyResult<u64> {
     whole("seed", value, 0..=u64::MAX)
 }
 
-/// The changes of settings in a dictionary, in its order; `prefix` precedes each name.
+/// Returns the changed settings in a dictionary, in its order: names and texts of values. `prefix` precedes each name.
 pub fn changes_in(
     field: &str,
     prefix: &str,
@@ -107,18 +107,18 @@ pub fn changes_in(
     settings.iter().map(change).collect()
 }
 
-/// A value of the core as dictionaries, lists and numbers. Numbers keep the digits that files have.
+/// Converts a value of the core into dictionaries, lists and numbers of Python. Numbers keep the digits that files have.
 pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| crashed(error.to_string()))?;
     parsed(py, &text)
 }
 
-/// A text of JSON as dictionaries, lists and numbers.
+/// Parses a text of JSON into dictionaries, lists and numbers of Python.
 pub fn parsed<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (json,))
 }
 
-/// The rows of an array of points: `columns` finite numbers each.
+/// Returns the rows of an array of points. Each row must have `columns` finite numbers.
 pub fn rows(
     field: &str,
     array: &PyReadonlyArray2<'_, f64>,
@@ -132,7 +132,7 @@ pub fn rows(
     }
     let row = |(index, row): (usize, numpy::ndarray::ArrayView1<'_, f64>)| {
         for (column, value) in row.iter().enumerate() {
-            // Far outside the cube, reflections lose precision.
+            // Far outside the unit cube, reflections lose precision.
             if !(-1.0e6..=1.0e6).contains(value) {
                 let name = format!("{field}[{index}, {column}]");
                 return Err(refused(&name, value, "finite numbers from -1e6 to 1e6"));

@@ -1,5 +1,5 @@
-//! The core's errors as Python exceptions: a value that is not allowed is a ValueError, a file that cannot be read or
-//! written an OSError.
+//! The core's errors as Python exceptions: ValueError for a value that is not allowed, OSError for a file that cannot be read or
+//! written.
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
@@ -7,17 +7,17 @@ use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 use snakes_lab::run::WorkersError;
 
-/// A value that is not allowed.
+/// Returns the exception for a value that is not allowed.
 pub fn invalid(error: Invalid) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A value that is not allowed, by its field and the values that are.
+/// Returns the exception for a value that is not allowed, given its field and a description of the allowed values.
 pub fn refused(field: &str, value: impl std::fmt::Display, allowed: &str) -> PyErr {
     invalid(Invalid::new(field, value, allowed))
 }
 
-/// A file that cannot be used.
+/// Returns the exception for a file that cannot be used.
 pub fn unusable(error: SaveError) -> PyErr {
     match error {
         SaveError::Unreadable { .. } | SaveError::Unwritable { .. } => {
@@ -27,12 +27,12 @@ pub fn unusable(error: SaveError) -> PyErr {
     }
 }
 
-/// The system refused to start threads.
+/// Returns the exception for threads that the operating system refused to start.
 pub fn no_threads(error: WorkersError) -> PyErr {
     PyRuntimeError::new_err(error.to_string())
 }
 
-/// The simulation panicked where no single individual is to blame.
+/// Returns the exception for a panic of the simulation that is not due to a single individual.
 pub fn crashed(message: String) -> PyErr {
     PyRuntimeError::new_err(format!("the simulation failed: {message}"))
 }

@@ -1,4 +1,4 @@
-//! The results of a batch, as arrays.
+//! Results of a batch of evaluations, as arrays.
 
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
@@ -15,12 +15,12 @@ use crate::errors::{crashed, invalid};
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Evaluations {
     pub scored: Vec<Scored>,
-    /// The hashes of the genomes, by which a search knows whose results these are.
+    /// Hash of each genome, by which a search recognizes the owner of a result.
     pub genomes: Vec<u64>,
     stairs: Stairs,
 }
 
-/// Evaluations as text, for pickle.
+/// Evaluations in the form in which pickle stores them as text.
 #[derive(Serialize, Deserialize)]
 struct Packed {
     stairs: Stairs,
@@ -47,7 +47,7 @@ impl PackedResult {
     }
 }
 
-/// Evaluations from the text into which pickle packed them.
+/// Restores evaluations from the text that pickle stored.
 #[pyfunction]
 pub fn unpacked_evaluations(text: &str) -> PyResult<Evaluations> {
     let Packed { stairs, results } =
@@ -96,7 +96,7 @@ impl Evaluations {
         self.scored.len()
     }
 
-    /// Packs the results for pickle, so that they travel between processes with all their bits.
+    /// Packs the results for pickle, so that they move between processes with all their bits.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
         let packed = |(scored, genome): (&Scored, &u64)| PackedResult {
             genome: *genome,
@@ -118,13 +118,13 @@ impl Evaluations {
         format!("<Evaluations of {} snakes, best fitness {best}>", self.scored.len())
     }
 
-    /// By the measure ``trial.fitness``; of a disqualified snake, the fitness after its last healthy step.
+    /// Fitness by the measure ``trial.fitness``. For a disqualified snake, the fitness after its last healthy step.
     #[getter]
     fn fitness<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of(py, |of| of.fitness.into())
     }
 
-    /// Fitness by which snakes rank: minus infinity for a disqualified one.
+    /// Fitness by which snakes are ranked: minus infinity for a disqualified snake.
     #[getter]
     fn ranking<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of(
@@ -139,38 +139,38 @@ impl Evaluations {
         self.of(py, |of| of.disqualified.is_some())
     }
 
-    /// The reason of each disqualification; None for a healthy snake.
+    /// Reason of each disqualification; None for a healthy snake.
     #[getter]
     fn reasons(&self) -> Vec<Option<&'static str>> {
         let reason = |scored: &Scored| scored.evaluation.disqualified.map(|why| why.words());
         self.scored.iter().map(reason).collect()
     }
 
-    /// Whether it ended healthy with all steps under its middle block.
+    /// Whether the snake ended healthy, with all steps under its middle block.
     #[getter]
     fn on_landing<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         self.of(py, |of| of.is_on_landing(&self.stairs))
     }
 
-    /// Steps under the middle block at the end.
+    /// Number of steps under the middle block at the end.
     #[getter]
     fn steps_climbed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         self.of(py, |of| of.behaviour.map_or(0, |behaviour| behaviour.steps_climbed.into()))
     }
 
-    /// Healthy physics steps.
+    /// Number of healthy physics steps.
     #[getter]
     fn physics_steps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         self.of(py, |of| of.steps.into())
     }
 
-    /// Hash over the bits of all poses: equal only if every step was.
+    /// Hash over the bits of all poses. Equal hashes mean equal steps.
     #[getter]
     fn trace_hash<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
         self.of(py, |of| of.trace_hash)
     }
 
-    /// y of the middle block at the end, in m.
+    /// y coordinate of the middle block at the end, in m.
     #[getter]
     fn centre_y_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of(py, |of| of.centre_y_m.into())
@@ -200,7 +200,7 @@ impl Evaluations {
         self.of_effort(py, |effort| effort.sideways_m)
     }
 
-    /// Mean height of the blocks over the tread below the middle block, in m.
+    /// Mean height of the blocks above the tread below the middle block, in m.
     #[getter]
     fn mean_height_m<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of_behaviour(py, |of| Some(of.mean_height_m))
@@ -212,7 +212,7 @@ impl Evaluations {
         self.of_behaviour(py, |of| Some(of.mean_sideways_m))
     }
 
-    /// Mean share of blocks that touch something, from 0 to 1.
+    /// Mean share of the blocks that touch something, from 0 to 1.
     #[getter]
     fn contact_duty<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of_behaviour(py, |of| Some(of.contact_duty))
@@ -224,13 +224,13 @@ impl Evaluations {
         self.of_behaviour(py, |of| Some(of.frequency_hz))
     }
 
-    /// Energy per weight and way; NaN without a way.
+    /// Energy divided by weight and distance; NaN if the snake covered no distance.
     #[getter]
     fn cost_of_transport<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of_behaviour(py, |of| of.cost_of_transport)
     }
 
-    /// Share of the energy that lifted the snake; NaN without energy.
+    /// Share of the spent energy that lifted the snake; NaN if no energy was spent.
     #[getter]
     fn climbing_efficiency<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.of_behaviour(py, |of| of.climbing_efficiency)

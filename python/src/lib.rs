@@ -1,8 +1,7 @@
-//! The compiled part of the Python package `snakes_and_stairs`. Its public face, with all checks of types and all
-//! documentation, is the Python code beside it; `snakes_and_stairs/_core.pyi` lists what this module offers.
+//! The compiled part of the Python package `snakes_and_stairs`. The public interface, with all checks of types and all
+//! documentation, is Python code in the same package; `snakes_and_stairs/_core.pyi` lists the contents of this module.
 //!
-//! Nothing is simulated or scored here that the core does not simulate and score: environments advance a
-//! `score::Rollout`, evaluations are `score::score`.
+//! All simulation and scoring happens in the core: environments advance a `score::Rollout`, evaluations call `score::score`.
 
 mod batch;
 mod champion;

@@ -1,4 +1,4 @@
-//! A preset with changed settings: the trial, the space of genomes, and the search.
+//! A preset with changed settings, which defines the trial, the space of genomes, and the search.
 
 use std::path::PathBuf;
 
@@ -18,14 +18,14 @@ use crate::convert::{changes_in, rows, seed_of, to_python, whole, whole_u32};
 use crate::errors::{crashed, invalid, refused, unusable};
 use crate::evaluations::Evaluations;
 
-/// A preset with changed settings.
+/// A preset with changed settings, as a Python class.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Problem {
     pub preset: String,
     pub settings: Settings,
 }
 
-/// The names and descriptions of the shipped presets, the default first.
+/// Returns the names and descriptions of the shipped presets, the default first.
 #[pyfunction]
 pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let dictionary = PyDict::new(py);
@@ -35,7 +35,7 @@ pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(dictionary)
 }
 
-/// The purpose of a problem, which decides the settings that have an effect.
+/// Purpose of a problem, which decides which settings have an effect.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
     Environment,
@@ -53,7 +53,7 @@ impl Use {
         }
     }
 
-    /// Refuses a setting that would have no effect; none has more than one name here.
+    /// Refuses a setting without an effect for this purpose. `path` is its full dotted name.
     fn check(self, path: &str) -> PyResult<()> {
         let is_of_trial = path.starts_with("trial.");
         let is_of_body =
@@ -80,7 +80,7 @@ impl Use {
 }
 
 impl Problem {
-    /// Whether arrays of genes say everything about the genomes.
+    /// Checks that rows of an array can describe the genomes completely.
     pub fn check_is_array(&self) -> PyResult<()> {
         let kind = self.settings.genome.controller;
         let is_array = !matches!(
@@ -104,7 +104,7 @@ impl Problem {
         self.settings.genome.dimension(self.settings.trial.genome_shape())
     }
 
-    /// The genomes at the rows of an array. All 64 bits of a number count, so that every genome has a row.
+    /// Returns the genomes at the rows of an array. All 64 bits of a number count, so that every genome has a row.
     pub fn genomes_at(
         &self,
         field: &str,
@@ -116,20 +116,21 @@ impl Problem {
         Ok(points.iter().map(|point| self.settings.genome.genome_at_fine(point, shape)).collect())
     }
 
-    /// The point of a genome. A warning tells of one that no point has to the last bit: motion magnifies the least difference.
+    /// Returns the point of a genome. Warns if no point gives the genome back to the last bit, because motion magnifies the least
+    /// difference.
     pub fn point_of_genome(&self, py: Python<'_>, genome: &Genome) -> PyResult<Vec<f64>> {
         let (space, shape) = (&self.settings.genome, self.settings.trial.genome_shape());
         let point = space.fine_point_of(genome);
         if space.genome_at_fine(&point, shape).hash() != genome.hash() {
             let message = c"a genome has a gene that no row reaches to the last bit, so its row may move otherwise; \
                             evaluate and save the search's or the champion's own genome instead";
-            // Level 2 is the line that called the package.
+            // Level 2 stands for the line that called the package.
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), message, 2)?;
         }
         Ok(point)
     }
 
-    /// The points of genomes, as the rows of an array.
+    /// Returns the points of genomes as the rows of an array.
     pub fn points_of<'py>(
         &self,
         py: Python<'py>,
@@ -162,7 +163,7 @@ impl Problem {
         let mut changes = changes_in("stairs", "trial.stairs.", stairs)?;
         let others = changes_in("settings", "", settings)?;
         for (path, _) in &others {
-            // A ground without a surface of its own has no such settings yet.
+            // A ground without a surface of its own lacks these settings, so their names cannot be looked up.
             let is_ground = path.trim_start_matches("trial.").starts_with("ground");
             let is_strategy = path.rsplit('.').next() == Some("strategy");
             let full = if is_ground {
@@ -198,7 +199,7 @@ impl Problem {
         self.dimension()
     }
 
-    /// The duration of a trial, in s.
+    /// Duration of a trial, in s.
     #[getter]
     fn duration_s(&self) -> f64 {
         self.settings.trial.duration_s.into()
@@ -209,7 +210,7 @@ impl Problem {
         self.settings.trial.stairs.steps
     }
 
-    /// All settings by their full names, with their values as text.
+    /// Returns all settings: full dotted names, and values as text.
     #[getter]
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dictionary = PyDict::new(py);
@@ -219,7 +220,7 @@ impl Problem {
         Ok(dictionary)
     }
 
-    /// The genes of the coordinates.
+    /// Returns a dictionary about the gene of each coordinate.
     #[getter]
     fn genes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         self.check_is_array()?;
@@ -237,7 +238,7 @@ impl Problem {
         Ok(list)
     }
 
-    /// The points of random genomes: those with which a run of this seed would begin.
+    /// Returns the points of random genomes, with which a run of this seed would begin.
     fn random<'py>(
         &self,
         py: Python<'py>,
@@ -254,7 +255,7 @@ impl Problem {
         self.points_of(py, &genomes)
     }
 
-    /// The genomes at points, as dictionaries.
+    /// Returns the genomes at points as dictionaries.
     fn decode<'py>(
         &self,
         py: Python<'py>,
@@ -263,7 +264,7 @@ impl Problem {
         to_python(py, &self.genomes_at("points", &points)?)
     }
 
-    /// The point of a champion's genome.
+    /// Returns the point of a champion's genome.
     fn point_of<'py>(
         &self,
         py: Python<'py>,
@@ -288,7 +289,7 @@ impl Problem {
         Ok(Evaluations::new(&genomes, scored, &trial.stairs))
     }
 
-    /// Writes the snake at a point as a champion that the program replays.
+    /// Writes the snake at a point to a file, as a champion that the program can replay.
     fn save_champion(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! The project's own strategies, driven from Python: ask, evaluate, tell.
+//! The program's strategies, driven from Python: ask, evaluate, tell.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
@@ -20,7 +20,7 @@ use crate::errors::{crashed, invalid, refused};
 use crate::evaluations::Evaluations;
 use crate::problem::Problem;
 
-/// A strategy at work.
+/// A strategy in progress, as a Python class.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Search {
     problem: Py<Problem>,
@@ -30,20 +30,20 @@ pub struct Search {
 
 struct SearchState {
     strategy: Box<dyn Strategy>,
-    /// The generation that was asked for and not told yet.
+    /// Candidates of the generation in progress, if they were requested.
     asked: Option<Vec<Candidate>>,
     finished: u32,
     evaluated: u64,
 }
 
 impl SearchState {
-    /// The genomes of the generation in progress.
+    /// Returns the genomes of the generation in progress. Requests them from the strategy if necessary.
     fn genomes(&mut self) -> Vec<Genome> {
         let asked = self.asked.get_or_insert_with(|| self.strategy.ask());
         asked.iter().map(|candidate| candidate.genome.clone()).collect()
     }
 
-    /// The candidates of the generation in progress, if they were asked for.
+    /// Returns the candidates of the generation in progress, or an error that names `use_of_them` if they were not requested.
     fn asked(&self, use_of_them: &str) -> PyResult<&[Candidate]> {
         self.asked.as_deref().ok_or_else(|| {
             let message = format!("{use_of_them} without ask: call ask() or evaluate() first");
@@ -53,13 +53,13 @@ impl SearchState {
 }
 
 impl Search {
-    /// Another thread that failed amid a change leaves nothing that could go on.
+    /// Locks the state. If another thread panicked during a change, the search cannot continue.
     fn state(&self) -> PyResult<MutexGuard<'_, SearchState>> {
         self.state.lock().map_err(|_| PyRuntimeError::new_err("the search failed before"))
     }
 
-    /// Learns from results, which belong to the genomes of these hashes; without hashes they are in the order of those asked
-    /// for.
+    /// Lets the strategy learn from results. `hashes` are those of the results' genomes; without hashes, results must be in the
+    /// order of the candidates.
     fn learn(&self, scored: Vec<Scored>, hashes: Option<&[u64]>) -> PyResult<()> {
         let mut state = self.state()?;
         let candidates = state.asked("tell")?.to_vec();
@@ -131,25 +131,25 @@ impl Search {
         self.plan.seed
     }
 
-    /// Finished generations.
+    /// Number of finished generations.
     #[getter]
     fn generation(&self) -> PyResult<u32> {
         Ok(self.state()?.finished)
     }
 
-    /// Evaluations told so far.
+    /// Number of evaluations from which the strategy has learned so far.
     #[getter]
     fn evaluations(&self) -> PyResult<u64> {
         Ok(self.state()?.evaluated)
     }
 
-    /// Snakes in the next generation.
+    /// Number of snakes in the next generation.
     #[getter]
     fn population(&self) -> PyResult<usize> {
         Ok(self.state()?.strategy.population())
     }
 
-    /// Whether a run of these settings would end here.
+    /// Whether a run with these settings would be over.
     #[getter]
     fn is_over(&self) -> PyResult<bool> {
         let state = self.state()?;
@@ -157,7 +157,7 @@ impl Search {
         Ok(self.plan.is_over(state.finished, state.evaluated, next))
     }
 
-    /// The points of the next generation.
+    /// Returns the points of the next generation.
     fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let problem = self.problem.get();
         problem.check_is_array()?;
@@ -182,7 +182,7 @@ impl Search {
         Ok(Evaluations::new(&genomes, scored, &trial.stairs))
     }
 
-    /// A snake of the generation that was asked for, as a champion.
+    /// Returns a snake of the generation in progress as a champion.
     fn champion(&self, py: Python<'_>, index: &Bound<'_, PyAny>) -> PyResult<Champion> {
         let (mut candidates, generation) = {
             let state = self.state()?;
@@ -199,7 +199,7 @@ impl Search {
         evaluated(py, genome, self.plan.trial_in(generation), origin)
     }
 
-    /// Writes it to a file.
+    /// Writes a snake of the generation in progress to a file, as a champion.
     fn save_champion(
         &self,
         py: Python<'_>,
@@ -209,12 +209,12 @@ impl Search {
         self.champion(py, index)?.store(&path)
     }
 
-    /// Learns from evaluations of the generation.
+    /// Lets the strategy learn from evaluations of the generation in progress.
     fn tell(&self, results: &Evaluations) -> PyResult<()> {
         self.learn(results.scored.clone(), Some(&results.genomes))
     }
 
-    /// Learns from a fitness of the user's own.
+    /// Lets the strategy learn from a fitness that the user computed.
     #[pyo3(signature = (fitness, disqualified=None))]
     fn tell_fitness(
         &self,
@@ -264,15 +264,15 @@ impl Search {
         self.learn(scored, None)
     }
 
-    /// The elites of MAP-Elites; None for a strategy without an archive.
+    /// Returns the elites of MAP-Elites; None for a strategy without an archive.
     fn archive<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        // A copy, because a warning may let other threads of Python go on, which may want the state.
+        // The archive is copied, so that the lock is free when a warning lets other Python threads run.
         let Some(archive) = self.state()?.strategy.archive() else { return Ok(None) };
         let problem = self.problem.get();
         let (space, shape) = (&problem.settings.genome, problem.settings.trial.genome_shape());
         let elites = PyList::empty(py);
         for (cell, elite) in archive.elites() {
-            // The archive's own coordinates are those of the strategy, of 32 bits.
+            // The archive's coordinates are those of the strategy, with 32 bits.
             let genome = elite.genes.genome(space, shape);
             let entry = PyDict::new(py);
             let [column, row] = archive.place(cell);
@@ -282,7 +282,8 @@ impl Search {
             entry.set_item("generation", elite.generation)?;
             entry.set_item("individual", elite.individual)?;
             if genome.body.has_own_blocks() {
-                // Genomes with bodies of their own have no common length; length, width and height of each block do.
+                // Genomes with bodies of their own differ in length, so the elite has the length, width and height of each block
+                // instead.
                 let sizes = |of: &Segment| [of.length_m, of.width_m, of.height_m].map(f64::from);
                 let blocks: Vec<[f64; 3]> = genome.body.segments.iter().map(sizes).collect();
                 entry.set_item("blocks", blocks)?;

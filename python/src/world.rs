@@ -10,30 +10,30 @@ use snakes_lab::run::caught;
 
 use crate::errors::{crashed, invalid};
 
-/// The meaning of an action's number for each joint axis.
+/// Meaning of an action's number for each joint axis.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ActionKind {
-    /// The angle that the servo pulls to, in radians.
+    /// Target angle of the servo, in rad.
     Targets,
-    /// The torque, in N·m.
+    /// Torque, in N·m.
     Torques,
 }
 
-/// The rules that all worlds of an environment share.
+/// Rules that all worlds of an environment share.
 pub struct WorldRules {
     pub trial: Trial,
-    /// Gives the snake its body; its controller is never asked.
+    /// Genome that gives the snake its body. Its controller is not used.
     pub genome: Genome,
     pub actions: ActionKind,
     pub steps_per_action: u32,
     pub stiffness_nm_per_rad: f32,
     pub damping_nms_per_rad: f32,
     pub perturbation: Option<PerturbationRange>,
-    /// Taken from the reward of the step in which the snake is disqualified.
+    /// Penalty on the reward of the step in which the snake is disqualified.
     pub disqualification_penalty: f64,
 }
 
-/// The body in the middle of all ranges that a space has for bodies, with a controller that does nothing.
+/// Returns the body in the middle of a space's ranges, with a controller that does nothing.
 pub fn middle_body(space: &GenomeSpace, trial: &Trial) -> Genome {
     let space =
         GenomeSpace { controller: ControllerKind::Signal, points_per_s: 1.0, ..space.clone() };
@@ -47,7 +47,7 @@ impl WorldRules {
         self.trial.agent.body_plan(&self.genome)
     }
 
-    /// The greatest action of each joint axis in either direction: bend and twist of joint after joint.
+    /// Returns the greatest action of each joint axis in either direction: bend and twist, joint by joint.
     pub fn action_limits(&self) -> Vec<f32> {
         let limits = self.body().joints.into_iter().flat_map(|joint| match self.actions {
             ActionKind::Targets => [joint.bend_limit_rad, joint.twist_limit_rad],
@@ -56,7 +56,7 @@ impl WorldRules {
         limits.collect()
     }
 
-    /// The senses, in the order of an observation.
+    /// Returns names and descriptions of the senses, in the order of an observation.
     pub fn senses(&self) -> Vec<(String, SenseInfo)> {
         let joints = self.trial.agent.joints();
         let kinds = std::iter::repeat_n(&SenseKind::ALL[..4], joints)
@@ -66,7 +66,7 @@ impl WorldRules {
         kinds.enumerate().map(|(i, kind)| (Perception::name(i, joints), kind.info())).collect()
     }
 
-    /// The perturbation of an episode.
+    /// Draws the perturbation of an episode from its seed.
     fn draw(&self, seed: u64) -> Perturbation {
         self.perturbation.map_or_else(Perturbation::default, |range| {
             let mut rng = stream(seed, 0, 0, Purpose::Perturbation);
@@ -75,7 +75,7 @@ impl WorldRules {
     }
 }
 
-/// The outcome of a step.
+/// Outcome of a step of an environment.
 #[derive(Clone, Copy, Default)]
 pub struct StepResult {
     pub reward: f64,
@@ -83,19 +83,19 @@ pub struct StepResult {
     pub truncated: bool,
 }
 
-/// A world in an episode.
+/// A world during an episode.
 pub struct World {
     rollout: Rollout,
     control: ExternalControl,
     torques: Vec<JointTorque>,
-    /// Score less the cost of energy, after the last healthy step.
+    /// Score minus the cost of energy, after the last healthy step.
     worth: f64,
-    /// The simulation panicked: this world can only be reset.
+    /// Whether the simulation panicked. The world can then only be reset.
     has_crashed: bool,
 }
 
 impl World {
-    /// A world at the start of an episode, observed.
+    /// Creates a world at the start of an episode, with its first observation.
     pub fn new(rules: &WorldRules, seed: u64) -> PyResult<Self> {
         let (trial, genome) = (&rules.trial, &rules.genome);
         let perturbation = rules.draw(seed);
@@ -122,7 +122,7 @@ impl World {
         .map_err(crashed)
     }
 
-    /// Holds an action for the steps that an action has, or to the end of the episode.
+    /// Holds an action for the physics steps of one action, or to the end of the episode.
     pub fn step(&mut self, rules: &WorldRules, limits: &[f32], action: &[f32]) -> StepResult {
         let result = caught(|| self.take_steps(rules, limits, action));
         result.unwrap_or_else(|_| {
@@ -168,7 +168,7 @@ impl World {
         StepResult { reward, terminated, truncated: !terminated && self.rollout.is_over() }
     }
 
-    /// Writes the senses.
+    /// Writes the values of the senses into `senses`.
     pub fn sense(&self, senses: &mut [f32]) {
         for (place, value) in senses.iter_mut().zip(self.control.perception().values()) {
             *place = value;
@@ -179,17 +179,17 @@ impl World {
         &self.rollout
     }
 
-    /// Whether the episode has ended.
+    /// Returns whether the episode has ended.
     pub fn is_over(&self) -> bool {
         self.has_crashed || self.rollout.is_over()
     }
 
-    /// Whether the snake was disqualified. Cheaper than [`Self::evaluation`].
+    /// Returns whether the snake was disqualified, at less cost than [`Self::evaluation`].
     fn is_disqualified(&self) -> bool {
         self.has_crashed || self.rollout.is_over() && self.rollout.step() < self.rollout.last_step()
     }
 
-    /// The evaluation so far.
+    /// Returns the evaluation so far.
     pub fn evaluation(&self) -> Evaluation {
         let evaluation = self.rollout.evaluation();
         let crash = self.has_crashed.then_some(Disqualification::Crashed);

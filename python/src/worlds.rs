@@ -1,4 +1,4 @@
-//! Many worlds, stepped on all cores without Python's lock.
+//! Many worlds, stepped on several threads without Python's lock.
 
 use std::sync::Arc;
 
@@ -19,23 +19,23 @@ use crate::errors::{crashed, invalid, refused};
 use crate::problem::Problem;
 use crate::world::{ActionKind, StepResult, World, WorldRules, middle_body};
 
-/// Worlds of an environment. Methods take flags, one per world: worlds without one are left alone.
+/// Worlds of an environment. Methods take flags, one per world; worlds whose flag is not set stay unchanged.
 #[pyclass(module = "snakes_and_stairs._core")]
 pub struct Worlds {
     rules: Arc<WorldRules>,
     limits: Arc<[f32]>,
     senses: usize,
     worlds: Vec<Option<World>>,
-    /// The readings of the senses, one row for each world.
+    /// Values of the senses, one row for each world.
     sensed: Array2<f32>,
     threads: usize,
-    /// The pool, and the process that started it: threads do not survive a fork.
+    /// Threads, and the id of the process that started them, because threads do not survive a fork.
     pool: Option<(u32, ThreadPool)>,
 }
 
-/// Most worlds of one environment: each takes about 70 KiB.
+/// Maximum number of worlds of one environment. Each takes about 70 KiB.
 const MOST_WORLDS: u64 = 65_536;
-/// Most physics steps that one action lasts.
+/// Maximum number of physics steps of one action.
 const MOST_STEPS_PER_ACTION: u64 = 1000;
 
 fn within(field: &str, value: f64, range: std::ops::RangeInclusive<f64>) -> PyResult<f32> {
@@ -45,8 +45,8 @@ fn within(field: &str, value: f64, range: std::ops::RangeInclusive<f64>) -> PyRe
     Err(refused(field, value, &format!("{} to {}", range.start(), range.end())))
 }
 
-/// The ranges of perturbations that Python describes: none, True for the usual ones, or a dictionary, in which what is
-/// missing is 0.
+/// Reads the ranges of perturbations from Python: None for no perturbation, True for the usual ranges, or a dictionary, in which
+/// missing ranges are 0.
 fn perturbation_of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<PerturbationRange>> {
     let Some(value) = value.filter(|value| !value.is_none()) else { return Ok(None) };
     if let Ok(is_usual) = value.extract::<bool>() {
@@ -84,7 +84,7 @@ impl Worlds {
         Err(refused(field, format!("of length {length}"), &format!("{worlds}, one per world")))
     }
 
-    /// Starts the threads, unless one is enough or they run already in this process.
+    /// Starts the threads, unless one is enough or they already run in this process.
     fn prepare_pool(&mut self) -> PyResult<()> {
         let process = std::process::id();
         let is_ready = self.pool.as_ref().is_some_and(|(of, _)| *of == process);
@@ -96,12 +96,12 @@ impl Worlds {
             .thread_name(|index| format!("worlds-{index}"))
             .build()
             .map_err(|error| PyRuntimeError::new_err(format!("threads: {error}")))?;
-        // A pool of the parent process has no threads here, so its end cannot be waited for.
+        // The threads of a parent process's pool do not exist in this process, so the pool must not wait for their end.
         std::mem::forget(self.pool.replace((process, pool)));
         Ok(())
     }
 
-    /// Calls `work` with the number, the world and the row of senses of each world, on all threads.
+    /// Calls `work` on all threads with the index, the world and the row of senses of each world.
     fn each<T: Send>(
         &mut self,
         py: Python<'_>,
@@ -113,7 +113,7 @@ impl Worlds {
         let width = (*senses).max(1);
         let results = py.detach(|| match pool {
             Some((_, pool)) if worlds.len() > 1 => {
-                // A few portions per thread: their lengths even out, and handing them over costs little.
+                // With a few portions per thread their durations even out, and distributing them costs little.
                 let portion = (worlds.len() / (8 * *threads)).max(1);
                 pool.install(|| {
                     let each = worlds.par_iter_mut().zip(rows.par_chunks_mut(width)).enumerate();
@@ -130,7 +130,7 @@ impl Worlds {
         Ok(results)
     }
 
-    /// A value of each world that is in an episode.
+    /// Returns a value of each world, or `missing` for worlds without an episode.
     fn of<'py, T: numpy::Element + Copy>(
         &self,
         py: Python<'py>,
@@ -143,7 +143,7 @@ impl Worlds {
     }
 }
 
-/// Observations, rewards, and the flags of ended episodes.
+/// Observations, rewards, and the flags of terminated and of truncated episodes.
 type Stepped<'py> = (
     Bound<'py, PyArray2<f32>>,
     Bound<'py, PyArray1<f64>>,
@@ -225,13 +225,13 @@ impl Worlds {
         self.worlds.len()
     }
 
-    /// The greatest action of each joint axis in either direction.
+    /// Greatest action of each joint axis in either direction.
     #[getter]
     fn action_limits<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         self.limits.to_vec().into_pyarray(py)
     }
 
-    /// The senses, in the order of an observation.
+    /// Returns a dictionary about each sense, in the order of an observation.
     #[getter]
     fn senses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let list = PyList::empty(py);
@@ -242,7 +242,7 @@ impl Worlds {
             let sense = PyDict::new(py);
             sense.set_item("index", index)?;
             sense.set_item("name", name)?;
-            // A force is sensed as F / (F + W/n): a share without a unit, half at the weight of a limb.
+            // A force F is sensed as F / (F + W/n), a share without a unit, which is one half at the weight W/n of a limb.
             let is_share = info.scale.is_none();
             sense.set_item("unit", if is_share { "" } else { info.unit })?;
             sense.set_item("scale", info.scale.unwrap_or(1.0))?;
@@ -254,7 +254,7 @@ impl Worlds {
         Ok(list)
     }
 
-    /// Servo: stiffness in N·m/rad, damping in N·m·s/rad.
+    /// Stiffness of the servo in N·m/rad, and its damping in N·m·s/rad.
     #[getter]
     fn servo(&self) -> (f64, f64) {
         (self.rules.stiffness_nm_per_rad.into(), self.rules.damping_nms_per_rad.into())
@@ -266,7 +266,7 @@ impl Worlds {
         self.rules.trial.physics.steps_per_s
     }
 
-    /// Begins an episode in each flagged world, with the perturbation of its seed; returns the senses of all worlds.
+    /// Begins an episode in each flagged world, with the perturbation of its seed. Returns the senses of all worlds.
     fn reset<'py>(
         &mut self,
         py: Python<'py>,
@@ -290,8 +290,8 @@ impl Worlds {
         Ok(self.sensed.clone().into_pyarray(py))
     }
 
-    /// Holds an action in each flagged world; returns the senses of all worlds, and of each flagged one the reward and
-    /// whether the episode was terminated or truncated.
+    /// Holds an action in each flagged world. Returns the senses of all worlds and, for the flagged ones, the reward and whether
+    /// the episode was terminated or truncated.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
@@ -331,7 +331,7 @@ impl Worlds {
         ))
     }
 
-    /// The state of all worlds, for the dictionary `info`.
+    /// Returns the state of all worlds, for the dictionary `info`.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let state = PyDict::new(py);
         let of = |value: fn(&World) -> f64| self.of(py, f64::NAN, value);
@@ -347,7 +347,7 @@ impl Worlds {
         Ok(state)
     }
 
-    /// The evaluation of each flagged world so far; None for the others.
+    /// Returns the evaluation of each flagged world so far; None for the other worlds.
     fn evaluations<'py>(
         &self,
         py: Python<'py>,
@@ -366,7 +366,7 @@ impl Worlds {
             result.set_item("fitness", f64::from(fitness))?;
             result.set_item("disqualified", disqualified.map(|reason| reason.words()))?;
             result.set_item("on_landing", is_on_landing)?;
-            // As files have it: NumPy's usual integers have no room for it.
+            // The hash is text, as in files, because NumPy's usual integers cannot hold it.
             result.set_item("trace_hash", format!("{trace_hash:016x}"))?;
             result.set_item("physics_steps", steps)?;
             list.append(result)?;
@@ -374,7 +374,7 @@ impl Worlds {
         Ok(list)
     }
 
-    /// Poses of the limbs of a world, head first: x, y, z in m and a quaternion x, y, z, w.
+    /// Returns the poses of a world's limbs, head first: x, y, z in m and a quaternion x, y, z, w.
     fn poses<'py>(
         &self,
         py: Python<'py>,
@@ -397,7 +397,7 @@ impl Worlds {
 }
 
 impl Worlds {
-    /// Refuses a step that would have no meaning.
+    /// Refuses a step in a flagged world that has no episode, or whose episode is over.
     fn check_step(&self, index: usize, flag: bool, action: ArrayView1<'_, f32>) -> PyResult<()> {
         if !flag {
             return Ok(());

@@ -13,10 +13,10 @@ use snakes_core::save::load_champion;
 use snakes_lab::run::bench::{BenchReport, Workload, bench};
 use snakes_lab::run::headless::HeadlessError;
 
-/// Enough for some twenty rounds of every variant.
+/// Duration of the benchmark, enough for about twenty rounds of every variant.
 const BENCH_DURATION: Duration = Duration::from_secs(6);
 
-/// Measures a saved champion, else newborns of a run, and prints the figures.
+/// Measures the speed with a saved champion, or else with newborns of a run, and prints the figures.
 pub fn print_bench(args: &Args, champion: Option<&Path>) -> Result<(), CliError> {
     let workload = match champion {
         Some(file) => workload_of(file)?,

@@ -57,7 +57,7 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
 
 fn table(body: &BodyPlan, is_own: bool, tree: Option<String>) -> String {
     let origin = match (&tree, is_own) {
-        // Each letter is a part: of a rigid joint F, a revolute one R, one that twists T, a universal one U.
+        // A letter stands for the joint of each part: F fixed, R revolute, T twisting, U universal.
         (Some(tree), _) => format!("a creature with the joints {tree}"),
         (None, true) => "a body of its own".to_owned(),
         (None, false) => "the body of its trial".to_owned(),

@@ -22,12 +22,12 @@ fn server(args: &Args) -> BrokerOptions {
     BrokerOptions { url: args.workers.nats.clone().unwrap_or_default(), creds, tls_ca }
 }
 
-/// An evaluator on the workers of a server.
+/// Starts an evaluator on the workers of a server.
 pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
     let (expect_workers, local_threads) = (args.expect_workers()?, args.local_threads()?);
     let server = server(args);
     server.check()?;
-    // One plan of two people, or of one person in two folders, is two runs on the server.
+    // The place is part of the run's name: equal plans of two users, or in two folders, are different runs on the server.
     let place = format!("{} {}", host_name(), place.display());
     let run = format!("{words}-{:08x}", xxh3_64(place.as_bytes()) as u32);
     let broker = Broker::connect(&server, &run)?;
@@ -62,7 +62,7 @@ pub fn worker(args: &Args) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Lists what is on a server, or removes what waits for a run.
+/// Lists the workers and runs on a server, or removes what waits for a run.
 pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
     let broker = Broker::connect(&server(args), "machines")?;
     if let Some(run) = purged {

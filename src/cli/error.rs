@@ -19,34 +19,34 @@ pub enum CliError {
     /// The arguments are wrong.
     #[error("{0}")]
     Usage(String),
-    /// The arguments are right, but the work failed.
+    /// The arguments are right, but a command without a window failed.
     #[error(transparent)]
     Headless(#[from] HeadlessError),
     /// A folder to resume holds several runs, which were listed.
     #[error("{}: holds {count} runs; give --resume the folder of one of them", folder.display())]
     SeveralRuns {
-        /// The folder.
+        /// Path of the folder.
         folder: PathBuf,
-        /// Number of runs in it.
+        /// Number of runs in the folder.
         count: usize,
     },
-    /// The golden trajectories could not be computed.
+    /// The cases of `snakes verify` could not be computed.
     #[error(transparent)]
     Verify(#[from] VerifyError),
     /// The workers on other machines could not be used.
     #[cfg(feature = "cluster")]
     #[error(transparent)]
     Cluster(#[from] ClusterError),
-    /// This build knows no other machines.
+    /// This build has no support for other machines.
     #[cfg(not(feature = "cluster"))]
     #[error(
         "this build computes on this computer only; build it with the feature cluster to use --nats"
     )]
     NoCluster,
-    /// A worker sent wrong results after right ones.
+    /// A worker sent wrong results after right ones. Holds the reason as one line.
     #[error("{0}")]
     Tainted(String),
-    /// This machine computes other bits.
+    /// This machine computes other bits than the reference.
     #[error(
         "{differ} of {all} trajectories differ from the reference: champions saved on other machines move \
          differently on this one (fingerprint {fingerprint}, reference {reference}); please report this with \
@@ -57,9 +57,9 @@ pub enum CliError {
         differ: usize,
         /// Number of all trajectories.
         all: usize,
-        /// The fingerprint of this machine.
+        /// Fingerprint of this machine.
         fingerprint: String,
-        /// The fingerprint of the reference.
+        /// Fingerprint of the reference.
         reference: String,
     },
     /// A champion could not be exported.
@@ -85,13 +85,13 @@ pub enum CliError {
     NoStudio,
 }
 
-/// Names the flag through which a value came, in the place of the field.
+/// Returns a function that replaces the field in an error by the flag that gave the value.
 pub fn of_flag(flag: &str) -> impl Fn(Invalid) -> Invalid {
     move |invalid| Invalid { field: flag.to_owned(), ..invalid }
 }
 
 impl CliError {
-    /// 2 for wrong usage, 1 for failure.
+    /// Returns the exit code: 2 for wrong usage, 1 for failure.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::SeveralRuns { .. } | Self::Export(ExportError::Invalid(_)) => 2,

@@ -1,4 +1,4 @@
-//! The evaluator of a command: threads of this computer, or workers on others.
+//! The evaluator of a command: threads of this computer, or workers on other computers.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -7,8 +7,8 @@ use super::args::Args;
 use super::error::CliError;
 use snakes_lab::run::Evaluator;
 
-/// The evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
-/// results: the same command in the same place finds the work that an interrupted one has left there.
+/// Starts the evaluator that the flags name. On a server the command has a name made of `words` and `place`, the folder of its
+/// results. The same command in the same place therefore finds the results that an interrupted one left there.
 pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
     if args.workers.nats.is_none() {
         return args.local_evaluator();
@@ -25,7 +25,7 @@ pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evalu
     }
 }
 
-/// The result of work with an evaluator, unless results that it reported cannot be trusted.
+/// Returns the result of work with an evaluator, or an error if results that the evaluator reported cannot be trusted.
 pub fn trusted<T, E: Into<CliError>>(
     evaluator: &dyn Evaluator,
     result: Result<T, E>,

@@ -1,4 +1,4 @@
-//! `snakes exam`: champions in other conditions than those in which they evolved.
+//! `snakes exam`: champions in other conditions than those of their evolution.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ use snakes_lab::run::{Evaluator, RunControl, short};
 use snakes_lab::statistics::Share;
 use snakes_lab::study::suites_named;
 
-/// Examines champions and prints the results; if that is wanted, also into their files.
+/// Examines champions and prints the results. With --write, also stores them in the champions' files.
 pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let ExamArgs { files, suite, write: writes, .. } = wanted;
     let (suites, asks_mujoco) = asked(suite)?;
@@ -44,7 +44,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
         Ok(loaded)
     };
     let champions = files.iter().map(load).collect::<Result<Vec<_>, SaveError>>()?;
-    // The first file stands for all.
+    // On a server, the name of the first file identifies the command.
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
     let control = cancel_on_interrupt();
@@ -77,7 +77,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let mut each = files.iter().zip(champions);
     let result = each.try_for_each(|(file, loaded)| examine_one(file, loaded));
     if result.is_err() {
-        // The finished rows took minutes.
+        // The finished rows are printed even after an error, because they took minutes.
         if !rows.is_empty() {
             print(&table(&suites, &rows))?;
         }
@@ -89,7 +89,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     print(&table(&suites, &rows))
 }
 
-/// The suites that the user names, the usual ones if none; and whether the one in MuJoCo is among them.
+/// Returns the suites that the user names, or the usual suites if none is named; and whether MuJoCo is named.
 fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
     let own: Vec<String> = names.iter().filter(|name| *name != MUJOCO).cloned().collect();
     let default: &[ExamSuite] = if names.is_empty() { &ExamSuite::USUAL } else { &[] };
@@ -105,7 +105,7 @@ fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
     Ok((chosen, own.len() < names.len()))
 }
 
-/// Plays a champion in MuJoCo, with a progress bar.
+/// Examines a champion in MuJoCo, with a progress bar.
 fn in_mujoco(
     mujoco: &mut Mujoco,
     loaded: &LoadedChampion,
@@ -121,7 +121,7 @@ fn in_mujoco(
     }
 }
 
-/// The results of a champion.
+/// A row of the table: the results of a champion.
 struct ExamRow {
     name: String,
     results: Vec<SuiteResult>,
@@ -151,7 +151,7 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> Value {
     })
 }
 
-/// A class of the held-out stairs, with the 95 % interval of its share.
+/// Returns a class of the held-out stairs as JSON, with the 95 % interval of the share of landings.
 fn class_json((class, landed, trials): (&str, u32, u32)) -> Value {
     let Share { seen, least, most } = Share::of(landed, trials);
     json!({
@@ -159,7 +159,7 @@ fn class_json((class, landed, trials): (&str, u32, u32)) -> Value {
     })
 }
 
-/// A number of landings with the 95 % interval of their share.
+/// Formats a number of landings with the 95 % interval of their share.
 fn with_interval(landed: u32, trials: u32) -> String {
     let Share { least, most, .. } = Share::of(landed, trials);
     format!("{landed} of {trials} ({least:.2}–{most:.2})")
@@ -186,9 +186,9 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
     })
 }
 
-/// A Markdown table with a row for each champion: in each suite the landings of all trials, and of the step rates the
-/// share of the way that it keeps in each. In the other engine it has both. The held-out stairs have 95 % intervals, and their
-/// classes have columns if there is no other suite.
+/// Makes a Markdown table with a row for each champion. A suite shows the landings of all trials; the step rates show the share of
+/// the way that is kept at each rate; the other engine shows both. The held-out stairs have 95 % intervals, and columns for their
+/// classes if there is no other suite.
 fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     let mut head = vec!["champion".to_owned()];
     let shows_classes = suites == [ExamSuite::HeldOut];

@@ -20,10 +20,10 @@ use snakes_lab::run::headless::{HeadlessError, say};
 use snakes_lab::run::progress_bar::bar_of;
 use snakes_lab::run::{BackgroundTask, RunControl};
 
-/// Positions of the progress bar.
+/// Number of positions of the progress bar.
 const PER_MILLE: f64 = 1000.0;
 
-/// Writes the file, and prints its path.
+/// Exports champions to the file of --output, and prints its path.
 pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     let Some(output) = wanted.output.as_deref().filter(|_| !wanted.figures) else {
         return figures(args, wanted);
@@ -55,7 +55,7 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     })
 }
 
-/// Draws the figures of a run.
+/// Draws the figures of a run into a folder.
 fn figures(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     refuse_json(args, "--figures")?;
     if let Some(flag) = &wanted.film_flag {
@@ -82,7 +82,7 @@ fn refuse_json(args: &Args, flag: &str) -> Result<(), CliError> {
     if args.json { Err(problem()) } else { Ok(()) }
 }
 
-/// Refuses flags that have no effect in this format.
+/// Refuses flags without an effect in this format.
 fn refuse_other_flags(wanted: &ExportArgs, format: ExportFormat) -> Result<(), CliError> {
     let ending = format.info().ending;
     if wanted.film.at.is_some() && format != ExportFormat::Png {
@@ -96,7 +96,7 @@ fn refuse_other_flags(wanted: &ExportArgs, format: ExportFormat) -> Result<(), C
     })
 }
 
-/// Does `work`, shows its progress, and prints the path that it returns.
+/// Does `work` while its progress is shown, and prints the path that it returns.
 fn with_progress(
     args: &Args,
     wanted: &ExportArgs,
@@ -112,7 +112,7 @@ fn with_progress(
             let per_mille = (share * PER_MILLE) as u32;
             if told.replace(Some(per_mille)) != Some(per_mille) {
                 let progress = f64::from(per_mille) / PER_MILLE;
-                // A reader that has gone away does not end the export.
+                // An export continues even if the reader of its progress is gone.
                 let _ = print_json(&json!({"type": "progress", "progress": progress}));
             }
         };

@@ -11,11 +11,11 @@ use snakes_core::save::{LoadedChampion, Picture, SavesFolder, load_run, store_pi
 use snakes_lab::plot;
 use snakes_lab::run::progress_bar::bar_of;
 
-/// Size of the pictures, in pixels.
+/// Width and height of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);
 
-/// Draws the champions of a run's folder (the report's Figures 5 to 10) and one torque signal (its Figure 4). The files
-/// go into the run's own folder `figures`, unless another is named.
+/// Draws the champions in a run's folder (the report's Figures 5 to 10) and one torque signal (its Figure 4). The files are written
+/// to the folder `named`, or else to the run's folder `figures`.
 pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
     let (numbers, champions): (Vec<u32>, Vec<LoadedChampion>) = load_run(run)?.into_iter().unzip();
     let folder = match named {
@@ -35,7 +35,7 @@ pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
         keep("signal.png".to_owned(), &plot::signal(&last.champion, &title)?)?;
     }
     let bar = bar_of(champions.len() as u64, "pictures");
-    // The first takes seconds to begin.
+    // Drawing the first picture takes seconds to begin.
     bar.enable_steady_tick(Duration::from_millis(200));
     let pictures = figures::draw(&champions, SIZE, |_| bar.inc(1));
     bar.finish_and_clear();

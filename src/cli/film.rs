@@ -1,4 +1,4 @@
-//! `snakes export` to a film.
+//! `snakes export` with a film as its output.
 
 use std::path::{Path, PathBuf};
 
@@ -10,23 +10,23 @@ use snakes_core::check::{Invalid, within};
 use snakes_core::save::{LoadedChampion, load_run};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
-/// The largest frames that common graphics drivers draw and players show.
+/// Maximum width and height of frames that common graphics drivers draw and players show, in pixels.
 const LARGEST_PIXELS: u32 = 4096;
-/// The smallest frames.
+/// Minimum width and height of frames, in pixels.
 const LEAST_PIXELS: (u32, u32) = (64, 64);
-/// Allowed frames per second, but for GIF.
+/// Allowed frames per second, except for GIF.
 const FPS: std::ops::RangeInclusive<u32> = 1..=120;
-/// Allowed simulated seconds per second of the film.
+/// Allowed speeds, in simulated seconds per second of the film.
 const SPEED: std::ops::RangeInclusive<f64> = 0.1..=16.0;
 
-/// A film that the user ordered.
+/// A film to be drawn, as the flags describe it.
 pub struct OrderedFilm {
     order: FilmOrder,
     format: ExportFormat,
     path: PathBuf,
 }
 
-/// The film that the flags describe.
+/// Returns the film that the flags describe.
 pub fn ordered(
     wanted: &ExportArgs,
     format: ExportFormat,
@@ -71,7 +71,7 @@ impl OrderedFilm {
     }
 }
 
-/// Checks that the film has a beginning before its end, within the longest trial.
+/// Checks that the film begins before it ends, within the longest trial.
 fn check_moments(flags: &FilmArgs, order: &FilmOrder) -> Result<(), Invalid> {
     let longest_s = longest_s(order.parts.iter().flat_map(|part| &part.champions));
     within("--start", order.start_s, 0.0..=longest_s)?;
@@ -84,7 +84,7 @@ fn check_moments(flags: &FilmArgs, order: &FilmOrder) -> Result<(), Invalid> {
     Err(Invalid::new("--end", given, format!("more than --start, {}", order.start_s)))
 }
 
-/// The parts of the film: all champions side by side or, as a story, one generation after the other.
+/// Returns the parts of the film: all champions side by side or, as a story, some generations in turn.
 fn parts(wanted: &ExportArgs, format: ExportFormat) -> Result<Vec<FilmPart>, CliError> {
     if wanted.film.story {
         return story(wanted);
@@ -99,7 +99,7 @@ fn parts(wanted: &ExportArgs, format: ExportFormat) -> Result<Vec<FilmPart>, Cli
     Ok(vec![FilmPart { title: None, champions: champions_to_draw(&wanted.files)? }])
 }
 
-/// The first, the middle and the last generation of a run.
+/// Returns the first, the middle and the last generation of a run as parts of a film.
 fn story(wanted: &ExportArgs) -> Result<Vec<FilmPart>, CliError> {
     let run = match wanted.files.as_slice() {
         [run] if run.is_dir() => run,

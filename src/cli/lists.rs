@@ -8,13 +8,13 @@ use snakes_core::save::shipped_presets;
 use snakes_core::schema::markdown;
 use snakes_lab::run::with_short_numbers;
 
-/// Prints the presets that come with the program.
+/// Prints the built-in presets.
 pub fn print_presets(json: bool) -> Result<(), CliError> {
     let presets = shipped_presets()?.into_iter().map(|preset| (preset.name, preset.about));
     print_names("preset", &presets.collect::<Vec<_>>(), json)
 }
 
-/// Prints every setting with its value; or as tables that describe them, which are `docs/settings.md`.
+/// Prints every setting with its value, or the tables of `docs/settings.md`, which describe the settings.
 pub fn print_settings(args: &Args, as_markdown: bool) -> Result<(), CliError> {
     let (preset, settings) = args.settings()?;
     if as_markdown {

@@ -1,4 +1,4 @@
-//! `snakes man`.
+//! `snakes man`: the manual pages.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use super::error::CliError;
 use super::output::print;
 use snakes_core::save::{SavesFolder, store_text};
 
-/// Prints the program's manual page, or writes those of all commands into a folder.
+/// Prints the program's manual page, or writes the pages of all commands into the folder `named`.
 pub fn manual(named: Option<&Path>) -> Result<(), CliError> {
     let pages = args::manual();
     let Some(named) = named else {

@@ -1,4 +1,4 @@
-//! The command line: flags in, one of the program's modes out, an exit code at the end.
+//! The command line: parses flags, runs one of the program's modes, and returns an exit code.
 //!
 //! Exit codes: 0 done, 1 failed, 2 used wrongly. Every error is one line on standard error.
 
@@ -39,7 +39,7 @@ use output::{cancel_on_interrupt, print};
 use snakes_core::save::run_name;
 use snakes_lab::run::headless::{self, say};
 
-/// Runs the program with the given arguments, the program's name first.
+/// Runs the program with these arguments, of which the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let result = args::parse(arguments).and_then(|parsed| match parsed {
         args::Parsed::Run(args, task) => dispatch(*args, &task),
@@ -55,8 +55,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// Does what the arguments ask for. If results turn out to be wrong, because a machine computed other bits after right
-/// ones, everything begins again without that machine.
+/// Performs the task. If earlier results turn out to be wrong, because a machine computed other bits after right ones, everything
+/// begins again without this machine.
 fn dispatch(mut args: Args, task: &Task) -> Result<(), CliError> {
     loop {
         match perform(&args, task) {
@@ -98,7 +98,7 @@ fn perform(args: &Args, task: &Task) -> Result<(), CliError> {
     }
 }
 
-/// The headless experiment.
+/// Evolves a run in the terminal.
 fn evolve(args: &Args) -> Result<(), CliError> {
     let source = args.run_source()?;
     let evaluator = evaluators::evaluator(args, &run_name(&source.plan), &source.folder)?;
@@ -111,7 +111,7 @@ fn evolve(args: &Args) -> Result<(), CliError> {
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args, files: &[PathBuf]) -> Result<(), CliError> {
     use crate::studio;
-    // Without a display, the only line is the error that follows.
+    // Without a display, only the error that follows is printed.
     let has_display = std::env::var_os("DISPLAY").is_some();
     studio::name_runtime_folder(|note| {
         if has_display {
@@ -122,7 +122,7 @@ fn open_studio(args: &Args, files: &[PathBuf]) -> Result<(), CliError> {
     let comparison =
         args.window.comparison.as_deref().map(snakes_core::save::load_study).transpose();
     let (run, saves) = (args.run_source()?, args.saves_folder());
-    // Each start of the program begins another run, and offers the stopped one, unless the user names a run.
+    // By default each start of the program begins another run and offers the stopped one, unless the user names a run.
     let names_run = args.names_run();
     let options = studio::Options {
         run: if names_run { run } else { run.with_unused_seed(&saves) },

@@ -9,7 +9,7 @@ use super::error::CliError;
 use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::HeadlessError;
 
-/// Writes to standard output. A reader that stops early (`snakes show presets | head -1`) is no error.
+/// Writes to standard output. A reader that stops early (`snakes show presets | head -1`) causes no error.
 pub fn print(text: &str) -> Result<(), CliError> {
     match io::stdout().write_all(text.as_bytes()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -22,7 +22,7 @@ pub fn print_json(line: &Value) -> Result<(), CliError> {
     print(&format!("{line}\n"))
 }
 
-/// Writes a list of things of a kind, each with its name and a sentence about it.
+/// Prints a list of things of one kind, each with its name and a sentence about it.
 pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Result<(), CliError> {
     let width = things.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, about): &(String, String)| match as_json {
@@ -32,16 +32,16 @@ pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Re
     print(&things.iter().map(line).collect::<String>())
 }
 
-/// The control that the interrupt key cancels.
+/// Control that the interrupt key cancels; `None` before the first.
 static CANCELLED_BY_KEY: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
 
-/// A control that the interrupt key cancels, in the place of any earlier one.
+/// Returns a control that the interrupt key cancels. It replaces any earlier control.
 pub fn cancel_on_interrupt() -> Arc<RunControl> {
     let current = || CANCELLED_BY_KEY.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
     let is_first = current().replace(Arc::clone(&control)).is_none();
     if is_first {
-        // Without a handler the key ends the program at once; files written by then are whole.
+        // If the handler cannot be set, the key ends the program at once, and files written so far are complete.
         let _ = ctrlc::set_handler(move || {
             if let Some(control) = current().as_ref() {
                 control.cancel();

@@ -1,4 +1,4 @@
-//! `snakes study poet`: whether POET solves stairs that a direct search does not.
+//! `snakes study poet`: whether POET solves stairs that a direct search does not solve.
 
 use std::path::Path;
 
@@ -22,15 +22,14 @@ use snakes_lab::study::poet::{
     hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
 };
 
-/// Seed of the run unless one is given. No setting was chosen by this seed or by the seeds of the direct searches after
-/// it.
+/// Default seed of the run. No setting was chosen with this seed or with the seeds of the direct searches, which follow it.
 const FIRST_SEED: u64 = 401;
-/// Rounds of the run unless a number is given.
+/// Default number of rounds of the run.
 const ROUNDS: u32 = 100;
-/// The question of the study.
+/// Question of the study, as the list of studies shows it.
 pub const ABOUT: &str = "Does POET solve stairs that a direct search does not?";
 
-/// Makes what the study's file does not have yet, and prints the results.
+/// Makes the run and the searches that are missing in the study's file, and prints the results.
 pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let given = [
         ("--arms", !wanted.arms.is_empty()),
@@ -50,7 +49,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     }
     let rounds = number_or("--rounds", &wanted.rounds, ROUNDS, WHOLE)?;
     let mut settings = load_preset("poet")?.settings;
-    // The published run is of this engine.
+    // The published run was computed with this engine.
     settings.trial.physics.engine = PhysicsEngine::Rapier;
     let plan = RunPlan::new("poet", args.seed_or(FIRST_SEED)?, settings);
     let folder = args.results_folder();
@@ -97,7 +96,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
                 ));
             });
             study.controls.push(run);
-            // After each run, so that a kill loses none that is finished.
+            // The study is stored after each run, so that a kill loses no finished run.
             Ok(store_poet_study(&ron, &study)?)
         },
     );
@@ -106,7 +105,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     report(args, &study, &ron, &csv)
 }
 
-/// Writes the table of the direct searches, and prints what they say.
+/// Writes the table of the direct searches, and prints the claims with their verdicts.
 fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), CliError> {
     store_csv(csv, &poet_records(study))?;
     if args.json {
@@ -119,7 +118,7 @@ fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), 
     print(&format!("{}\nsaved to  {ron}\n          {csv}\n", poet_claims(study)))
 }
 
-/// Continues a run of POET up to its last round, and measures it.
+/// Continues a run of POET up to its last round, and finds its hardest stairs.
 fn measure_poet(
     source: RunSource,
     mut study: PoetStudy,

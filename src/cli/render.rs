@@ -12,16 +12,16 @@ use snakes_core::check::{Invalid, within};
 use snakes_core::save::store_picture;
 use snakes_lab::plot;
 
-/// The size of a picture unless one is given.
+/// Default size of a picture, in pixels.
 const SIZE: &str = "1920x1080";
-/// The largest picture that every common graphics driver can draw.
+/// Maximum width and height of a picture that every common graphics driver can draw, in pixels.
 const LARGEST_PIXELS: u32 = 8192;
 
 /// Draws the picture, and prints the path of its file.
 pub fn draw(wanted: &ExportArgs, at: &str, path: &Path) -> Result<(), CliError> {
     within("champions", wanted.files.len(), 1..=MAX_LANES)?;
     let champions = champions_to_draw(&wanted.files)?;
-    // No moment stands for the last.
+    // `None` stands for the last moment.
     let at_s = if at == "end" { None } else { Some(moment(at, longest_s(&champions))?) };
     let film = &wanted.film;
     let scene = RenderedScene {

@@ -1,4 +1,4 @@
-//! `snakes replay --no-render`: saved champions are checked against their records.
+//! `snakes replay --no-render`: compares saved champions with their records.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use snakes_core::save::load_champion;
 use snakes_lab::run;
 use snakes_lab::run::headless::say;
 
-/// Replays all files; the first that fails is the error.
+/// Replays all files. Returns the error of the first that fails.
 pub fn replay(files: &[PathBuf], json: bool) -> Result<(), CliError> {
     let replay = |file: &PathBuf| {
         if files.len() > 1 && !json {
@@ -23,7 +23,7 @@ pub fn replay(files: &[PathBuf], json: bool) -> Result<(), CliError> {
     done.into_iter().collect()
 }
 
-/// Whether a champion replays to its record; warns if it does not.
+/// Returns whether a champion replays to its record. Warns the user if it does not.
 pub fn equals_record(file: &Path, loaded: &LoadedChampion) -> Result<bool, CliError> {
     let difference = run::difference_from_record(file, loaded)?;
     if let Some(difference) = &difference {
@@ -33,19 +33,19 @@ pub fn equals_record(file: &Path, loaded: &LoadedChampion) -> Result<bool, CliEr
     Ok(difference.is_none())
 }
 
-/// The name of a champion: that of its file.
+/// Returns the name of a champion, which is the stem of its file.
 pub fn name_of(file: &Path) -> String {
     file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A saved champion, with its name.
+/// Loads a saved champion with its name.
 #[cfg(feature = "studio")]
 fn named_champion(file: &Path) -> Result<(String, LoadedChampion), CliError> {
     Ok((name_of(file), load_champion(file)?))
 }
 
-/// Saved champions that are to be drawn, with their names. One of another engine is drawn from its recording, and the others
-/// are compared with their records.
+/// Loads saved champions that are to be drawn, with their names. A champion of another engine is drawn from its recording, if it
+/// has one. All others are compared with their records.
 #[cfg(feature = "studio")]
 pub fn champions_to_draw(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampion)>, CliError> {
     let named = files.iter().map(|file| named_champion(file));
@@ -58,7 +58,7 @@ pub fn champions_to_draw(files: &[PathBuf]) -> Result<Vec<(String, LoadedChampio
     Ok(champions)
 }
 
-/// The duration of the longest trial of some champions, in s.
+/// Returns the duration of the longest trial of some champions, in s.
 #[cfg(feature = "studio")]
 pub fn longest_s<'c>(champions: impl IntoIterator<Item = &'c (String, LoadedChampion)>) -> f64 {
     let trials = champions.into_iter().map(|(_, loaded)| &loaded.champion.trial);
@@ -72,12 +72,12 @@ pub fn longest_s<'c>(champions: impl IntoIterator<Item = &'c (String, LoadedCham
 pub struct Opened {
     /// Champions, each with the name of its file.
     pub champions: Vec<(String, LoadedChampion)>,
-    /// Problems with the other files.
+    /// Problems with files that could not be read, each as one line.
     pub problems: Vec<String>,
 }
 
-/// Reads the champions with which the window opens. From the desktop, where nobody reads what a program prints, a file that
-/// cannot be read is a problem to show.
+/// Loads the champions with which the window opens. After a start from the desktop, where printed errors are not seen, a file that
+/// cannot be read becomes a problem for the window.
 #[cfg(feature = "studio")]
 pub fn opened(files: &[PathBuf], is_from_desktop: bool) -> Result<Opened, CliError> {
     let mut opened = Opened { champions: Vec::new(), problems: Vec::new() };

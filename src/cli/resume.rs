@@ -7,13 +7,12 @@ use super::output::print;
 use snakes_core::save::{RunSummary, SavesFolder};
 use snakes_lab::run::RunSource;
 
-/// The run to resume in `folder`: its own, or that of the only run's folder in it. Several runs are listed, one per
-/// line.
+/// Returns the run in `folder`, or the only run in a folder within it. Several runs are listed, one per line, and cause an error.
 pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
     let is_run = folder.join("run.ron").symlink_metadata().is_ok();
     let runs = if is_run { Vec::new() } else { SavesFolder::find(Some(folder)).runs() };
     match &runs[..] {
-        // Without any run, this says what is missing.
+        // If there is no run, the error of this call names what is missing.
         [] => Ok(RunSource::in_folder(folder)?),
         [run] => Ok(RunSource::in_folder(&run.folder)?),
         several => {
@@ -24,7 +23,7 @@ pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
     }
 }
 
-/// A line about a run: folder, name of its own, and state.
+/// Describes a run in a line: its folder, the name that the user gave it, and its state.
 fn line(run: &RunSummary, json: bool) -> String {
     let RunSummary { folder, plan, finished, name, .. } = run;
     let generations = plan.settings.evolution.generations;

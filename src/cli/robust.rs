@@ -18,14 +18,14 @@ use snakes_lab::run::progress_bar::{bar_of, with_bar};
 use snakes_lab::run::robust::{Robustness, robustness};
 use snakes_lab::statistics::Share;
 
-/// Simulates champions in perturbed trials and prints the shares.
+/// Simulates champions in perturbed trials, and prints the share of trials that reaches each step.
 pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Result<(), CliError> {
     let trials: u64 = number_or("--trials", &wanted.trials, 0, WHOLE)?;
     within("--trials", trials, 1..=1_000_000)?;
     let (trials, seed) = (trials as u32, number_or("--seed", &wanted.seed, 1, WHOLE)?);
     let range = PerturbationRange::from(wanted);
     schema::check(&range).map_err(of_its_flag)?;
-    // The first file stands for all.
+    // On a server, the name of the first file identifies the command.
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
     let control = cancel_on_interrupt();
@@ -45,7 +45,7 @@ pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Resu
     Ok(())
 }
 
-/// Prints the shares of a champion.
+/// Prints the shares of trials in which a champion reaches each step.
 fn print_shares(
     as_json: bool,
     file: &Path,
@@ -88,7 +88,7 @@ fn print_shares(
     print(&text)
 }
 
-/// An error about a range of perturbations, with the name of its flag.
+/// Returns an error about a range of perturbations with the name of its flag.
 fn of_its_flag(invalid: Invalid) -> Invalid {
     let flag = match invalid.field.rsplit('.').next().unwrap_or_default() {
         "start_m" => "start",

@@ -1,4 +1,4 @@
-//! `snakes study`: the runs, exams and results of a built-in study or of a user's own.
+//! `snakes study`: the runs, exams and results of a built-in study or of a user's own study.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use snakes_lab::study::{
     suites_named, tables, values_as_markdown,
 };
 
-/// Makes what the study's files do not have yet, and prints the results; without a name, lists the studies.
+/// Makes the runs and exams that are missing in the study's files, and prints the results. Without a name, lists the studies.
 pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     if wanted.markdown {
         return print(&values_as_markdown());
@@ -59,7 +59,7 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     print(&format!("{}\n{saved}", tables(&results)))
 }
 
-/// An error about a setting of an arm, with the name of the flag if one was given for it.
+/// Returns an error about a setting of an arm with the name of the flag that gave the value, if there is one.
 fn of_its_flag(args: &Args, wanted: &StudyArgs, invalid: Invalid) -> Invalid {
     let field = invalid.field.split(" of ").next().unwrap_or_default().to_owned();
     if field == "evaluations" && wanted.evaluations.is_some() {
@@ -76,7 +76,7 @@ fn list(args: &Args) -> Result<(), CliError> {
     print_names("study", &studies.chain([poet]).collect::<Vec<_>>(), args.json)
 }
 
-/// The study with what the flags change.
+/// Returns the study with the changes that the flags make.
 fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, CliError> {
     if let Some(preset) = &args.run.settings.preset {
         if study.methods.is_none() && study.arms.iter().all(|arm| arm.preset.is_some()) {
@@ -139,7 +139,7 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
     Ok(study)
 }
 
-/// The kinds that a flag names, each once, in the order in which they are named; none stand for all.
+/// Returns the kinds that a flag names, each once, in the order of the flag. Empty for `all`.
 fn kinds<K: Choices + PartialEq>(flag: &str, names: &[String]) -> Result<Vec<K>, Invalid> {
     let mut found: Vec<K> = Vec::new();
     for name in names.iter().filter(|name| *name != "all") {

@@ -1,4 +1,4 @@
-//! `snakes verify`: a table, a fingerprint, and whether this machine agrees with the reference.
+//! `snakes verify`: prints a table, a fingerprint, and whether this machine agrees with the reference.
 
 use indicatif::ProgressBar;
 use serde_json::json;
@@ -9,7 +9,7 @@ use super::output::{cancel_on_interrupt, print, print_json};
 use snakes_core::{ENGINE_VERSION, Engine, Processors};
 use snakes_lab::run::verify::Trajectories;
 
-/// Computes the golden trajectories and compares them with the reference.
+/// Computes all cases on this machine, and compares them with the reference.
 pub fn verify(args: &Args) -> Result<(), CliError> {
     let reference = Trajectories::reference()?;
     let evaluator = args.local_evaluator()?;
@@ -21,7 +21,7 @@ pub fn verify(args: &Args) -> Result<(), CliError> {
     });
     bar.finish_and_clear();
     let computed = computed?;
-    // By their names: a case that was added would otherwise be compared with its neighbour.
+    // Cases are matched by name: otherwise an added case would be compared with its neighbour.
     let expected = |what: &str| -> Option<&str> {
         let known = reference.trajectories.iter().find(|trajectory| trajectory.what == what)?;
         Some(known.hash.as_str())

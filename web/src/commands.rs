@@ -1,4 +1,4 @@
-//! The commands of a page, and their answers.
+//! The commands of a page to this module, and their answers.
 
 use std::path::Path;
 
@@ -10,46 +10,46 @@ use snakes_core::save::parse_champion;
 use crate::evolution::Evolution;
 use crate::replay::Replay;
 
-/// A command.
+/// A command of the page, as JSON.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 enum Command {
-    /// The version of the engine.
+    /// Return the version of the engine.
     Engine,
-    /// Begins to simulate a champion.
+    /// Begin to simulate a champion.
     Begin {
-        /// The text of its file.
+        /// Text of the champion's file.
         champion: String,
-        /// The friction of stairs and ground, for a what-if.
+        /// Friction of stairs and ground; `None` for the champion's own.
         #[serde(default)]
         friction: Option<f32>,
     },
-    /// Takes physics steps.
+    /// Take physics steps.
     Advance {
         /// Maximum number of steps.
         steps: u32,
         /// Whether the answer has the poses after each step.
         poses: bool,
     },
-    /// Begins to evolve a champion.
+    /// Begin to evolve from a champion.
     Evolve {
-        /// The text of its file.
+        /// Text of the champion's file.
         champion: String,
-        /// The friction of stairs and ground, if it differs from the champion's own.
+        /// Friction of stairs and ground; `None` for the champion's own.
         #[serde(default)]
         friction: Option<f32>,
-        /// The seed of the search.
+        /// Seed of the search.
         seed: u64,
-        /// Individuals of a generation.
+        /// Number of individuals in a generation.
         population: u32,
     },
-    /// Evaluates the next individual.
+    /// Evaluate the next individual.
     Next,
-    /// The text of the best individual's file.
+    /// Return the text of the best individual's file.
     Best,
 }
 
-/// The replay and the evolution that a page has begun.
+/// State of a page: the replay and the evolution that it has begun.
 #[derive(Default)]
 pub struct Page {
     replay: Option<Replay>,
@@ -57,12 +57,12 @@ pub struct Page {
 }
 
 impl Page {
-    /// Nothing has begun.
+    /// Creates the state of a page that has begun nothing.
     pub const fn new() -> Self {
         Self { replay: None, evolution: None }
     }
 
-    /// Carries out a command; an answer with the field `error` tells why it could not.
+    /// Carries out a command, and returns the answer as JSON. If the command fails, the answer has the reason in the field `error`.
     pub fn answer(&mut self, command: &[u8]) -> String {
         let command: Result<Command, _> = serde_json::from_slice(command);
         let answer = command.map_err(|error| error.to_string());

@@ -1,4 +1,4 @@
-//! Evolution from a champion on, one evaluation at a time, so that a page can show its progress and stop it.
+//! Evolution from a champion, one evaluation at a time, so that a page can show the progress and stop it.
 
 use serde_json::{Value, json};
 use snakes_core::evolve::{
@@ -10,7 +10,7 @@ use snakes_core::score::{Evaluation, Scored, score};
 
 use crate::replay::trial_with;
 
-/// More generations than anyone waits for.
+/// Number of generations of the search, more than a user waits for.
 const GENERATIONS: u32 = 10_000;
 
 /// A search that descends from a champion.
@@ -21,12 +21,12 @@ pub struct Evolution {
     candidates: Vec<Candidate>,
     scored: Vec<Scored>,
     best: Option<Champion>,
-    /// The best fitness of each finished generation.
+    /// Best fitness in each finished generation with a healthy individual.
     history: Vec<f32>,
 }
 
 impl Evolution {
-    /// A search by the genetic algorithm, or by the learner that the champion's controller needs.
+    /// Begins a search from a champion with the genetic algorithm, or with the learner that the champion's controller needs.
     pub fn begin(
         champion: Champion,
         friction: Option<f32>,
@@ -58,7 +58,7 @@ impl Evolution {
         Ok(Self { plan, strategy, generation: 1, candidates, scored, best: None, history })
     }
 
-    /// Evaluates the next individual, and lets the search learn after the last one of a generation.
+    /// Evaluates the next individual. After the last one of a generation, the search learns from all.
     pub fn next(&mut self) -> Value {
         let index = self.scored.len();
         let candidate = &self.candidates[index];
@@ -97,7 +97,7 @@ impl Evolution {
         self.candidates = self.strategy.ask();
     }
 
-    /// The progress so far.
+    /// Returns the progress so far.
     pub fn state(&self) -> Value {
         json!({
             "generation": self.generation,
@@ -109,7 +109,7 @@ impl Evolution {
         })
     }
 
-    /// The file of the best individual.
+    /// Returns the text of the best individual's file.
     pub fn best(&self) -> Result<Value, String> {
         let best = self.best.as_ref().ok_or("no individual is healthy")?;
         let text = champion_text(best, None, &[]).map_err(|error| error.to_string())?;

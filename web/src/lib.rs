@@ -1,7 +1,7 @@
-//! The core in a page: simulates a champion again, with or without another friction, and goes on evolving it.
+//! The core in a page: simulates a champion again, also with another friction, and evolves it further.
 //!
-//! The module imports nothing. The page writes a command as JSON into the [`input`] buffer, calls [`command`], and reads
-//! the answer as JSON from [`output`].
+//! The module imports nothing. The page writes a command as JSON into the [`input`] buffer, calls [`command`], and reads the answer
+//! as JSON from [`output`].
 
 mod commands;
 mod evolution;
@@ -11,7 +11,7 @@ use std::cell::RefCell;
 
 use commands::Page;
 
-/// State of the module: browsers run it on a single thread.
+/// State of the module. Browsers run the module on a single thread.
 struct Buffers {
     input: Vec<u8>,
     output: Vec<u8>,
@@ -43,7 +43,7 @@ pub extern "C" fn command() -> usize {
     })
 }
 
-/// The address of the answer.
+/// Returns the address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn output() -> *const u8 {
     BUFFERS.with_borrow(|buffers| buffers.output.as_ptr())

@@ -5,17 +5,17 @@ use snakes_core::evolve::Champion;
 use snakes_core::genome::Genome;
 use snakes_core::score::{Rollout, Trial};
 
-/// A champion that is simulated.
+/// A champion whose trial is being simulated.
 pub struct Replay {
     rollout: Rollout,
     genome: Genome,
     trial: Trial,
-    /// Whether the trial is the champion's own.
+    /// Whether the trial is the champion's own, without another friction.
     is_own: bool,
     recorded_hash: u64,
 }
 
-/// A trial with another friction of stairs and ground; the champion's own without one.
+/// Returns the champion's trial with this friction of stairs and ground, or unchanged for `None`.
 pub fn trial_with(champion: &Champion, friction: Option<f32>) -> Result<Trial, String> {
     let mut trial = champion.trial.clone();
     if let Some(friction) = friction {
@@ -29,7 +29,7 @@ pub fn trial_with(champion: &Champion, friction: Option<f32>) -> Result<Trial, S
 }
 
 impl Replay {
-    /// Begins at the start of the trial.
+    /// Begins to simulate a champion, at the start of its trial.
     pub fn begin(champion: Champion, friction: Option<f32>) -> Result<Self, String> {
         let trial = trial_with(&champion, friction)?;
         Ok(Self {
@@ -41,14 +41,14 @@ impl Replay {
         })
     }
 
-    /// The state at the start, with the poses.
+    /// Returns the state at the start, with the poses.
     pub fn start(&self) -> Value {
         let mut state = self.state();
         state["poses"] = self.poses().collect();
         state
     }
 
-    /// Position and rotation of each limb, head first, seven numbers each.
+    /// Returns position and rotation of each part, head first: seven numbers each.
     fn poses(&self) -> impl Iterator<Item = f32> + '_ {
         self.rollout.poses().iter().flat_map(|pose| {
             let (at, turn) = (pose.translation, pose.rotation);
@@ -56,7 +56,7 @@ impl Replay {
         })
     }
 
-    /// Takes steps until the trial is over, at most this number.
+    /// Takes at most this number of steps, until the trial is over. Returns the state, with the poses after each step if requested.
     pub fn advance(&mut self, steps: u32, with_poses: bool) -> Value {
         let mut poses = Vec::new();
         for _ in 0..steps {
@@ -74,7 +74,7 @@ impl Replay {
         state
     }
 
-    /// Time and result so far, and the poses now.
+    /// Returns time and result so far.
     pub fn state(&self) -> Value {
         let evaluation = self.rollout.evaluation();
         let behaviour = evaluation.behaviour;

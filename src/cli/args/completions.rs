@@ -10,8 +10,8 @@ use snakes_core::schema::Choices;
 use snakes_core::score::{ExamSuite, Fitness};
 use snakes_lab::run::mujoco::MUJOCO;
 
-/// The completions of the program for a shell: its subcommands, the flags that have an effect in each, and the names that they
-/// take. The path of an own preset is not completed by all shells, because `--preset` offers names.
+/// Returns the completions of the program for a shell: its subcommands, the flags of each, and the names that flags take. Because
+/// `--preset` offers names, some shells do not complete the path of a preset file for it.
 pub fn completions(shell: Shell) -> String {
     let mut command = CommandLine::command();
     for (flag, names) in [
@@ -30,7 +30,7 @@ pub fn completions(shell: Shell) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Offers these names as values of a flag, in all commands that have it.
+/// Makes these names the completions of a flag, in all commands that have the flag.
 fn with_names(command: Command, flag: &str, names: &[&'static str]) -> Command {
     let command = command.mut_subcommands(|subcommand| with_names(subcommand, flag, names));
     command.mut_args(|argument| {
@@ -69,7 +69,7 @@ mod tests {
         for shell in [Shell::Bash, Shell::Elvish, Shell::Fish, Shell::PowerShell, Shell::Zsh] {
             let text = completions(shell);
             assert!(text.contains("study") && text.contains("no-render"), "{shell}");
-            // Elvish and PowerShell complete no values.
+            // Elvish and PowerShell do not complete values.
             if matches!(shell, Shell::Bash | Shell::Fish | Shell::Zsh) {
                 assert!(text.contains("trampoline") && text.contains("step-rate"), "{shell}");
             }

@@ -17,18 +17,18 @@ pub struct ExportArgs {
     /// folder figures in the run's]
     #[arg(long, conflicts_with = "until_input_ends")]
     pub figures: bool,
-    /// The flags of films.
+    /// Flags of films.
     #[command(flatten)]
     pub film: FilmArgs,
     /// Cancel at the end of standard input, for programs that start this one
     #[arg(long, hide = true)]
     pub until_input_ends: bool,
-    /// The first flag of films that is given.
+    /// Name of the first flag of films that is given; `None` without one.
     #[arg(skip)]
     pub film_flag: Option<String>,
 }
 
-/// Lists every format.
+/// Returns the help of the flag `--output`, which lists every format.
 fn output_help() -> String {
     let rows = ExportFormat::ALL.map(|format| {
         let info = format.info();

@@ -45,25 +45,25 @@ pub struct FilmArgs {
     pub story: bool,
 }
 
-/// Heading of these flags in the help.
+/// Heading of the flags of pictures and films in the help.
 const FILMS: &str = "Pictures and films";
 
 impl FilmArgs {
-    /// The colour theme.
+    /// Returns the colour theme.
     #[cfg(feature = "studio")]
     pub fn theme(&self) -> Result<Theme, CliError> {
         let named = self.theme.as_deref().map(str::parse).transpose();
         Ok(named.map_err(of_flag("--theme"))?.unwrap_or_default())
     }
 
-    /// The camera.
+    /// Returns the mode of the camera; by default it follows the snake.
     #[cfg(feature = "studio")]
     pub fn camera(&self) -> Result<CameraMode, Invalid> {
         let named = CameraMode::named(self.camera.as_deref().unwrap_or("follow"));
         named.map_err(of_flag("--camera"))
     }
 
-    /// The overlays.
+    /// Returns the overlays.
     #[cfg(feature = "studio")]
     pub fn overlays(&self) -> Result<Vec<Overlay>, Invalid> {
         let named = self.show.iter().map(|name| Overlay::named(name));

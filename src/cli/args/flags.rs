@@ -1,7 +1,7 @@
-//! The definitions of all commands and their flags, whose comments are the program's help.
+//! The definitions of all commands and their flags. Their comments are the program's help.
 //!
-//! A command flattens the groups of flags that have an effect in it, so it refuses all others by itself, and its help shows its own
-//! flags only.
+//! A command flattens the groups of flags that have an effect in it. It therefore refuses all other flags, and its help shows only
+//! its own flags.
 
 use std::path::PathBuf;
 
@@ -25,35 +25,35 @@ pub struct CommandLine {
     /// Work in the terminal, as `snakes run` does: no window opens, and no display is needed
     #[arg(long)]
     pub no_render: bool,
-    /// The run.
+    /// Flags of the run.
     #[command(flatten)]
     pub run: RunFlags,
-    /// The workers that evaluate the run.
+    /// Flags of the workers that evaluate the run.
     #[command(flatten)]
     pub workers: WorkerFlags,
-    /// The output of the run.
+    /// Flags of the run's output.
     #[command(flatten)]
     pub output: OutputFlags,
-    /// The window.
+    /// Flags of the window.
     #[command(flatten)]
     pub window: WindowFlags,
-    /// The command; without one, a run evolves.
+    /// Command; `None` evolves a run.
     #[command(subcommand)]
     pub command: Option<CliCommand>,
 }
 
-/// The commands.
+/// The commands of the program.
 #[derive(Debug, Subcommand)]
 pub enum CliCommand {
     /// Evolve in the terminal: a line for each generation, and the champion as a file
     Run {
-        /// The run.
+        /// Flags of the run.
         #[command(flatten)]
         run: RunFlags,
-        /// The workers that evaluate the run.
+        /// Flags of the workers that evaluate the run.
         #[command(flatten)]
         workers: WorkerFlags,
-        /// The output of the run.
+        /// Flags of the run's output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -65,61 +65,61 @@ pub enum CliCommand {
         /// Check in the terminal: no window opens, and no display is needed
         #[arg(long)]
         no_render: bool,
-        /// The run that evolves behind the champions.
+        /// Flags of the run that evolves behind the champions.
         #[command(flatten)]
         run: RunFlags,
-        /// The workers that evaluate this run.
+        /// Flags of the workers that evaluate the run.
         #[command(flatten)]
         workers: WorkerFlags,
-        /// The output of the check.
+        /// Flags of the check's output.
         #[command(flatten)]
         output: OutputFlags,
-        /// The window.
+        /// Flags of the window.
         #[command(flatten)]
         window: WindowFlags,
     },
     /// Examine champions: varied trials, other step rates, other stairs, a higher step, shoves, or trials that vary as you say
     Exam {
-        /// The champions, and their trials.
+        /// Flags of the champions and their trials.
         #[command(flatten)]
         exam: ExamArgs,
-        /// The workers that simulate the trials.
+        /// Flags of the workers that simulate the trials.
         #[command(flatten)]
         workers: WorkerFlags,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
     /// Compare methods over several seeds: built-in studies, or your own as a file; without a name, list them
     Study {
-        /// The study.
+        /// Flags of the study.
         #[command(flatten)]
         study: StudyArgs,
-        /// Changed settings.
+        /// Flags of changed settings.
         #[command(flatten)]
         settings: SettingFlags,
-        /// The first seed.
+        /// Flag of the first seed.
         #[command(flatten)]
         seed: SeedFlag,
         /// Make the runs of the selected arms again
         #[arg(long)]
         restart: bool,
-        /// The workers that evaluate runs.
+        /// Flags of the workers that evaluate runs.
         #[command(flatten)]
         workers: WorkerFlags,
-        /// The folder of the results.
+        /// Flag of the folder of the results.
         #[command(flatten)]
         out: OutFlag,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
     /// Write saved champions as pictures, films, pages, tables, scenes and models, or a run as figures
     Export {
-        /// The files to export and their formats.
+        /// Flags of the files to export and their formats.
         #[command(flatten)]
         export: ExportArgs,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -131,10 +131,10 @@ pub enum CliCommand {
     },
     /// Check that this machine computes the same bits as the reference machine
     Verify {
-        /// Threads.
+        /// Flags of the threads.
         #[command(flatten)]
         threads: ThreadFlags,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -143,13 +143,13 @@ pub enum CliCommand {
         /// Saved champion, simulated in its own world [default: newborns of a preset]
         #[arg(conflicts_with_all = ["preset", "population", "generations", "duration", "fitness", "stairs", "set"])]
         file: Option<PathBuf>,
-        /// The world of newborns.
+        /// Flags of the world in which newborns are simulated.
         #[command(flatten)]
         settings: SettingFlags,
-        /// Threads.
+        /// Flags of the threads.
         #[command(flatten)]
         threads: ThreadFlags,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -158,7 +158,7 @@ pub enum CliCommand {
         /// Number of threads that compute [default: all cores]
         #[arg(long, value_name = "N", allow_negative_numbers = true)]
         threads: Option<String>,
-        /// The server.
+        /// Flags of the server.
         #[command(flatten)]
         server: ServerFlags,
     },
@@ -167,10 +167,10 @@ pub enum CliCommand {
         /// Remove what waits for this run
         #[arg(long, value_name = "RUN")]
         purge: Option<String>,
-        /// The server.
+        /// Flags of the server.
         #[command(flatten)]
         server: ServerFlags,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -192,7 +192,7 @@ pub enum CliCommand {
 pub enum ShownList {
     /// The built-in presets
     Presets {
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -201,10 +201,10 @@ pub enum ShownList {
         /// Print Markdown tables with descriptions, as in docs/settings.md
         #[arg(long, conflicts_with = "json")]
         markdown: bool,
-        /// Changed settings.
+        /// Flags of changed settings.
         #[command(flatten)]
         settings: SettingFlags,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },
@@ -212,7 +212,7 @@ pub enum ShownList {
     Body {
         /// Saved champion
         file: PathBuf,
-        /// The output.
+        /// Flags of the output.
         #[command(flatten)]
         output: OutputFlags,
     },

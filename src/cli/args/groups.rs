@@ -1,4 +1,4 @@
-//! Groups of flags, each of which several commands have.
+//! Groups of flags that several commands share.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use snakes_core::schema::Choices;
 use snakes_core::score::Fitness;
 use snakes_lab::run::evaluators::EVALUATORS;
 
-/// The form of what is printed.
+/// Flag for the form of the output.
 #[derive(Debug, Default, Group)]
 pub struct OutputFlags {
     /// Print JSON, one object per line
@@ -17,7 +17,7 @@ pub struct OutputFlags {
     pub json: bool,
 }
 
-/// A preset, with changes.
+/// Flags of a preset and of changes to its settings.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = RUN)]
 pub struct SettingFlags {
@@ -43,7 +43,7 @@ pub struct SettingFlags {
     pub set: Vec<String>,
 }
 
-/// A seed.
+/// Flag of a seed.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = RUN)]
 pub struct SeedFlag {
@@ -53,7 +53,7 @@ pub struct SeedFlag {
     pub seed: Option<String>,
 }
 
-/// A folder for results.
+/// Flag of a folder for results.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = FILES)]
 pub struct OutFlag {
@@ -62,14 +62,14 @@ pub struct OutFlag {
     pub out: Option<PathBuf>,
 }
 
-/// A run: new, continued, or from a champion.
+/// Flags of a run: new, continued, or from a champion.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = RUN)]
 pub struct RunFlags {
-    /// Its settings.
+    /// Flags of the run's settings.
     #[command(flatten)]
     pub settings: SettingFlags,
-    /// Its seed.
+    /// Flag of the run's seed.
     #[command(flatten)]
     pub seed: SeedFlag,
     /// Continue the run in this folder, or the only run in this folder of runs, after its last finished generation
@@ -89,7 +89,7 @@ pub struct RunFlags {
     /// one is shown
     #[arg(long)]
     pub restart: bool,
-    /// Its folder.
+    /// Flag of the run's folder.
     #[command(flatten)]
     pub out: OutFlag,
     /// Folder of saved champions and runs [default: ./saves if it exists, else the platform's data folder]
@@ -97,30 +97,30 @@ pub struct RunFlags {
     pub saves: Option<PathBuf>,
 }
 
-/// Threads of this computer.
+/// Flags of threads of this computer.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = RUN)]
 pub struct ThreadFlags {
     /// Worker threads [default: all cores; with a window, all but one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub threads: Option<String>,
-    // There is nothing to choose while there is only one.
+    // The flag is hidden from the help while there is only one evaluator to choose.
     #[arg(long, value_name = "NAME", help = evaluator_help(), hide = EVALUATORS.len() == 1)]
     pub evaluator: Option<String>,
 }
 
-/// Threads of this computer, or workers on others.
+/// Flags of workers: threads of this computer, or workers on other computers.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = MACHINES)]
 pub struct WorkerFlags {
-    /// Threads.
+    /// Flags of the threads.
     #[command(flatten)]
     pub threads: ThreadFlags,
     /// Compute on the workers of this NATS server, such as nats://192.168.1.5:4222, with the same results as here (start
     /// workers with `snakes worker`)
     #[arg(long, value_name = "URL", conflicts_with_all = ["threads", "evaluator"])]
     pub nats: Option<String>,
-    /// How to connect to it.
+    /// Flags of the credentials for the NATS server.
     #[command(flatten)]
     pub credentials: CredentialFlags,
     /// Begin when this number of workers is there [default: 1; 0 with --local-threads]
@@ -131,19 +131,19 @@ pub struct WorkerFlags {
     pub local_threads: Option<String>,
 }
 
-/// A server.
+/// Flags of a NATS server.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = MACHINES)]
 pub struct ServerFlags {
     /// Address of the NATS server, such as nats://192.168.1.5:4222
     #[arg(long, value_name = "URL", required = true)]
     pub nats: Option<String>,
-    /// How to connect to it.
+    /// Flags of the credentials for the NATS server.
     #[command(flatten)]
     pub credentials: CredentialFlags,
 }
 
-/// Credentials that a server asks for.
+/// Flags of credentials that a server may demand.
 #[derive(Debug, Clone, Default, Group)]
 #[command(next_help_heading = MACHINES)]
 pub struct CredentialFlags {
@@ -155,7 +155,7 @@ pub struct CredentialFlags {
     pub tls_ca: Option<PathBuf>,
 }
 
-/// The window.
+/// Flags of the window.
 #[derive(Debug, Default, Group)]
 #[command(next_help_heading = WINDOW)]
 pub struct WindowFlags {
@@ -190,18 +190,18 @@ const MACHINES: &str = "Other computers";
 const FILES: &str = "Files";
 const WINDOW: &str = "Window";
 
-/// Lists every fitness, so that the help follows the code.
+/// Returns the help of `--fitness`, which lists every kind of fitness.
 fn fitness_help() -> String {
     format!("The fitness that is maximised: {}", Fitness::names().join(", "))
 }
 
-/// Lists the built-in stairs.
+/// Returns the help of `--stairs`, which lists the built-in stairs.
 fn stairs_help() -> String {
     let names = built_in_stairs_names().join(", ");
     format!("The stairs, instead of those of the preset: {names}, or path of a file of stairs")
 }
 
-/// Lists every evaluator.
+/// Returns the help of `--evaluator`, which lists every evaluator.
 fn evaluator_help() -> String {
     let rows: Vec<String> =
         EVALUATORS.iter().map(|row| format!("{}, {}", row.name, row.words)).collect();

@@ -1,4 +1,4 @@
-//! Manual pages, in the language of `man`.
+//! Manual pages in roff, the language of `man`.
 
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
@@ -6,18 +6,18 @@ use clap_mangen::roff::{Roff, roman};
 
 use super::flags::CommandLine;
 
-/// The end of every page.
+/// Section about the exit status, at the end of every page.
 const EXIT_STATUS: &str = "0: done. 1: failed. 2: used wrongly; the message names the flag, its value and the allowed range.";
 
 /// A manual page.
 pub struct ManualPage {
-    /// Its file's name, such as `snakes-exam.1`.
+    /// Name of the page's file, such as `snakes-exam.1`.
     pub file: String,
-    /// Its text, in roff.
+    /// Text of the page, in roff.
     pub text: String,
 }
 
-/// The pages of the program and of all subcommands, the program's first.
+/// Returns the pages of the program and of all subcommands, the program's first.
 pub fn manual() -> Vec<ManualPage> {
     let mut command = CommandLine::command()
         .disable_help_subcommand(true)
@@ -28,14 +28,14 @@ pub fn manual() -> Vec<ManualPage> {
 }
 
 fn page(command: &Command) -> ManualPage {
-    // Otherwise the page would name flags that the short help leaves out, but not explain them.
+    // The page must explain flags that the short help hides, because its synopsis names them.
     let man = Man::new(command.clone().mut_args(|flag| flag.hide_short_help(false)))
         .source(concat!("snakes ", env!("CARGO_PKG_VERSION")))
         .manual("Snakes & Stairs");
     let mut end = Roff::new();
     end.control("SH", ["EXIT STATUS"]).text([roman(EXIT_STATUS)]);
     let mut text = Vec::new();
-    // Memory takes every byte.
+    // Writing into memory cannot fail.
     let _ = man.render(&mut text);
     let text = String::from_utf8_lossy(&text).into_owned() + &end.render();
     ManualPage { file: man.get_filename(), text }

@@ -1,4 +1,4 @@
-//! From the command line's words to flags, or to a text that is printed.
+//! Parsing of the command line into flags, or into a text to be printed.
 
 use std::ffi::OsString;
 
@@ -12,13 +12,13 @@ use snakes_core::evolve::{Settings, fields};
 
 /// The result of parsing.
 pub enum Parsed {
-    /// A task, and the flags for it.
+    /// A task and its flags.
     Run(Box<Args>, Box<Task>),
     /// A text to print: help or version.
     Print(String),
 }
 
-/// Earlier names of commands, with those that took their place.
+/// Earlier names of commands, with the commands that replace them.
 const EARLIER_NAMES: [(&str, &str); 13] = [
     ("body", "show body"),
     ("body-study", "study bodies"),
@@ -38,7 +38,7 @@ const EARLIER_NAMES: [(&str, &str); 13] = [
 /// Parses the arguments, shortens clap's errors to one line, and refuses flags without effect.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    // The name of a command stands first, or after flags without values.
+    // The name of a command comes first, or after flags without values.
     let command = arguments.iter().skip(1).find(|word| !word.to_string_lossy().starts_with('-'));
     let named =
         EARLIER_NAMES.iter().find(|(earlier, _)| command.is_some_and(|word| word == earlier));
@@ -63,7 +63,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
     }
 }
 
-/// The error itself and its tip, if there is one, on one line.
+/// Returns the error and its tip, if it has one, as one line.
 fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let mut paragraphs = text.split("\n\n");
@@ -77,7 +77,7 @@ fn one_line(error: &clap::Error) -> String {
     format!("{}{tip} (see snakes --help)", problem.trim_start_matches("error: "))
 }
 
-/// The tip to use --set, if an unknown flag has the name of exactly one setting, with or without its unit.
+/// Returns the tip to use --set if an unknown flag has the name of exactly one setting, with or without its unit.
 fn setting_tip(error: &clap::Error) -> Option<String> {
     let flag = error.get(ContextKind::InvalidArg)?.to_string();
     if error.kind() != ErrorKind::UnknownArgument {
@@ -93,7 +93,7 @@ fn setting_tip(error: &clap::Error) -> Option<String> {
     named.next().is_none().then(|| format!("tip: use --set {path}=VALUE"))
 }
 
-/// The tip to write flags after the command, if they stand before it.
+/// Returns the tip to write flags after the command if they are written before it.
 fn order_tip(error: &clap::Error) -> Option<String> {
     let command = error.get(ContextKind::InvalidSubcommand)?;
     let is_order = error.kind() == ErrorKind::ArgumentConflict;
@@ -104,13 +104,13 @@ fn order_tip(error: &clap::Error) -> Option<String> {
 pub(super) mod tests {
     use super::*;
 
-    /// The result of parsing a command line without the program's name.
+    /// Parses a command line that is given without the program's name.
     pub fn parsed(words: &str) -> Result<Parsed, CliError> {
         let arguments = ["snakes"].into_iter().chain(words.split_whitespace());
         parse(arguments.map(OsString::from))
     }
 
-    /// A task and its flags, or an error.
+    /// Parses a command line into a task and its flags, or returns the error.
     pub fn asked(words: &str) -> Result<(Args, Task), CliError> {
         match parsed(words)? {
             Parsed::Run(args, task) => Ok((*args, *task)),

@@ -17,12 +17,12 @@ pub struct ExamArgs {
     /// Write the results into the files
     #[arg(long)]
     pub write: bool,
-    /// The ranges of trials that the user gives.
+    /// Flags of trials whose ranges the user gives.
     #[command(flatten)]
     pub perturbed: PerturbationArgs,
 }
 
-/// How much the conditions of trials vary.
+/// Flags for how much the conditions of trials vary.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Trials that vary as you say")]
 pub struct PerturbationArgs {
@@ -62,7 +62,7 @@ impl From<&PerturbationArgs> for PerturbationRange {
     }
 }
 
-/// Help of a flag that names suites: every suite of the exam, and the suites without the flag.
+/// Returns the help of a flag that names suites: every suite of the exam, and the `default` without the flag.
 pub(super) fn suite_help(default: &str) -> String {
     let choices = ExamSuite::choices().into_iter();
     let rows: Vec<String> =
@@ -70,7 +70,7 @@ pub(super) fn suite_help(default: &str) -> String {
     format!("Suite of the exam; may be repeated [default: {default}]. {}", rows.join(" "))
 }
 
-/// Help of the flag of `snakes exam`, which knows one suite more.
+/// Returns the help of `--suite` of `snakes exam`, which offers MuJoCo as a further suite.
 fn exam_suite_help() -> String {
     format!("{} {MUJOCO}: {MUJOCO_SENTENCE}", suite_help("all but engine and mujoco"))
 }

@@ -1,4 +1,4 @@
-//! From flags to a run: a preset, with the flags' values put in, and the folders.
+//! Conversion of flags into a run: a preset with the values of the flags, and the folders.
 
 use std::path::Path;
 
@@ -18,23 +18,23 @@ use snakes_core::score::Fitness;
 use snakes_lab::run::RunSource;
 
 impl Args {
-    /// The preset that is named, or the command's default, as it stands in its file.
+    /// Returns the named preset, or else the command's default, without the changes of other flags.
     pub fn preset(&self) -> Result<Preset, CliError> {
         let named = self.run.settings.preset.as_deref().or(self.default_preset);
         Ok(load_preset(named.unwrap_or(DEFAULT_PRESET))?)
     }
 
-    /// The folder for this run's champions.
+    /// Returns the folder for this run's champions.
     pub fn saves_folder(&self) -> SavesFolder {
         SavesFolder::find(self.run.out.out.as_deref().or(self.run.saves.as_deref()))
     }
 
-    /// The folder for tables: the working directory, unless another is named.
+    /// Returns the folder for tables: the folder named by --out, or else the working directory.
     pub fn results_folder(&self) -> SavesFolder {
         SavesFolder::find(Some(self.run.out.out.as_deref().unwrap_or(Path::new("."))))
     }
 
-    /// The run in the folder to resume, or the run that the flags describe.
+    /// Returns the run in the folder to resume, or the run that the flags describe.
     pub fn run_source(&self) -> Result<RunSource, CliError> {
         if let Some(folder) = &self.run.resume {
             let mut run = run_in(folder, self.json)?;
@@ -54,7 +54,7 @@ impl Args {
         Ok(RunSource::in_saves(&self.saves_folder(), plan, earlier))
     }
 
-    /// Whether the flags name a run that may exist: by its folder, seed or founder, or to begin it again.
+    /// Returns whether the flags name a run that may exist: by its folder, seed or founder, or to begin it again.
     #[cfg(feature = "studio")]
     pub fn names_run(&self) -> bool {
         self.run.resume.is_some()
@@ -63,9 +63,9 @@ impl Args {
             || self.run.restart
     }
 
-    /// The run that begins from a saved champion. Its search is that of the named preset, else of the preset that the
-    /// champion comes from; its world is that of the named preset, else the champion's own. The genome's ranges are
-    /// widened to include the champion. The flags' values are put in last.
+    /// Returns the run that begins from a saved champion. Its search is that of the named preset, or else of the champion's preset.
+    /// Its world is that of the named preset, or else the champion's own. The ranges of genes are widened to include the champion.
+    /// Values of other flags are applied last.
     fn plan_from(&self, file: &Path) -> Result<RunPlan, CliError> {
         let Champion { genome, trial, origin, .. } = load_champion(file)?.champion;
         let mut preset = match &self.run.settings.preset {
@@ -86,26 +86,26 @@ impl Args {
         Ok(RunPlan::new(&preset, self.seed()?, settings).starting_from(founder)?)
     }
 
-    /// The preset's name and its settings, with the flags' values put in and everything checked.
+    /// Returns the preset's name and its settings, with the values of the flags. All values are checked.
     pub fn settings(&self) -> Result<(String, Settings), CliError> {
         self.flags_over(self.preset()?)
     }
 
-    /// The settings of a run as it is described, on which each `--set` has to have an effect.
+    /// Returns the name of the preset and the settings of the run. Each `--set` must have an effect on the run.
     pub fn settings_of_run(&self) -> Result<(String, Settings), CliError> {
         let (preset, settings) = self.settings()?;
         self.check_effects(&settings)?;
         Ok((preset, settings))
     }
 
-    /// Refuses `--set` of a field that nothing in a run with these settings uses.
+    /// Refuses `--set` for a setting without an effect on a run with these settings.
     fn check_effects(&self, settings: &Settings) -> Result<(), Invalid> {
         let paths =
             self.run.settings.set.iter().filter_map(|text| Some(text.split_once('=')?.0.trim()));
         check_effects(settings, paths)
     }
 
-    /// The settings that `--population`, `--generations`, `--fitness` and `--set` change, by their names.
+    /// Returns the settings that `--population`, `--generations`, `--fitness` and `--set` change: names and values.
     pub fn changes(&self) -> Result<Vec<(&str, String)>, CliError> {
         let mut changes = Vec::new();
         for (flag, name, text) in [
@@ -141,7 +141,7 @@ impl Args {
         // The changes of --set come last.
         let of_flags = changes.len() - self.run.settings.set.len();
         let changed = with(&changes).map_err(|invalid| {
-            // An error that is there without --set, too, comes from another flag.
+            // An error that also occurs without --set comes from another flag.
             let is_of_flag = with(&changes[..of_flags]).is_err_and(|other| other == invalid);
             match invalid.field.as_str() {
                 "set" => of_flag("--set")(invalid),
@@ -152,7 +152,7 @@ impl Args {
         Ok((preset.name, changed?))
     }
 
-    /// An error about a setting, with the name of the flag if one was given for it.
+    /// Returns an error about a setting with the name of the flag that gave the value, if there is one.
     pub fn of_its_flag(&self, invalid: Invalid) -> Invalid {
         let flags = [
             ("evolution.population", "--population", &self.run.settings.population),
@@ -170,7 +170,7 @@ impl Args {
     }
 }
 
-/// Name and value of a setting, from `FIELD=VALUE`.
+/// Splits `FIELD=VALUE` into the name and the value of a setting.
 fn named_value(text: &str) -> Result<(&str, &str), Invalid> {
     let (path, value) = text.split_once('=').ok_or_else(|| {
         let allowed = "FIELD=VALUE, such as surface.friction=0.8";

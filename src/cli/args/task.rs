@@ -1,4 +1,4 @@
-//! Tasks of the program, and the flags for them.
+//! Tasks of the program and their flags.
 
 use std::path::PathBuf;
 
@@ -14,19 +14,19 @@ use super::robust::ExamArgs;
 use super::study::StudyArgs;
 use crate::cli::error::CliError;
 
-/// The flags that several commands have; empty where a command has none.
+/// Flags that several commands share. They are empty in commands without them.
 #[derive(Debug, Default)]
 pub struct Args {
     /// Whether JSON is printed.
     pub json: bool,
-    /// The run.
+    /// Flags of the run.
     pub run: RunFlags,
-    /// The workers that evaluate it.
+    /// Flags of the workers that evaluate the run.
     pub workers: WorkerFlags,
-    /// The window.
+    /// Flags of the window.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "this build has no window"))]
     pub window: WindowFlags,
-    /// The command's own preset, unless one is named.
+    /// Preset of the command if none is named; `None` for the program's default.
     pub(super) default_preset: Option<&'static str>,
 }
 
@@ -49,37 +49,37 @@ pub enum Task {
     Presets,
     /// List the settings.
     Settings {
-        /// Whether as Markdown.
+        /// Whether they are printed as Markdown.
         as_markdown: bool,
     },
     /// Print the body of the champion in this file.
     Body(PathBuf),
     /// Compare the bits of this machine with the reference.
     Verify,
-    /// Measure the speed of the simulation, of the champion in this file.
+    /// Measure the speed of the simulation with the champion in this file, or with newborns.
     Bench(Option<PathBuf>),
     /// Compute for runs on other computers.
     Worker,
     /// List the machines on a server.
     Machines {
-        /// The run whose queue is removed.
+        /// Name of a run whose queue is to be removed; `None` to list the machines.
         #[cfg_attr(not(feature = "cluster"), expect(dead_code, reason = "it needs a server"))]
         purge: Option<String>,
     },
-    /// Print completions.
+    /// Print completions for this shell.
     Completions(Shell),
     /// Print the manual page, or write all pages into this folder.
     Manual(Option<PathBuf>),
 }
 
-/// The preset of the bench, which is about the report's run.
+/// Default preset of `snakes bench`: the run of the report.
 const BENCH_PRESET: &str = "report";
 
 impl CommandLine {
-    /// The task, and the flags for it. `matches` tell which flags are given.
+    /// Returns the task and its flags. `matches` tells which flags are given.
     ///
     /// # Errors
-    /// A flag that only the window has is given without one, or the other way round.
+    /// A flag of the window is given without a window, or a flag of the terminal with one.
     pub(super) fn task(self, matches: &ArgMatches) -> Result<(Args, Task), CliError> {
         let Self { no_render, run, workers, output, window, command } = self;
         let Some(command) = command else {
@@ -168,30 +168,30 @@ impl CommandLine {
     }
 }
 
-/// The flags of a group.
+/// Returns the names of the flags in a group.
 fn ids_of<G: clap::Args>() -> Vec<String> {
     let group = G::augment_args(clap::Command::new(""));
     group.get_arguments().map(|flag| flag.get_id().to_string()).collect()
 }
 
-/// The first of some flags that is given, as it is typed.
+/// Returns the first of some flags that is given, as it is written on the command line.
 fn first_given(matches: &ArgMatches, ids: &[impl AsRef<str>]) -> Option<String> {
     let mut ids = ids.iter().map(AsRef::as_ref);
     let given = ids.find(|id| matches.value_source(id) == Some(ValueSource::CommandLine));
     given.map(|id: &str| format!("--{}", id.replace('_', "-")))
 }
 
-/// Refuses the first given flag of a group.
+/// Refuses the first given flag of a group. For `words`, see `refuse_ids`.
 fn refuse<G: clap::Args>(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
     refuse_ids(matches, &ids_of::<G>(), words)
 }
 
-/// Refuses flags of a server; threads have an effect.
+/// Refuses the flags of a server, but not those of threads.
 fn refuse_server(matches: &ArgMatches, words: &str) -> Result<(), CliError> {
     refuse_ids(matches, &["nats", "creds", "tls_ca", "expect_workers", "local_threads"], words)
 }
 
-/// `words` name the command, and after a semicolon what would help.
+/// Refuses the first given flag. `words` name the command, and after a semicolon a remedy.
 fn refuse_ids(matches: &ArgMatches, ids: &[impl AsRef<str>], words: &str) -> Result<(), CliError> {
     first_given(matches, ids).map_or(Ok(()), |flag| {
         Err(CliError::Usage(format!("{flag} has no effect with {words} (see snakes --help)")))

@@ -1,4 +1,4 @@
-//! Values of single flags, checked.
+//! Values of single flags, read and checked.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -18,15 +18,15 @@ use snakes_lab::run::evaluators::EVALUATORS;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
-/// The words of an error for a whole number without another limit.
+/// Words for the allowed values of a whole number without an upper limit.
 pub const WHOLE: &str = "a whole number from 0 up";
 
-/// Reads a number; `allowed` is what the error calls one.
+/// Reads a number; `allowed` describes the allowed values in an error.
 pub fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
     text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
 }
 
-/// Reads the number of a flag, if that is given; `allowed` is what the error calls one.
+/// Reads the number of a flag, or returns `default` if the flag is not given; `allowed` describes the allowed values in an error.
 pub fn number_or<T: FromStr>(
     flag: &str,
     text: &Option<String>,
@@ -36,7 +36,7 @@ pub fn number_or<T: FromStr>(
     text.as_deref().map_or(Ok(default), |text| number(flag, text, allowed))
 }
 
-/// Reads the whole number of a flag, if that is given.
+/// Reads the whole number of a flag; `None` if the flag is not given.
 fn whole<T: FromStr + PartialOrd + Display + Copy>(
     flag: &str,
     text: &Option<String>,
@@ -61,29 +61,29 @@ pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32
 }
 
 impl Args {
-    /// The seed of the run.
+    /// Returns the seed of the run; 1 by default.
     pub fn seed(&self) -> Result<u64, CliError> {
         self.seed_or(1)
     }
 
-    /// The seed that is given, else this one.
+    /// Returns the given seed, or else `default`.
     pub fn seed_or(&self, default: u64) -> Result<u64, CliError> {
         let allowed = "a whole number from 0 to 18446744073709551615";
         Ok(number_or("--seed", &self.run.seed.seed, default, allowed)?)
     }
 
-    /// The duration of trials in s, if it is given.
+    /// Returns the duration of trials in s, if it is given.
     pub fn duration_s(&self) -> Result<Option<f32>, CliError> {
         let given = self.run.settings.duration.as_deref();
         Ok(given.map(|text| number("--duration", text, "a number")).transpose()?)
     }
 
-    /// Number of worker threads without a window.
+    /// Returns the number of worker threads for a command without a window.
     pub fn threads(&self) -> Result<usize, CliError> {
         self.threads_or(available_cores())
     }
 
-    /// Number of workers on other machines that a run waits for.
+    /// Returns the number of workers on other machines that a run waits for.
     #[cfg(feature = "cluster")]
     pub fn expect_workers(&self) -> Result<usize, CliError> {
         let default = usize::from(self.local_threads()? == 0);
@@ -91,25 +91,25 @@ impl Args {
         Ok(given.unwrap_or(default))
     }
 
-    /// Number of threads of this computer that compute beside the workers on other machines.
+    /// Returns the number of threads of this computer that compute besides the workers on other machines.
     #[cfg(feature = "cluster")]
     pub fn local_threads(&self) -> Result<usize, CliError> {
         let given = whole("--local-threads", &self.workers.local_threads, THREADS_RANGE)?;
         Ok(given.unwrap_or(0))
     }
 
-    /// The evaluator without a window, on this computer.
+    /// Returns the evaluator on this computer for a command without a window.
     pub fn local_evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
         self.evaluator_of(self.threads()?)
     }
 
-    /// The evaluator beside a window, which leaves one core free for it.
+    /// Returns the evaluator for a program with a window. By default it leaves one core free for the window.
     #[cfg(feature = "studio")]
     pub fn studio_evaluator(&self) -> Result<Arc<dyn Evaluator>, CliError> {
         self.evaluator_of(self.threads_or(available_cores().saturating_sub(1).max(1))?)
     }
 
-    /// The evaluator that is named, else the default.
+    /// Returns the named evaluator, or else the default one, with this number of workers.
     fn evaluator_of(&self, workers: usize) -> Result<Arc<dyn Evaluator>, CliError> {
         let name = self.workers.threads.evaluator.as_deref().unwrap_or(EVALUATORS[0].name);
         let row = EVALUATORS.iter().find(|row| row.name == name).ok_or_else(|| {
@@ -124,21 +124,21 @@ impl Args {
         Ok(given.unwrap_or(default))
     }
 
-    /// The window's size in physical pixels, if it is given.
+    /// Returns the window's size in physical pixels, if it is given.
     #[cfg(feature = "studio")]
     pub fn window_size(&self) -> Result<Option<(u32, u32)>, CliError> {
         let given = self.window.window_size.as_deref();
         Ok(given.map(|text| size("--window-size", text, (320, 240), 16_384)).transpose()?)
     }
 
-    /// The colour theme of the window and of pictures, if it is given.
+    /// Returns the colour theme of the window and of pictures, if it is given.
     #[cfg(feature = "studio")]
     pub fn theme(&self) -> Result<Option<Theme>, CliError> {
         let named = self.window.theme.as_deref().map(str::parse).transpose();
         Ok(named.map_err(of_flag("--theme"))?)
     }
 
-    /// The file for window preferences.
+    /// Returns the file for window preferences.
     #[cfg(feature = "studio")]
     pub fn preferences(&self) -> PreferencesFile {
         match self.window.preferences.as_deref() {
@@ -148,7 +148,7 @@ impl Args {
         }
     }
 
-    /// The number of frames after which the window closes by itself.
+    /// Returns the number of frames after which the window closes by itself, if it is given.
     #[cfg(feature = "studio")]
     pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
         let Some(text) = &self.window.exit_after_frames else { return Ok(None) };
