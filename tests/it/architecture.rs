@@ -10,12 +10,12 @@ use std::path::{Path, PathBuf};
 use imports::{circles, import_graph};
 use tokens::tokens;
 
-/// The repository's root.
+/// Returns the repository's root.
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All source files: the path below the root with forward slashes, and the text.
+/// Returns all source files: the path below the root with forward slashes, and the text.
 fn all_files() -> Vec<(String, String)> {
     fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder") {
@@ -39,12 +39,12 @@ fn all_files() -> Vec<(String, String)> {
     paths.iter().map(|path| (relative(path), fs::read_to_string(path).expect("read"))).collect()
 }
 
-/// The path of a file within its crate's `src`.
+/// Returns the path of a file within its crate's `src`.
 fn within_crate(path: &str) -> &str {
     path.split_once("src/").expect("a source file").1
 }
 
-/// The module at the top of a crate to which a file belongs; the crate's own name for that of the cluster.
+/// Returns the top-level module of a crate to which a file belongs. Files of the crate `cluster` belong to `cluster`.
 fn module_of(path: &str) -> &str {
     if path.starts_with("crates/cluster/") {
         return "cluster";
@@ -52,7 +52,7 @@ fn module_of(path: &str) -> &str {
     within_crate(path).split(['/', '.']).next().unwrap_or_default()
 }
 
-/// All source files without tests.
+/// Returns all source files, without their tests.
 fn files() -> Vec<(String, String)> {
     let texts = all_files();
     let exists = |path: &str| texts.iter().any(|(of, _)| of == path);
@@ -79,7 +79,7 @@ fn files() -> Vec<(String, String)> {
         .collect()
 }
 
-/// The files of modules that a file declares for tests only.
+/// Returns the files of the modules that a file declares for tests only.
 fn test_files(path: &str, text: &str) -> Vec<String> {
     let folder = path.strip_suffix("/mod.rs").or(path.strip_suffix(".rs")).expect("a source file");
     let declared = text.split("#[cfg(test)]\n").skip(1).filter_map(|after| {
@@ -90,7 +90,7 @@ fn test_files(path: &str, text: &str) -> Vec<String> {
     declared.collect()
 }
 
-/// A file's text without its test modules. Other items that exist only in tests stay.
+/// Returns a file's text without its test modules. Other items that exist only in tests stay.
 fn without_tests(text: &str) -> String {
     let mut rest = text;
     let mut kept = String::new();
@@ -116,13 +116,13 @@ fn test_modules_are_removed_and_the_rest_of_a_file_is_scanned() {
     assert_eq!(test_files("studio/lane.rs", text), ["studio/lane/tests.rs"]);
 }
 
-/// The modules of the core in the order of the pipeline: each may use only those before it. Cargo keeps the order of the crates.
+/// The modules of the core in the order of the pipeline. Each may use only those before it. Cargo enforces the order of the crates.
 const PIPELINE: [&str; 11] = [
     "check", "rng", "learn", "schema", "engine", "world", "genome", "control", "score", "evolve",
     "save",
 ];
 
-/// Lines without those that are only comments.
+/// Returns the lines of a text, without lines that are only comments.
 fn code(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.trim_start().starts_with("//"))
 }
@@ -151,8 +151,8 @@ fn every_module_of_the_core_uses_only_those_before_it() {
     }
 }
 
-/// The folders of the studio, lowest level first: each may use only folders of lower levels, so those of
-/// one level do not use each other.
+/// The folders of the studio, lowest level first. Each may use only folders of lower levels, so folders of the same level do not
+/// use each other.
 const STUDIO_LAYERS: [&[&str]; 8] = [
     &["commands", "schedule", "error"],
     &["ui"],
@@ -193,7 +193,7 @@ fn no_circle_of_imports_is_too_large() {
     assert!(too_large.is_empty(), "files that import each other: {too_large:#?}");
 }
 
-/// The types that a text defines, without associated types and those that only a macro names.
+/// Returns the names of the types that a text defines, without associated types and types that only a macro names.
 fn type_names(text: &str) -> Vec<String> {
     let tokens = tokens(text);
     let mut depth = 0;
@@ -206,7 +206,7 @@ fn type_names(text: &str) -> Vec<String> {
             "struct" | "enum" | "trait" | "union" if next.starts_with(char::is_alphabetic) => {
                 names.push(next.to_owned());
             }
-            // Deeper ones are associated types.
+            // A `type` within braces is an associated type.
             "type" if depth == 0 => names.push(next.to_owned()),
             _ => (),
         }
@@ -233,7 +233,7 @@ fn no_two_types_share_a_name() {
     assert!(homes.is_empty(), "types that share a name: {homes:#?}");
 }
 
-/// Words that may be used only in certain modules: word, modules, reason. What a crate does not depend on needs no row.
+/// Words that may be used only in certain modules: word, modules, reason. Packages on which a crate does not depend need no row.
 const RESTRICTED_WORDS: [(&str, &[&str], &str); 9] = [
     ("rapier3d", &["world", "run", "studio"], "only the world knows the physics engine"),
     ("std::thread", &["run", "cluster"], "results could depend on threads"),
@@ -266,7 +266,7 @@ fn restricted_words_are_used_only_in_their_modules() {
 #[test]
 fn only_the_simulation_steps_the_engine() {
     for (path, text) in files() {
-        // The bench steps bare rapier on purpose, for comparison.
+        // The benchmark steps bare rapier on purpose, for comparison.
         let allowed = ["world/simulation.rs", "run/bench.rs"].contains(&within_crate(&path));
         for step in
             ["physics.step(", "physics_mut().step(", ".step_with_events(", ".step_simulation("]

@@ -1,5 +1,5 @@
-//! Bad input gives one line that names the field, the value and the allowed values; exit code 2 for wrong usage, 1 for
-//! failure; no file is overwritten or left incomplete.
+//! Bad input gives one line that names the field, the value and the allowed values. The exit code is 2 for wrong usage, 1 for
+//! failure. No file is overwritten or left incomplete.
 
 use std::fs;
 use std::path::Path;
@@ -116,7 +116,7 @@ fn a_folder_in_place_of_a_save_is_refused() {
     assert!(message.starts_with("error: .: cannot be read: "), "{message}");
 }
 
-/// The error of replaying a shipped champion after `edit`.
+/// Returns the error of replaying a shipped champion whose file was changed by `edit`.
 fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
     let folder = folder();
     let edited = edit(include_str!("../../saves/first-climber.ron"));
@@ -172,7 +172,7 @@ fn a_save_with_a_value_out_of_range_is_refused() {
 fn an_output_folder_that_cannot_be_written_is_refused() {
     let folder = folder();
     fs::write(folder.path().join("taken"), "a file, no folder").expect("written");
-    // It is refused before the first evaluation: standard output stays empty.
+    // The run is refused before its first evaluation, so standard output stays empty.
     let message = {
         let output = run(folder.path(), "--no-render --json --out taken");
         assert_eq!(output.status.code(), Some(1));
@@ -226,7 +226,7 @@ fn the_same_run_writes_the_same_folder_and_another_run_another() {
     assert_eq!(run_with(5), 2, "another run writes another");
 }
 
-/// Other systems always have a display.
+/// Systems other than Linux always have a display.
 #[cfg(target_os = "linux")]
 #[test]
 fn without_a_display_the_studio_fails_with_one_line() {

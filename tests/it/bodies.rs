@@ -1,4 +1,4 @@
-//! Claims about evolving bodies that take longer than a test may, as tables:
+//! Tests of evolving bodies that take longer than usual tests, with tables as output:
 //!
 //!     cargo test --release --test it bodies:: -- --ignored --nocapture
 
@@ -10,7 +10,7 @@ use snakes_core::save::load_preset;
 use snakes_core::score::{Evaluation, Rollout, evaluate};
 use snakes_core::world::Disqualification;
 
-/// Seed of the random bodies. No setting was chosen on them.
+/// Seed of the random bodies. No setting was chosen with this seed.
 const SEED: u64 = 101;
 
 fn settings(changes: &[(&str, &str)]) -> Settings {
@@ -30,7 +30,7 @@ fn evaluated(settings: &Settings, genomes: &[Genome]) -> Vec<Evaluation> {
     genomes.par_iter().map(|genome| evaluate(genome, &settings.trial)).collect()
 }
 
-/// Rank correlation after Spearman. Equal values have equal ranks.
+/// Returns Spearman's rank correlation. Equal values have equal ranks.
 fn rank_correlation(a: &[f32], b: &[f32]) -> f64 {
     let ranks = |values: &[f32]| -> Vec<f64> {
         let rank = |value: &f32| {
@@ -74,7 +74,8 @@ fn a_body_without_torques_scores_nothing_whatever_its_length() {
     assert!(not_at_rest * 10 <= genomes.len(), "{not_at_rest} did not come to rest");
 }
 
-/// Soft bodies stay together: none has a state that is not finite, and at most one in twenty comes apart, which disqualifies it.
+/// Soft bodies stay together: none reaches a state that is not finite, and at most one in twenty comes apart, which disqualifies
+/// it.
 #[test]
 #[ignore = "simulates 1000 soft bodies for 15 s each"]
 fn soft_bodies_stay_together() {
@@ -104,13 +105,13 @@ fn soft_bodies_stay_together() {
     assert!(of(Disqualification::JointBroke) <= 50, "{reasons:?}");
 }
 
-/// No body creates energy unnoticed: what moves is paid by the joints, up to 5 % and 1 J, or the body is disqualified.
+/// No body gains energy that its joints did not spend, up to 5 % and 1 J, without being disqualified.
 #[test]
 #[ignore = "simulates 1000 bodies for 15 s each"]
 fn no_body_creates_energy_without_being_disqualified() {
     let settings = settings(&[("trial.duration_s", "15")]);
     let genomes = random_bodies(&settings, 1000);
-    // Least share of the energy spent that was lost on the way, and the reason of the disqualification.
+    // For each body: the least share of the spent energy that was lost so far, and the reason of the disqualification.
     let ends: Vec<(f32, &str)> = genomes
         .par_iter()
         .map(|genome| {

@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use snakes_core::save::{LoadedChampion, load_champion};
 use snakes_core::score::evaluate;
 
-/// A climber in the setting of the report; it climbs three steps.
+/// A climber in the report's world, which climbs three steps.
 const REPORT: &str = "first-climber.ron";
-/// A table that was learned by trial and error; it climbs six steps.
+/// A champion with a table that was learned by trial and error, which climbs six steps.
 const LEARNER: &str = "learner.ron";
 
 fn saves() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
     let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
-    // Runs in this folder were made by the developer and are no part of the project.
+    // Runs in this folder belong to the developer and are not part of the project.
     let mut files: Vec<PathBuf> =
         entries.map(|entry| entry.path()).filter(|path| path.is_file()).collect();
     files.sort();
@@ -43,7 +43,7 @@ fn every_shipped_champion_stands_on_the_landing_and_uses_no_exploit() {
         } else {
             assert!(recorded.is_on_landing(&champion.trial.stairs), "{name}");
         }
-        // Far from every limit of disqualification.
+        // The effort stays far from every limit of disqualification.
         let (effort, limits) = (recorded.effort.expect("measured"), &champion.trial.health);
         assert!(effort.joint_drift_m < 0.8 * limits.joint_drift_m, "{name}: {effort:?}");
         assert!(effort.top_speed_m_s < 0.8 * limits.speed_m_s, "{name}: {effort:?}");

@@ -1,8 +1,7 @@
 //! Runs on several machines: each must end with the hash of a run on this one.
 //!
-//! The tests start a real `nats-server`. Where there is none they are skipped and say so, unless the environment variable
-//! `SNAKES_CLUSTER_TESTS=required` is set, as it is in CI. `SNAKES_FAULT_ROUNDS=10` repeats each fault ten times, at
-//! other random instants.
+//! The tests start a real `nats-server`. Without one they are skipped with a line, or fail if the environment variable
+//! `SNAKES_CLUSTER_TESTS=required` is set, as in CI. `SNAKES_FAULT_ROUNDS=10` repeats each fault ten times, at other random times.
 
 mod faults;
 mod hashes;

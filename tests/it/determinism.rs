@@ -1,8 +1,7 @@
 //! Runs with equal seed and settings give equal bits.
 //!
-//! `cargo test --release --test it golden -- --ignored` writes the golden values to
-//! `assets/golden.ron`. They hold for debug and release, with and without the studio: this test runs in
-//! all of these builds.
+//! `cargo test --release --test it golden -- --ignored` writes the reference to `assets/golden.ron`. It holds for debug and release
+//! builds, with and without the studio: this test runs in all of them.
 
 use snakes_core::Processors;
 use snakes_lab::run::verify::Trajectories;
@@ -56,7 +55,7 @@ fn verify_prints_a_table_and_the_fingerprint_of_the_reference() {
     assert_eq!(agreeing, reference.trajectories.len());
 }
 
-/// Runs without the variants of float functions that the C library selects by processor.
+/// The program gives the same bits without the variants of float functions that the C library selects by processor.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_vector_and_fma_variants_of_the_c_library_change_no_bit() {
@@ -67,7 +66,7 @@ fn the_vector_and_fma_variants_of_the_c_library_change_no_bit() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Checks that a run whose stairs evolve, with these settings, has more than three stairs in the end and the same hash on one,
+/// Checks that a run with these settings, in which stairs evolve, ends with more than three stairs, and with the same hash on one,
 /// two and four threads.
 fn assert_stairs_have_one_hash(settings: &str) {
     let folder = folder();

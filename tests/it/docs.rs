@@ -35,7 +35,7 @@ fn the_page_of_studies_lists_every_value() {
     assert_eq!(listed, snakes_lab::study::values_as_markdown(), "{regenerate}");
 }
 
-/// The names of functions in the walks of the architecture, such as `set_field`.
+/// Returns the names of functions in the walks of the architecture page, such as `set_field`.
 fn functions_named(page: &str) -> Vec<&str> {
     let walks = page.split("\n## From ").skip(1);
     let sections = walks.map(|walk| walk.split("\n## ").next().unwrap_or_default());

@@ -1,14 +1,13 @@
 //! The window must not change how the core is compiled.
 //!
-//! Cargo builds a shared dependency once, with the features that all its users ask for together. A feature that
-//! the window switches on in the physics engine could change bits, which the golden trajectories would only show in
-//! the program with its window. Python, pages and the command line alone are built without the window, so this test compares
-//! the features themselves.
+//! Cargo builds a shared dependency once, with the features that all its users request together. A feature that the window enables
+//! in the physics engine could change bits, but the reference would show this only in the program with its window. Python, pages
+//! and the command line alone are built without the window, so this test compares the features themselves.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-/// Packages that decide the bits of a run: arithmetic, physics, random numbers, orders of iteration.
+/// Packages that decide the bits of a run: arithmetic, physics, random numbers, and orders of iteration.
 const DECISIVE: [&str; 17] = [
     "approx",
     "ena",
@@ -29,8 +28,8 @@ const DECISIVE: [&str; 17] = [
     "wide",
 ];
 
-/// Features that only the window and the connection to other machines ask for. None alters a computation: debug lines,
-/// conversions, serialisation, more generators of random numbers.
+/// Features that only the window and the connection to other machines request. None of them changes a computation: debug lines,
+/// conversions, serialisation, further generators of random numbers.
 const HARMLESS: [(&str, &[&str]); 4] = [
     ("glam", &["bytemuck", "encase", "rand", "serde"]),
     ("nalgebra", &["default"]),
@@ -38,7 +37,7 @@ const HARMLESS: [(&str, &[&str]); 4] = [
     ("rapier3d", &["debug-render"]),
 ];
 
-/// The features of each decisive package, by name and version.
+/// Returns the features of each decisive package, by name and version.
 fn features(arguments: &[&str]) -> BTreeMap<String, BTreeSet<String>> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--locked", "--offline", "--edges", "normal", "--prefix", "none"])
@@ -68,7 +67,7 @@ fn the_window_adds_no_feature_that_could_change_bits() {
     let core = features(&["--no-default-features"]);
     let mut with_window = features(&["--features", "studio"]);
     assert_eq!(core.len(), DECISIVE.len(), "one version of each: {core:?}");
-    // The connection to other machines brings older versions of random numbers for itself. No run is computed with them.
+    // The connection to other machines brings older versions of the packages for random numbers. No run uses them.
     with_window.retain(|package, _| core.contains_key(package));
     for (package, features) in &mut with_window {
         let harmless =

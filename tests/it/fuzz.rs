@@ -1,5 +1,5 @@
-//! A bounded fuzz run over every parser of a file. The targets in `fuzz/` run without a bound; both begin with the
-//! files in `fuzz/corpus`.
+//! A bounded fuzz run over the parsers of files. The targets in `fuzz/` run without a bound. Both start from the files in
+//! `fuzz/corpus`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ enum Edit {
     Remove(Index, usize),
     Flip(Index, u8),
     Insert(Index, Vec<u8>),
-    /// A piece of the file once more, elsewhere.
+    /// Repeats a piece of the file at another place.
     Repeat(Index, usize, Index),
 }
 
@@ -99,7 +99,7 @@ fn edited(mut bytes: Vec<u8>, edits: &[Edit]) -> Vec<u8> {
     bytes
 }
 
-/// The files that fuzzing begins with, sorted.
+/// Returns the files from which fuzzing starts, sorted.
 fn corpus(target: &str) -> Vec<PathBuf> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
     let mut files: Vec<PathBuf> =
@@ -108,7 +108,7 @@ fn corpus(target: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Edited files of the corpus.
+/// Returns a strategy that edits files of the corpus.
 fn inputs(target: &str) -> impl Strategy<Value = Vec<u8>> + use<> {
     let files: Vec<Vec<u8>> =
         corpus(target).iter().map(|file| fs::read(file).expect("read")).collect();
@@ -117,12 +117,12 @@ fn inputs(target: &str) -> impl Strategy<Value = Vec<u8>> + use<> {
 }
 
 fn rules(cases: u32) -> ProptestConfig {
-    // A failure becomes a named test by hand.
+    // Failures are not stored automatically: each becomes a named test.
     let failure_persistence = Some(Box::new(FileFailurePersistence::Off) as Box<_>);
     ProptestConfig { cases, failure_persistence, ..ProptestConfig::default() }
 }
 
-/// Parses every file of the corpus, which must succeed, then edited ones.
+/// Parses every file of the corpus, which must succeed, and then edited files.
 fn read_corpus<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<T, E>) {
     for file in corpus(target) {
         let text = fs::read_to_string(&file).expect("text");
@@ -132,7 +132,7 @@ fn read_corpus<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Resu
     read_all(target, parse);
 }
 
-/// Parses edited files of the corpus: any bytes give a value or an error of one line.
+/// Parses edited files of the corpus. Any bytes must give a value or an error of one line.
 fn read_all<T, E: ToString>(target: &str, parse: impl Fn(&Path, &str) -> Result<T, E>) {
     proptest!(rules(3000), |(bytes in inputs(target))| {
         if let Ok(text) = String::from_utf8(bytes)
@@ -150,7 +150,7 @@ fn every_champion_file_gives_a_champion_or_one_line() {
     read_corpus("champion", parse_champion);
 }
 
-/// A champion with these blocks. Its gait has waves for the joints of five.
+/// Returns the text of a champion with these blocks. Its gait has waves for the joints of five blocks.
 fn with_blocks(blocks: &str) -> String {
     let champion = include_str!("../../fuzz/corpus/champion/bodies");
     let (before, rest) = champion.split_once("segments: [(").expect("blocks");
@@ -158,7 +158,7 @@ fn with_blocks(blocks: &str) -> String {
     format!("{before}segments: {blocks},{behind}")
 }
 
-/// Blocks that are accepted can be built, and every change of them stays within the limits of a space that has them.
+/// Accepted blocks can be built, and every change to them stays within the limits of a space that includes them.
 #[test]
 fn every_list_of_blocks_gives_a_body_or_one_line() {
     read_corpus("body", |path, blocks| {
@@ -178,7 +178,7 @@ fn every_list_of_blocks_gives_a_body_or_one_line() {
     });
 }
 
-/// A champion with the nodes of this graph. Its neurons belong to those of three nodes, and to four joints.
+/// Returns the text of a champion with the nodes of this graph. Its neurons fit three nodes and four joints.
 fn with_nodes(nodes: &str) -> String {
     let champion = include_str!("../../fuzz/corpus/champion/creatures");
     let (before, rest) = champion.split_once("nodes: [").expect("nodes");
@@ -186,7 +186,7 @@ fn with_nodes(nodes: &str) -> String {
     format!("{before}nodes: {nodes},\n),\ncontroller:{behind}")
 }
 
-/// Graphs that are accepted grow into bodies of a bounded size, and their children can be built.
+/// Accepted graphs grow into bodies of a bounded size, and their children can be built.
 #[test]
 fn every_graph_of_nodes_gives_a_creature_or_one_line() {
     read_corpus("creature", |path, nodes| {
@@ -230,7 +230,7 @@ fn every_plan_file_gives_a_plan_or_one_line() {
     read_corpus("plan", parse_plan);
 }
 
-/// A plan and its fingerprint, which replaces the word PLAN in the corpus.
+/// Returns a plan and its fingerprint, which replaces the word PLAN in the corpus.
 fn plan() -> (RunPlan, String) {
     let plan = RunPlan::new("x", 1, Settings::default());
     let fingerprint = fingerprint(&plan);
@@ -282,7 +282,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
         let fingerprint = fingerprint(&plan);
         let read = |path: &Path, text: &str| {
             parse_checkpoint(path, &text.replace("PLAN", &fingerprint), &plan).map(|read| {
-                // An accepted state can be resumed.
+                // A state that is accepted can be resumed.
                 let (generation, _, knowledge) = read;
                 let strategy = resume(&plan, generation, &knowledge.strategy);
                 drop(strategy.expect("it passed the same check").ask());
@@ -295,7 +295,7 @@ fn every_checkpoint_gives_a_state_that_resumes_or_one_line() {
     }
 }
 
-/// The lines with correct checksums, so that more of them reach the parser.
+/// Adds correct checksums to the lines, so that more of them reach the parser.
 fn summed(bytes: &[u8]) -> Vec<u8> {
     let lines = bytes.split(|byte| *byte == b'\n').map(|line| {
         let sum = format!(",\"sum\":\"{:016x}\"}}\n", xxh3_64(line));
@@ -307,7 +307,7 @@ fn summed(bytes: &[u8]) -> Vec<u8> {
 #[test]
 fn every_log_gives_records_or_one_line() {
     let (plan, fingerprint) = plan();
-    // The first byte only matters for the fuzz target of the same name.
+    // The first byte is used only by the fuzz target of the same name, so it is dropped.
     let lines =
         |text: &str| summed(text.replace("PLAN", &fingerprint).get(1..).unwrap_or("").as_bytes());
     let records = |path: &Path, text: &str| parse_records(path, &lines(text), &plan);
@@ -345,7 +345,7 @@ fn every_message_between_machines_is_read_or_gives_one_line() {
     for file in corpus("wire") {
         assert!(kinds_of_message(&fs::read(&file).expect("read")).is_ok(), "{}", file.display());
     }
-    // A name in a message stood in its error with its line break.
+    // Names with line breaks in a message must not bring the line breaks into its error.
     for file in corpus("wire") {
         let text = fs::read_to_string(&file).unwrap_or_default().replace("_s\"", "\\n_s\"");
         if let Err(error) = kinds_of_message(text.as_bytes()) {

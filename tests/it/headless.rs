@@ -90,7 +90,7 @@ fn saves_go_to_the_working_directorys_saves_folder_or_else_to_the_data_folder() 
         let lines = json_lines(folder, &format!("{SMALL} --json"));
         with_slashes(lines[3]["champion"].as_str().expect("a path"))
     };
-    // Windows leads no program to another data folder, and a test must not write into the user's.
+    // On Windows the data folder cannot be redirected, and a test must not write into the user's folder.
     if cfg!(not(windows)) {
         let elsewhere = champion(folder.path());
         assert!(elsewhere.contains("data/snakes-and-stairs/saves"), "{elsewhere}");
@@ -100,7 +100,7 @@ fn saves_go_to_the_working_directorys_saves_folder_or_else_to_the_data_folder() 
     assert!(here.starts_with("saves/"), "{here}");
 }
 
-/// A champion that stands on the landing.
+/// Path of a champion that stands on the landing.
 const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 
 #[test]
@@ -121,13 +121,13 @@ fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     assert!(lines[0]["best"].as_f64().expect("a number") >= reached, "{lines:?}");
     let champion = with_slashes(lines[2]["champion"].as_str().expect("a path"));
     let its_folder = champion.rsplit_once('/').expect("a folder").0;
-    // As a kill after the first generation would have left it.
+    // The log is cut to the state after a kill that followed the first generation.
     let log = folder.path().join(its_folder).join("log.jsonl");
     let text = std::fs::read_to_string(&log).expect("read");
     std::fs::write(&log, text.split_inclusive('\n').next().expect("a line")).expect("written");
     let resumed = json_lines(folder.path(), &format!("--no-render --json --resume {its_folder}"));
     assert_eq!(resumed[2]["run_hash"], lines[2]["run_hash"]);
-    // A run without the champion is another run.
+    // A run without the champion as its founder is another run.
     let without = format!("--no-render --json --set strategy=halving {small}");
     let without = json_lines(folder.path(), &without);
     assert_ne!(

@@ -14,7 +14,7 @@ use super::program::{folder, run};
 const CHAMPION: &str = include_str!("../../saves/first-climber.ron");
 const PRESET: &str = include_str!("../../assets/presets/mud.ron");
 
-/// The way the program opens a hostile file.
+/// How the program opens a hostile file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OpenedAs {
     Champion,
@@ -22,7 +22,7 @@ enum OpenedAs {
     Run,
 }
 
-/// A hostile file: a description, the way it is opened, its path below the test's folder, its bytes.
+/// A hostile file: a description, how it is opened, its path below the test's folder, and its bytes.
 struct Hostile {
     what: String,
     opened: OpenedAs,
@@ -30,7 +30,7 @@ struct Hostile {
     bytes: Vec<u8>,
 }
 
-/// All hostile files; each file of a run gets its own copy of a good run.
+/// All hostile files. Each file of a run gets its own copy of a good run.
 #[derive(Default)]
 struct Collection(Vec<Hostile>);
 
@@ -40,7 +40,7 @@ impl Collection {
         self.0.push(Hostile { what: what.into(), opened, path, bytes: bytes.into() });
     }
 
-    /// Adds one of the files of a run.
+    /// Adds a hostile file of a run.
     fn add_to_run(&mut self, what: impl Into<String>, file: &str, bytes: impl Into<Vec<u8>>) {
         let path = Path::new(&format!("run-{}", self.0.len())).join(file);
         self.0.push(Hostile {
@@ -51,7 +51,7 @@ impl Collection {
         });
     }
 
-    /// Adds the text cut off at the beginning or in the middle of every `every`th line.
+    /// Adds texts that are cut off at the beginning or in the middle of every `every`th line.
     fn cut_everywhere(&mut self, opened: OpenedAs, text: &str, every: usize) {
         let mut at = 0;
         for (number, line) in text.split_inclusive('\n').enumerate() {
@@ -63,7 +63,7 @@ impl Collection {
         }
     }
 
-    /// Adds the text with each number in turn replaced by each of `others`.
+    /// Adds texts in which each number in turn is replaced by each of `others`.
     fn replace_numbers(&mut self, opened: OpenedAs, text: &str, others: &[&str]) {
         for (number, line) in text.lines().enumerate() {
             let Some((field, value)) = line.trim_end_matches(',').split_once(": ") else {
@@ -82,7 +82,7 @@ impl Collection {
         }
     }
 
-    /// Adds the text without each required field in turn.
+    /// Adds texts that lack each required field in turn.
     fn leave_out_fields(&mut self, opened: OpenedAs, text: &str) {
         for (number, line) in text.lines().enumerate() {
             // An optional field that is None may be left out.
@@ -102,7 +102,7 @@ impl Collection {
     }
 }
 
-/// Files that are wrong in any place: damaged, nested, huge, of another kind.
+/// Adds files that are wrong for every parser: damaged, nested, huge, or of another kind.
 fn add_general(all: &mut Collection, opened: OpenedAs, text: &str) {
     all.add("empty", opened, "");
     all.add("white space", opened, " \n\t\n");
@@ -203,8 +203,8 @@ fn champions(all: &mut Collection) {
     all.replace(OpenedAs::Champion, CHAMPION, "joints: [", &format!("joints: [{joints}"));
     let points = "0,".repeat(5_000_000);
     all.replace(OpenedAs::Champion, CHAMPION, "bend_nm: [", &format!("bend_nm: [{points}"));
-    // A flipped bit that leaves the file readable makes the champion move differently, which is reported. Only digits
-    // before a decimal point: later ones may be too small to matter.
+    // A flipped bit that leaves the file readable changes the champion's motion, which is reported. Only digits before a decimal
+    // point are flipped, because later ones may be too small to matter.
     let bytes = CHAMPION.as_bytes();
     let torques = CHAMPION.find("joints: [").expect("a genome");
     let exam = CHAMPION.find("\n    exam: [").expect("an exam");
@@ -252,7 +252,7 @@ fn presets(all: &mut Collection) {
     all.replace(OpenedAs::Preset, PRESET, "about: \"", &about);
 }
 
-/// A line of a log with the checksum that belongs to it.
+/// Returns a line of a log with its correct checksum.
 fn line(json: &str) -> String {
     let open = json.strip_suffix('}').expect("an object");
     format!("{open},\"sum\":\"{:016x}\"}}\n", xxh3_64(open.as_bytes()))
@@ -366,7 +366,7 @@ fn runs(all: &mut Collection, good: &Path) {
     all.add_to_run("another file as champion", "generation-2.ron", plan);
 }
 
-/// Changes that are impossible or hostile.
+/// Adds files of changes that are impossible or hostile.
 fn changes(all: &mut Collection) {
     let change = |generation: &str, field: &str, value: &str| {
         line(&format!("{{\"generation\":{generation},\"field\":{field:?},\"value\":{value:?}}}"))
@@ -416,7 +416,7 @@ fn changes(all: &mut Collection) {
     all.add_to_run("a change that was not made", "changes.jsonl", good);
 }
 
-/// Founders that do not fit or are hostile.
+/// Adds runs whose founders do not fit or are hostile.
 fn founders(all: &mut Collection, plan: &str) {
     let genome = CHAMPION.split_once("    genome: ").expect("a genome").1;
     let genome =
@@ -450,7 +450,7 @@ fn founders(all: &mut Collection, plan: &str) {
 fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     let program = env!("CARGO_BIN_EXE_snakes");
     let code_kib = fs::metadata(program).expect("the program").len() / 1024;
-    // One arena for all threads, because memory that an arena reserves without using it counts here.
+    // All threads share one arena, because reserved memory counts even if it is not used.
     let script = format!("ulimit -v {}; exec {program} {arguments}", 200 * 1024 + code_kib);
     let mut command = Command::new("sh");
     command.args(["-c", &script]).current_dir(folder).env("MALLOC_ARENA_MAX", "1");
@@ -458,7 +458,7 @@ fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     command.output().expect("sh starts")
 }
 
-/// Runs the program. Windows limits no memory from a command line.
+/// Runs the program without a limit, because Windows cannot limit memory from a command line.
 #[cfg(not(unix))]
 fn in_little_memory(folder: &Path, arguments: &str) -> Output {
     super::program::run(folder, arguments)
@@ -472,7 +472,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A run that was stopped after two of its three generations.
+/// Makes a run that was stopped after two of its three generations, and returns its folder.
 fn good_run(folder: &Path, settings: &str) -> PathBuf {
     let arguments = "--no-render --population 4 --generations 3 --duration 0.2 --out good";
     let arguments = format!("{arguments} --preset report {settings}");
@@ -485,7 +485,7 @@ fn good_run(folder: &Path, settings: &str) -> PathBuf {
     good
 }
 
-/// The fault in the program's reaction to a hostile file, if there is one.
+/// Returns the fault in the program's reaction to a hostile file; `None` if it reacts correctly.
 fn fault(folder: &Path, opened: OpenedAs, path: &Path) -> Option<String> {
     let arguments = match opened {
         OpenedAs::Champion => format!("replay {} --no-render", path.display()),
@@ -638,7 +638,7 @@ fn links_folders_and_pipes_in_place_of_files_are_refused() {
         }
     }
     assert_eq!(fs::read_to_string(&secret).expect("read"), "do not touch");
-    // A user may name a link to a file, but neither a folder nor a pipe, which might never end.
+    // A user may name a link to a file, but not a folder, and not a pipe, which might never end.
     assert!(
         Command::new("mkfifo").arg(folder.path().join("pipe")).status().expect("mkfifo").success()
     );

@@ -19,26 +19,26 @@ use snakes_lab::run::{LocalPool, RecordedRun, RunControl, RunSource};
 
 use super::program::{folder, json_lines, run, snakes, with_slashes};
 
-/// Flags of a run so short that most of the time goes into writing.
+/// Flags of a run so short that it spends most of its time with writing.
 const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
                     --threads 2";
-/// Settings with which bodies evolve in such a run.
+/// Settings with which bodies evolve in a tiny run.
 const WITH_BODIES: &str = "--set controller=gait --set bodies.vary=true --set limbs_max=3";
 
-/// Stairs that rise and fall every few generations.
+/// Settings for stairs that rise and fall every few generations.
 const WITH_LADDER: &str = "--set stairs.steps=1 --set first_riser_y_m=-2.2 --set ladder.first_rise_m=0.1 \
                            --set ladder.step_m=0.1 --set ladder.share=0.3 --set ladder.way=0.01 --set patience=1";
 
-/// Settings for soft blocks in such a run, without and with bodies that evolve. The report's snake weighs half a kilogram per m³,
-/// and its blocks are rigid from 4,600 Pa on.
+/// Settings for soft blocks in a tiny run, without and with bodies that evolve. The report's snake weighs half a kilogram per m³,
+/// so that its blocks are rigid from 4,600 Pa on.
 const WITH_SOFT_BLOCKS: &str = "--set youngs_modulus_pa=2000";
 const WITH_SOFT_BODIES: &str = "--set bodies.soft=true";
 
-/// Settings with which creatures evolve in such a run.
+/// Settings with which creatures evolve in a tiny run.
 const WITH_CREATURES: &str =
     "--set controller=part_neurons --set bodies.vary=true --set parts_max=4";
 
-/// Settings with which stairs evolve in such a run, through all phases of a round.
+/// Settings with which stairs evolve in a tiny run, through all phases of a round.
 const WITH_PAIRS: &str = "--set pairs=3 --set pair_candidates=4 --set learn_generations=1 --set transfers=1 \
                           --set reproduces_from=0 --set too_hard_below=0 --set too_easy_above=1.1";
 const WITH_QUEUES: &str = "--set criterion=0.05 --set snake_queue=4 --set snake_children=2 --set stairs_queue=2 \
@@ -47,7 +47,7 @@ const WITH_QUEUES: &str = "--set criterion=0.05 --set snake_queue=4 --set snake_
 /// Number of runs that are killed: each of seventeen kinds of run six times.
 const ROUNDS: usize = 102;
 
-/// The only run in a folder of saves, if there is one yet.
+/// Returns the only run in a folder of saves; `None` if there is none yet.
 fn run_in(saves: &Path) -> Option<PathBuf> {
     let mut runs = fs::read_dir(saves).ok()?.map(|entry| entry.expect("an entry").path());
     let run = runs.next()?;
@@ -55,14 +55,13 @@ fn run_in(saves: &Path) -> Option<PathBuf> {
     Some(run)
 }
 
-/// Number of complete lines of a run's log.
+/// Returns the number of complete lines in a run's log.
 fn finished(run: &Path) -> usize {
     let log = fs::read_to_string(run.join("log.jsonl")).unwrap_or_default();
     log.split_inclusive('\n').filter(|line| line.ends_with("\"}\n")).count()
 }
 
-/// Starts the program and kills it `delay` after it has reported `generations`. Returns the number of generations that it
-/// has reported by then.
+/// Starts the program and kills it `delay` after it has reported `generations`. Returns the number of generations that it reported.
 fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &str) -> usize {
     let mut child = snakes(folder, arguments)
         .stdout(Stdio::piped())
@@ -75,7 +74,7 @@ fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &st
     let reader = thread::spawn(move || {
         let reports =
             lines.filter(|line| line.as_ref().is_ok_and(|line| line.contains("\"hash\"")));
-        // The receiver is gone for the later ones.
+        // Later reports have no receiver.
         reports
             .inspect(|_| {
                 let _ = sender.send(());
@@ -84,7 +83,7 @@ fn kill_after(generations: usize, delay: Duration, folder: &Path, arguments: &st
     });
     reported.iter().take(generations).for_each(drop);
     thread::sleep(delay);
-    // SIGKILL, which the program cannot handle.
+    // SIGKILL is a signal that the program cannot handle.
     child.kill().expect("killed");
     child.wait().expect("ended");
     reader.join().expect("read")
@@ -110,7 +109,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
             return format!("{TINY} --set strategy={strategy} {WITH_LADDER}");
         }
         if with_stairs.contains(&strategy) {
-            // Their generations are larger.
+            // Strategies that evolve stairs have larger generations.
             let tiny = TINY.replace("--population 4", "--population 100");
             let (pairs, bodies) = match strategy {
                 "mcc" => (WITH_QUEUES, "--set controller=gait"),
@@ -129,7 +128,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
             _ => WITH_SOFT_BLOCKS,
         };
         let bodies = match strategy {
-            // Only they have settings for the number of candidates that take effect.
+            // Only `islands` has an effective setting for the number of candidates.
             "islands" => format!("{WITH_BODIES} --set candidates=4"),
             "creature_ga" => WITH_CREATURES.to_owned(),
             of if of_bodies.contains(&of) => WITH_BODIES.to_owned(),
@@ -149,7 +148,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let mut killed_on_the_way = 0;
     for round in 0..ROUNDS {
         let out = format!("out-{round}");
-        // Each strategy in turn.
+        // The strategies take turns.
         let (strategy, expected) =
             (strategies[round % strategies.len()], &expected[round % strategies.len()]);
         // A generation takes a few milliseconds, mostly for writing.
@@ -162,7 +161,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
         let after_first = finished(&run);
         assert!(after_first >= reported, "{reported} were reported, {after_first} are left");
         killed_on_the_way += usize::from((1..40).contains(&after_first));
-        // Kill it once more after it has resumed, unless the first kill came before its plan was written.
+        // The run is killed once more after it has resumed, unless the first kill came before its plan was written.
         if !run.join("run.ron").exists() {
             let lines = json_lines(saves.path(), &command);
             assert_eq!(lines.last().expect("lines")["run_hash"], *expected);
@@ -185,7 +184,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     println!("killed on the way: {killed_on_the_way} of {ROUNDS}");
 }
 
-/// Changes during a tiny run: the first generation that uses it, the setting, the value.
+/// Changes during a tiny run: the first generation that uses the change, the setting, the value.
 const CHANGES: [(u32, &str, &str); 5] = [
     (2, "halving.parents", "2"),
     (9, "halving.mutation_range_nm", "300"),
@@ -194,7 +193,7 @@ const CHANGES: [(u32, &str, &str); 5] = [
     (38, "generations", "44"),
 ];
 
-/// Evolves a saved run until `last` generations are finished, and makes the changes meanwhile.
+/// Evolves a saved run until `last` generations are finished, and makes the changes that are due.
 fn evolve_changing(run: &mut RecordedRun, last: u32) {
     let pool = LocalPool::new(2).expect("threads");
     while !run.experiment.is_over() && run.experiment.finished() < last {
@@ -236,11 +235,11 @@ fn a_changed_run_killed_at_any_instant_repeats_its_changes() {
     let mut rng = stream(2, 0, 0, Purpose::Calibration);
     for round in 0..12 {
         let mut begun = open(&format!("out-{round}"));
-        // Before the first change, after it, after the third, and before the first generation.
+        // The run is stopped before the first change, after it, after the third change, or before the first generation.
         evolve_changing(&mut begun, [1, 3, 12, 0][round % 4]);
         let run_folder = begun.recorder.folder().to_owned();
         drop(begun);
-        // As if a disk had lost the latest generations: all changes are known, some are still ahead.
+        // The run looks as if a disk had lost the latest generations: all changes are known, and some are still due.
         fs::write(run_folder.join("changes.jsonl"), &changes).expect("written");
         if [2, 3].contains(&(round % 4)) {
             // Without a log, every change is still in the future.
@@ -273,7 +272,7 @@ fn the_same_command_continues_a_stopped_run_and_restart_starts_over() {
     let whole = json_lines(saves.path(), &format!("{TINY} --out whole"));
     json_lines(saves.path(), &format!("{TINY} --out out"));
     let run_folder = run_in(&saves.path().join("out")).expect("a run");
-    // As a kill after the third generation would have left it.
+    // The log is cut to the state after a kill that followed the third generation.
     let log = fs::read_to_string(run_folder.join("log.jsonl")).expect("read");
     let three: String = log.split_inclusive('\n').take(3).collect();
     let stop = || fs::write(run_folder.join("log.jsonl"), &three).expect("written");
@@ -282,7 +281,7 @@ fn the_same_command_continues_a_stopped_run_and_restart_starts_over() {
         let output = run(saves.path(), &format!("{TINY} --out out {flag}"));
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{stderr}");
-        // By the end of the run checkpoint 3 was thinned away; 2 is there.
+        // The complete run has removed checkpoint 3, but kept checkpoint 2.
         assert_eq!(stderr.contains("continues after generation 2"), goes_on, "{stderr}");
         let stdout = String::from_utf8_lossy(&output.stdout);
         let last: Value =
@@ -318,7 +317,7 @@ fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
     assert!(run(saves.path(), arguments).status.success());
 }
 
-/// The last line of standard error, which must be an error.
+/// Returns the only error on standard error.
 #[cfg(unix)]
 fn error_of(output: &std::process::Output) -> String {
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -328,7 +327,7 @@ fn error_of(output: &std::process::Output) -> String {
     errors[0].to_owned()
 }
 
-/// Resumes a run, which must end like an undisturbed one.
+/// Resumes a run, which must end with the hash of an undisturbed run.
 #[cfg(unix)]
 fn resumes_to_the_same_end(saves: &Path, run: &Path) {
     assert!((1..40).contains(&finished(run)), "it was stopped before its end: {}", finished(run));
@@ -337,13 +336,13 @@ fn resumes_to_the_same_end(saves: &Path, run: &Path) {
     assert_eq!(resumed[40]["run_hash"], whole[40]["run_hash"]);
 }
 
-/// A limit on the size of files, which the log reaches in the middle of the run.
+/// The size of files is limited, and the log reaches the limit in the middle of the run.
 #[cfg(unix)]
 #[test]
 fn a_log_that_cannot_grow_ends_the_run_with_an_error_and_the_run_can_be_resumed() {
     let saves = folder();
     let program = env!("CARGO_BIN_EXE_snakes");
-    // In units of 512 bytes. A refused write must be an error, not a signal.
+    // The unit of the limit is 512 bytes. The signal is ignored, so that writing returns an error.
     let script = format!("trap '' XFSZ; ulimit -f 16; exec {program} {TINY} --out out");
     let output = Command::new("sh")
         .args(["-c", &script])
@@ -362,7 +361,7 @@ fn a_log_that_cannot_grow_ends_the_run_with_an_error_and_the_run_can_be_resumed(
     resumes_to_the_same_end(saves.path(), &run);
 }
 
-/// A disk that is really full. It needs a private mount; where the system does not allow one, the test is skipped.
+/// The disk is really full. The test needs a private mount, and is skipped where the system does not allow one.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_ends_the_run_with_an_error_and_the_run_can_be_resumed() {

@@ -1,25 +1,25 @@
-//! Hostile champions of every family of controllers that learns or senses: each is refused in one line that names the
-//! field, its value and the allowed range. A test of the genome's limits covers each single gene.
+//! Hostile champions of every family of controllers that learns or senses: each is refused with one line that names the field, its
+//! value and the allowed range. Another test covers each single gene.
 
 use std::fs;
 use std::path::Path;
 
 use snakes_core::save::parse_champion;
 
-/// The champion of the corpus that has this name.
+/// Returns the text of the champion with this name in the corpus.
 fn champion(name: &str) -> String {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/champion");
     fs::read_to_string(folder.join(name)).expect("a file of the corpus")
 }
 
-/// The text with the first number, word or string after a mark replaced.
+/// Returns the text with another number, word or string directly after `mark`.
 fn with_value(text: &str, mark: &str, value: &str) -> String {
     let start = text.find(mark).expect(mark) + mark.len();
     let length = text[start..].find([',', ')', ']', '\n']).expect("an end");
     format!("{}{value}{}", &text[..start], &text[start + length..])
 }
 
-/// Checks that a champion is refused, with these parts in the one line that says why.
+/// Checks that a champion is refused with one line that contains `parts`.
 fn assert_refused(file: &str, text: &str, parts: &[&str]) {
     let error = parse_champion(Path::new("x.ron"), text).err();
     let error = error.map(|error| error.to_string()).unwrap_or_default();
@@ -27,12 +27,12 @@ fn assert_refused(file: &str, text: &str, parts: &[&str]) {
     assert!(!error.contains('\n') && error.len() < 1000, "{file}: {error}");
 }
 
-/// Checks that a champion with another first value after a mark in its controller is refused.
+/// Checks that a champion is refused if the value after `mark` in its controller is replaced.
 fn assert_refuses(file: &str, mark: &str, value: &str, parts: &[&str]) {
     assert_refuses_behind("        controller: ", file, mark, value, parts);
 }
 
-/// Checks that a champion with another first value after a mark behind a place of its file is refused.
+/// Checks that a champion is refused if the value after `mark`, searched from `place` on, is replaced.
 fn assert_refuses_behind(place: &str, file: &str, mark: &str, value: &str, parts: &[&str]) {
     let text = champion(file);
     let (before, behind) = text.split_at(text.find(place).expect("the place"));
@@ -215,7 +215,7 @@ fn hostile_bodies_are_refused_with_field_value_and_range() {
     };
     assert_refused("bodies", &with(8), &["segments is 13", "allowed: 2 to 12"]);
     assert_refused("bodies", &with(20_000), &["segments is 20005", "allowed: 2 to 12"]);
-    // One block more than the controller has joints for.
+    // The body has one block more than the controller has joints for.
     assert_refused("bodies", &with(1), &["controller joints is 4 joints", "allowed: 5"]);
 }
 
@@ -239,7 +239,7 @@ fn hostile_creatures_are_refused_with_field_value_and_range() {
     ] {
         assert_refuses("creatures", mark, value, &parts);
     }
-    // A graph that grows without an end, but for the largest number of parts: the neurons have other joints.
+    // The graph would grow without end, except for the limit on parts. The neurons fit other joints.
     let text = champion("creatures");
     let start = text.find("nodes: [").expect("nodes") + "nodes: [".len();
     let bomb = "(length_m: 1.0, width_m: 1.0, height_m: 1.0, density_kg_m3: 9.0, joint: universal, bend_limit_rad: 1.0, \

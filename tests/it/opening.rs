@@ -1,8 +1,8 @@
-//! How long saved champions take to open: read, checked, and ready for their first step.
+//! Time that saved champions take to open: to be read, checked, and ready for their first step.
 //!
 //!     cargo test --release --test it opening -- --ignored --nocapture
 //!
-//! `SNAKES_OPENING=FOLDER` measures the champions of another folder, those of its subfolders included.
+//! `SNAKES_OPENING=FOLDER` measures the champions in another folder, including its subfolders.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,14 +11,14 @@ use std::time::{Duration, Instant};
 use snakes_core::save::load_champion;
 use snakes_core::score::Rollout;
 
-/// How often each file is opened; the median counts.
+/// Number of times that each file is opened. The median counts.
 const OPENINGS: usize = 20;
-/// Maximum median time: nobody notices a wait this short.
+/// Maximum median time. A user does not notice a wait this short.
 const LONGEST: Duration = Duration::from_millis(100);
 /// Maximum size of a file, in bytes.
 const LARGEST: u64 = 1024 * 1024;
 
-/// The files that end on `.ron` in a folder and below it, in order.
+/// Returns the files ending in `.ron` in a folder and its subfolders, in order.
 fn saves_in(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder");
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -31,7 +31,7 @@ fn saves_in(folder: &Path) -> Vec<PathBuf> {
     paths.into_iter().flat_map(below).filter(is_save).collect()
 }
 
-/// Median time from the path of a champion to the first step of its trial; `None` for a file of another kind.
+/// Returns the median time from the path of a champion to the first step of its trial; `None` for a file of another kind.
 fn median_opening(path: &Path) -> Option<Duration> {
     let text = fs::read_to_string(path).expect("a text");
     if !text.contains("kind: \"snakes-and-stairs champion\"") {

@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// A command line of the program under test, in its own folder.
+/// Returns a command that runs the program under test in `folder`.
 pub fn snakes(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_snakes"));
     command.args(arguments.split_whitespace()).current_dir(folder);
@@ -28,18 +28,18 @@ pub fn stdout_of(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// The JSON objects on a run's standard output, one per line.
+/// Runs the program, which must succeed, and returns the JSON objects on its standard output, one per line.
 pub fn json_lines(folder: &Path, arguments: &str) -> Vec<Value> {
     let text = stdout_of(folder, arguments);
     text.lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
 }
 
-/// A text in which paths of Windows have slashes, too.
+/// Returns a text with the slashes of Windows paths turned forward.
 pub fn with_slashes(text: &str) -> String {
     text.replace('\\', "/")
 }
 
-/// A new folder, which is removed when dropped.
+/// Creates a temporary folder, which is removed when it is dropped.
 pub fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }

@@ -4,10 +4,9 @@
 //!
 //!     cargo test --release --test it same_bits -- --ignored --nocapture
 //!
-//! WebAssembly has no case: plotters, which draws the charts, does not compile for `wasm32-wasip1` without its fonts.
+//! WebAssembly is not covered: plotters, which draws the charts, does not compile for `wasm32-wasip1` without its fonts.
 //!
-//! Cases that need a missing tool (Debian's `qemu-user` and `valgrind`) are skipped; with
-//! `SNAKES_SAME_BITS=required` the test fails instead.
+//! Cases that need a missing tool (Debian's `qemu-user` or `valgrind`) are skipped, or fail if `SNAKES_SAME_BITS=required` is set.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -18,12 +17,12 @@ use std::thread;
 use serde_json::Value;
 use snakes_lab::run::verify::Trajectories;
 
-/// The platform of 64-bit ARM, and what builds and runs its programs here.
+/// The platform of 64-bit ARM, and the tools that build and run its programs on this machine.
 const ARM: &str = "aarch64-unknown-linux-gnu";
 const ARM_LINKER: &str = "aarch64-linux-gnu-gcc";
 const ARM_RUNNER: [&str; 3] = ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"];
 
-/// Builds the program into a separate folder and returns its path.
+/// Builds the program into a separate folder, and returns its path.
 fn build(name: &str, profile: &str, rustflags: &str, settings: &[String]) -> PathBuf {
     build_for(None, name, profile, rustflags, settings)
 }
@@ -51,7 +50,7 @@ fn build_for(
     target.join(if profile == "dev" { "debug" } else { profile }).join("snakes")
 }
 
-/// Whether Rust's standard library for a platform is installed.
+/// Returns whether Rust's standard library for a platform is installed.
 fn has_platform(platform: &str) -> bool {
     let root = Command::new("rustc").args(["--print", "sysroot"]).output();
     root.is_ok_and(|root| {
@@ -60,7 +59,7 @@ fn has_platform(platform: &str) -> bool {
     })
 }
 
-/// Builds the program without any optimisation, in this package and in its dependencies.
+/// Builds the program without any optimisation, including its dependencies. Returns its path.
 fn build_unoptimised() -> PathBuf {
     let packages = ["\"*\"", "rapier3d", "parry3d", "nalgebra", "simba", "glam", "snakes-core"];
     let package = |name| format!("profile.dev.package.{name}.opt-level=0");
@@ -79,7 +78,7 @@ fn is_installed(program: &str) -> bool {
     is_found
 }
 
-/// Whether this processor runs programs for x86-64-v3.
+/// Returns whether this processor runs programs for x86-64-v3.
 fn is_v3() -> bool {
     #[cfg(target_arch = "x86_64")]
     {
@@ -95,8 +94,8 @@ fn is_v3() -> bool {
     false
 }
 
-/// The fingerprint that `snakes verify` prints when the command `runner` runs it with these environment variables. It
-/// computes with one thread, because several cases run at the same time.
+/// Returns the fingerprint that `snakes verify` prints when the command `runner` runs it with these environment variables. The
+/// program uses one thread, because several cases run at the same time.
 fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> String {
     let words = runner.iter().map(Path::new).chain([program]).collect::<Vec<&Path>>();
     let mut command = Command::new(words[0]);
@@ -110,16 +109,16 @@ fn fingerprint(program: &Path, runner: &[&str], variables: &[(&str, &str)]) -> S
     last["fingerprint"].as_str().expect("a fingerprint").to_owned()
 }
 
-/// The program under test, which is optimised as a user's.
+/// Returns the path of the program under test, which is optimised like a user's program.
 fn tested() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_snakes"))
 }
 
-/// Tells the C library to leave out its variants for newer processors.
+/// Makes the C library leave out its variants for newer processors.
 const NO_VARIANTS: (&str, &str) =
     ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");
 
-/// Another family of processors has bits of its own, and one reference for all of them.
+/// Processors of another family compute other bits, for which there is one reference.
 #[test]
 #[ignore = "builds the program for 64-bit ARM and runs it in emulation: minutes"]
 fn arm_gives_the_fingerprint_of_its_own_reference() {
@@ -135,7 +134,7 @@ fn arm_gives_the_fingerprint_of_its_own_reference() {
     println!("{found}  64-bit ARM, emulated: its own reference");
 }
 
-/// A run of `snakes verify`.
+/// A run of `snakes verify`: its description, the program, and the command that runs the program.
 struct Case<'p> {
     what: &'static str,
     program: &'p Path,
@@ -158,7 +157,7 @@ fn every_processor_gives_the_fingerprint_of_the_reference() {
     let v3 = build("v3", "release", "-Ctarget-cpu=x86-64-v3", &[]);
     let case =
         |what, program, runner: &[&'static str]| Case { what, program, runner: runner.to_vec() };
-    // The longest first.
+    // The longest cases come first.
     let mut cases = Vec::new();
     if is_installed("valgrind") {
         let checker = ["valgrind", "--quiet", "--error-exitcode=9", "--num-callers=30"];
@@ -167,7 +166,7 @@ fn every_processor_gives_the_fingerprint_of_the_reference() {
     if is_installed("qemu-x86_64") {
         let core_2 = ["qemu-x86_64", "-cpu", "core2duo"];
         cases.push(case("emulated Core 2 of 2006", tested(), &core_2));
-        // QEMU knows no feature beyond those of x86-64-v3.
+        // QEMU supports no processor features beyond those of x86-64-v3.
         if !is_v3() {
             cases.push(case("emulated, all features known to QEMU", tested(), &MAX));
             cases.push(case("the same, for x86-64-v3", &v3, &MAX));

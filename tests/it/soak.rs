@@ -20,17 +20,17 @@ use super::program::{folder, snakes};
 const SAMPLING_INTERVAL: Duration = Duration::from_secs(5);
 /// Time after which threads, caches and the allocator have grown to their final size.
 const WARM_UP: Duration = Duration::from_secs(30);
-/// Noise of the allocator. A leak of 20 bytes per evaluation would show in a million of them.
+/// Noise of the allocator, in KiB. A leak of 20 bytes per evaluation would exceed it after a million evaluations.
 const MAX_GROWTH_KIB: u64 = 16 * 1024;
 
-/// A value of `/proc/PID/status`, in KiB.
+/// Reads a value of `/proc/PID/status`, in KiB.
 fn status_kib(process: u32, field: &str) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).expect("it runs");
     let line = status.lines().find(|line| line.starts_with(field)).expect(field);
     line.split_whitespace().nth(1).and_then(|kib| kib.parse().ok()).expect("a number")
 }
 
-/// Number and total size, in bytes, of the files in the folder whose names begin with `prefix`.
+/// Returns the number and the total size, in bytes, of a folder's files whose names begin with `prefix`.
 fn count_and_bytes(run: &Path, prefix: &str) -> (usize, u64) {
     let files = fs::read_dir(run).expect("a folder").map(|file| file.expect("a file"));
     let files = files.filter(|file| file.file_name().to_string_lossy().starts_with(prefix));

@@ -1,4 +1,4 @@
-//! `snakes study`: what is finished is kept, and continues to the same files.
+//! `snakes study`: finished runs are kept, and an interrupted study ends with the same files.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::program::{folder, json_lines, run, snakes, stdout_of};
 const TINY: &str =
     "study families --arms zcs --evaluations 64 --duration 1 --suite step-rate --threads 1";
 
-/// The bytes of the files of results.
+/// Returns the bytes of the files of results.
 fn written(folder: &Path) -> [Vec<u8>; 5] {
     [
         "families.ron",
@@ -48,7 +48,7 @@ fn a_study_killed_after_a_run_continues_to_the_same_files() {
     assert_eq!(String::from_utf8_lossy(&output.stdout).replace("killed", "whole"), text);
     let [whole, killed] = ["whole", "killed"].map(|name| written(&folder.path().join(name)));
     assert!(whole == killed, "all files have the same bytes");
-    // The whole study has no work left, and JSON has its runs.
+    // The whole study has no work left, and its JSON contains the runs.
     let lines = json_lines(folder.path(), &format!("{} --json", arguments("whole", 2)));
     assert_eq!((&lines[0]["type"], &lines[0]["arm"]), (&json!("run"), &json!("zcs")));
     assert_eq!(lines[0]["seed"], json!(201));

@@ -1,8 +1,7 @@
 //! The real window on a virtual display, with real keys and clicks.
 //!
-//! Needs Debian's `xvfb`, `xdotool`, `mesa-vulkan-drivers` and `libvulkan1`. Where they are missing the
-//! tests are skipped, and each says so with the number skipped so far; with
-//! `SNAKES_WINDOW_TESTS=required` in the environment a skip is a failure.
+//! The tests need Debian's `xvfb`, `xdotool`, `mesa-vulkan-drivers` and `libvulkan1`. Without them each is skipped with a line,
+//! which has the number skipped so far, or fails if `SNAKES_WINDOW_TESTS=required` is set.
 #![expect(clippy::panic, reason = "a helper of a test fails by panicking, as tests do")]
 
 mod display;
@@ -25,7 +24,7 @@ use picture::{Picture, difference, is_blue, is_red};
 use places::{Area, Place};
 use std::time::Duration;
 
-/// A champion in the report's world.
+/// Path of a champion in the report's world.
 const REPORTS_CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/first-climber.ron");
 
 #[test]
@@ -90,7 +89,7 @@ fn buttons_and_champion_list_control_run_and_stage() {
     studio.wait_for_title("running");
 }
 
-/// Not a window test, but it needs the same driver: pictures without a display.
+/// This test opens no window, but needs the same driver: it draws pictures without a display.
 #[test]
 fn figures_are_drawn_without_a_display() {
     if display::lacks_a_driver("figures") {
@@ -111,7 +110,7 @@ fn figures_are_drawn_without_a_display() {
 
 #[test]
 fn a_typed_seed_starts_another_run() {
-    // The champion comes from the run's world, so it stays on the stage unless a better one is found.
+    // The champion belongs to the run's world, so it stays on the stage unless a better one is found.
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
     let Some(studio) = Studio::open("seed", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
@@ -119,7 +118,7 @@ fn a_typed_seed_starts_another_run() {
     studio.click_label("Reset");
     studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
     assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
-    // Stage shortcuts must ignore text typed into a field: the key for generation 1 must not show it.
+    // Stage shortcuts must ignore text that is typed into a field, so the key for generation 1 must not show that generation.
     studio.click_label("Start");
     studio.wait_for_title("4 of 4 generations, finished");
     studio.key("0");
@@ -163,7 +162,7 @@ fn r_plays_from_the_start_and_f_stops_following() {
     let Some(studio) = Studio::open("restart", "--preset quick") else { return };
     studio.pause_evolution();
     let start = studio.picture();
-    // The snake is far from its start when the stage is paused, and back near it after R.
+    // The snake is far from its start when the stage is paused, and near the start again after R.
     std::thread::sleep(Duration::from_secs(3));
     studio.key("f");
     studio.key("space");
@@ -173,8 +172,7 @@ fn r_plays_from_the_start_and_f_stops_following() {
     studio.key("r");
     studio.wait_for_title_without(", stopped");
     studio.picture_with(|picture| difference(&held, picture) > 1000);
-    // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage
-    // show it.
+    // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage show this.
     let far = |picture: &Picture| {
         let scene = picture.scene();
         picture.region(Area { bottom: scene.top + 30, ..scene })
@@ -265,7 +263,7 @@ fn a_killed_studio_continues_its_run_and_so_does_headless_mode() {
     let arguments = format!("{run} --saves {}", saves.display());
     let Some(studio) = Studio::open("killed", &arguments) else { return };
     studio.wait_for_title("2 of 4 generations");
-    // Dropping the studio kills it.
+    // Dropping the studio kills the program.
     drop(studio);
     let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
     let text = std::fs::read_to_string(log.path().join("log.jsonl")).expect("a log");
@@ -299,7 +297,7 @@ fn studio_and_headless_run_refuse_each_others_folder_and_name_the_owner() {
         .expect("the program starts");
     std::thread::sleep(Duration::from_secs(1));
     let studio = Studio::open("refused", &arguments).expect("it opened before");
-    // It opens and shows its champion, but does not evolve.
+    // The second program opens and shows its champion, but does not evolve.
     studio.wait_for_title("generations, ready");
     headless.kill().expect("killed");
     headless.wait().expect("ended");

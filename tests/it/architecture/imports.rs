@@ -8,12 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::tokens::tokens;
 
-/// For each file, the other files on which it depends. Paths are relative to the root.
+/// The files on which each file depends. Paths are relative to the root.
 pub type ImportGraph = BTreeMap<String, BTreeSet<String>>;
 
 type Module = Vec<String>;
 
-/// One source file, which is one module.
+/// A source file, which is one module.
 struct SourceFile {
     path: String,
     tokens: Vec<String>,
@@ -21,7 +21,7 @@ struct SourceFile {
     uses: Vec<Use>,
 }
 
-/// One name that a `use` brings into a module; `*` for all names of another module.
+/// A name that a `use` brings into a module; `*` for all names of another module.
 struct Use {
     name: String,
     path: Vec<String>,
@@ -36,7 +36,7 @@ enum Target {
     External,
 }
 
-/// The graph of the given files: their paths below the root, and their texts. Paths into another of these crates are resolved there.
+/// Builds the graph of files, given their paths below the root and their texts. Paths into other crates among them are resolved.
 pub fn import_graph(files: &[(String, String)]) -> ImportGraph {
     let modules: BTreeMap<Module, SourceFile> =
         files.iter().map(|(path, text)| (module_of(path), SourceFile::new(path, text))).collect();
@@ -48,7 +48,7 @@ pub fn import_graph(files: &[(String, String)]) -> ImportGraph {
         .collect()
 }
 
-/// Sets of files that depend on each other in a circle, larger ones first.
+/// Returns the sets of files that depend on each other in a circle, larger sets first.
 pub fn circles(graph: &ImportGraph) -> Vec<BTreeSet<String>> {
     let reachable = |start: &String| {
         let (mut seen, mut open) = (BTreeSet::new(), vec![start.clone()]);
@@ -74,7 +74,7 @@ pub fn circles(graph: &ImportGraph) -> Vec<BTreeSet<String>> {
     circles
 }
 
-/// The path of a file's module, which begins with the name by which others call its crate.
+/// Returns the path of a file's module. It begins with the name by which other crates refer to the module's crate.
 fn module_of(path: &str) -> Module {
     let (folder, path) = path.split_once("src/").unwrap_or_default();
     let name = folder.trim_start_matches("crates/").trim_end_matches('/');
@@ -159,7 +159,7 @@ struct Crates {
 }
 
 impl Crates {
-    /// The other files that a module names, in a `use` or in a path.
+    /// Returns the other files whose items a module names, in a `use` or in a path.
     fn imports(&self, module: &Module) -> BTreeSet<String> {
         let file = &self.modules[module];
         let used = file.uses.iter().map(|of| match of.path.split_last() {
@@ -182,9 +182,9 @@ impl Crates {
         found
     }
 
-    /// Finds what a path means in a module; `None` outside these crates.
+    /// Returns what a path means in a module; `None` outside these crates.
     fn resolve(&self, module: &Module, path: &[String], depth: u32) -> Option<Target> {
-        // A name that is re-exported in a circle is no name.
+        // A name that is re-exported in a circle has no meaning.
         if depth > 20 {
             return None;
         }
@@ -207,13 +207,13 @@ impl Crates {
             }
             Target::Module(of) => match self.member(&of, name, depth + 1) {
                 Some(found) => Some(found),
-                // Only a macro can have defined it.
+                // Only a macro can have defined the item.
                 None => self.modules.get(&of).map(|file| Target::Item(file.path.clone())),
             },
         })
     }
 
-    /// Finds a name in a module: a submodule, an item, or a name that a `use` brings in.
+    /// Returns what a name means in a module: a submodule, an item, or a name that a `use` brings in.
     fn member(&self, module: &Module, name: &str, depth: u32) -> Option<Target> {
         let file = self.modules.get(module)?;
         let submodule: Module = module.iter().cloned().chain([name.to_owned()]).collect();
@@ -223,7 +223,7 @@ impl Crates {
         if file.items.contains(name) {
             return Some(Target::Item(file.path.clone()));
         }
-        // A `use` of a crate by its own name would find itself.
+        // A `use` of a crate by its own name would resolve to itself.
         let named = file.uses.iter().filter(|of| of.name == name && of.path != [name.to_owned()]);
         let mut found = named.map(|of| self.resolve(module, &of.path, depth + 1));
         if let Some(found) = found.next() {
@@ -239,7 +239,7 @@ impl Crates {
     }
 }
 
-/// The file of an item. A module that is only named is no dependency; a path through it is.
+/// Returns the file of an item. A module that is only named is no dependency; a path through it is one.
 fn path_of(target: Option<Target>) -> Option<String> {
     match target? {
         Target::Item(path) => Some(path),
@@ -247,7 +247,7 @@ fn path_of(target: Option<Target>) -> Option<String> {
     }
 }
 
-/// The path `a::b::c` that begins at a token, if one does.
+/// Returns the path `a::b::c` that begins at a token; empty if none begins there.
 fn path_at(tokens: &[String], index: usize) -> Vec<String> {
     let is_name = |token: &String| token.starts_with(|c: char| c.is_alphabetic() || c == '_');
     let mut path = Vec::new();

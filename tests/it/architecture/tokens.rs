@@ -1,6 +1,6 @@
 //! A lexer for Rust source, enough to find items and paths: comments, literals and code for tests are skipped.
 
-/// The identifiers, `::` and punctuation of a source text, without items marked `#[cfg(test)]`.
+/// Returns the identifiers, `::` and punctuation of a source text, without items marked `#[cfg(test)]`.
 pub fn tokens(text: &str) -> Vec<String> {
     without_tests(lexed(text))
 }
@@ -26,7 +26,7 @@ fn lexed(text: &str) -> Vec<String> {
                 index += raw_string(&chars[index..]).unwrap_or(1);
             }
             ('"', _) => index += quoted(&chars[index..], '"'),
-            // A character, as opposed to a lifetime.
+            // This is a character literal, not a lifetime.
             ('\'', second) if second == '\\' || at(index + 2) == '\'' => {
                 index += quoted(&chars[index..], '\'');
             }
@@ -49,7 +49,7 @@ fn lexed(text: &str) -> Vec<String> {
     tokens
 }
 
-/// Length of a quoted literal, its quotes included.
+/// Returns the length of a quoted literal, including its quotes.
 fn quoted(chars: &[char], quote: char) -> usize {
     let mut index = 1;
     while index < chars.len() && chars[index] != quote {
@@ -58,7 +58,7 @@ fn quoted(chars: &[char], quote: char) -> usize {
     index + 1
 }
 
-/// Length of a raw or byte string, if the text begins with one.
+/// Returns the length of a raw or byte string, or `None` if the text does not begin with one.
 fn raw_string(chars: &[char]) -> Option<usize> {
     let prefix = chars.iter().take_while(|c| "rbc".contains(**c)).count();
     let hashes = chars[prefix..].iter().take_while(|c| **c == '#').count();
@@ -91,7 +91,7 @@ fn without_tests(tokens: Vec<String>) -> Vec<String> {
     kept
 }
 
-/// Index after the item, field or statement that begins at `index`.
+/// Returns the index after the item, field or statement that begins at `index`.
 fn end_of_item(tokens: &[String], mut index: usize) -> usize {
     let mut depth = 0;
     while index < tokens.len() {

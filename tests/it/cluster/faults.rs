@@ -1,4 +1,4 @@
-//! Faults at random instants: the run goes on or waits, loses nothing, and ends with the hash of a run on one machine.
+//! Faults at random times: the run continues or waits, loses nothing, and ends with the hash of a run on one machine.
 
 use std::sync::OnceLock;
 use std::thread::sleep;
@@ -11,14 +11,14 @@ use super::proxy::Proxy;
 use super::server::{Process, Run, Server, empty, fill, run_hash, say, worker};
 use crate::program::{folder, json_lines};
 
-/// A run with enough work after the latest fault.
+/// A run with enough work left after the latest fault.
 const RUN: &str = if cfg!(debug_assertions) {
     "--no-render --preset climb --seed 7 --population 40 --generations 16 --duration 8"
 } else {
     "--no-render --preset climb --seed 7 --population 200 --generations 16 --duration 8"
 };
 
-/// The hash of the run on this machine alone.
+/// Returns the hash of the run on this machine alone.
 fn local_hash() -> &'static str {
     static HASH: OnceLock<String> = OnceLock::new();
     HASH.get_or_init(|| {
@@ -27,25 +27,25 @@ fn local_hash() -> &'static str {
     })
 }
 
-/// Number of times that each fault is tried.
+/// Returns how many times each fault is tried.
 pub fn rounds() -> u64 {
     let wanted = std::env::var("SNAKES_FAULT_ROUNDS").ok().and_then(|text| text.parse().ok());
     wanted.unwrap_or(1)
 }
 
-/// The parts of a test run that a fault can reach.
+/// The processes and connections of a test run that a fault can affect.
 struct Room {
     server: Server,
     workers: Vec<Process>,
     run: Run,
-    /// Cuts off the coordinator.
+    /// Connection of the coordinator, which can be cut.
     coordinator_proxy: Proxy,
-    /// Cuts off the first worker.
+    /// Connection of the first worker, which can be cut.
     worker_proxy: Proxy,
 }
 
-/// Runs with three workers, lets `fault` happen at a random time in the first half of the run, however fast the machine
-/// is, and compares the hash.
+/// Runs with three workers, causes `fault` at a random time in the first half of the run, however fast the machine is, and compares
+/// the hash.
 fn with_fault(name: &str, mut fault: impl FnMut(&mut Room, &mut ChaCha8Rng)) {
     for round in 0..rounds() {
         let mut rng = ChaCha8Rng::seed_from_u64(round);
@@ -68,7 +68,7 @@ fn with_fault(name: &str, mut fault: impl FnMut(&mut Room, &mut ChaCha8Rng)) {
     }
 }
 
-/// How long the network is cut: a minute where faults are repeated.
+/// Returns how long the network is cut: a minute if faults are repeated.
 fn cut() -> Duration {
     Duration::from_secs(if rounds() > 1 { 60 } else { 12 })
 }
@@ -103,7 +103,7 @@ fn a_worker_is_ten_times_slower_than_the_others() {
 fn a_worker_arrives_late_and_the_others_leave() {
     with_fault("late worker", |room, _| {
         let url = room.server.url();
-        // A worker that is asked to stop returns what it holds.
+        // A stopped worker returns its batch to the queue.
         room.workers.iter().for_each(|worker| worker.signal("-INT"));
         sleep(Duration::from_secs(2));
         room.workers = vec![worker(&url)];

@@ -1,18 +1,18 @@
-//! Every command ends with the results of one machine.
+//! Every command with workers ends with the results of one machine.
 
 use serde_json::Value;
 
 use super::server::{Process, Run, Server, run_hash, worker};
 use crate::program::{folder, json_lines};
 
-/// A server with four workers.
+/// Starts a server with four workers.
 fn room() -> Option<(Server, Vec<Process>)> {
     let server = Server::start()?;
     let workers = (0..4).map(|_| worker(&server.url())).collect();
     Some((server, workers))
 }
 
-/// The lines of a command here and on the workers, in folders of their own.
+/// Returns the lines of a command on this machine alone, and on the workers, in separate folders.
 fn both(server: &Server, arguments: &str) -> (Vec<Value>, Vec<Value>) {
     let (here, there) = (folder(), folder());
     let local = json_lines(here.path(), &format!("{arguments} --json"));

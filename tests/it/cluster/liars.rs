@@ -1,4 +1,4 @@
-//! Workers that compute other bits are found, and what they sent is computed again.
+//! Workers that compute other bits are detected, and their tasks are computed again.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -16,7 +16,7 @@ use crate::program::{folder, json_lines};
 const RUN: &str =
     "--no-render --preset climb --seed 5 --population 60 --generations 3 --duration 4";
 
-/// Flips a bit of each trace after this number of honest results.
+/// Computes honestly for this number of results, then flips a bit of each trace.
 #[derive(Debug)]
 struct Liar {
     honest: AtomicU64,
@@ -53,7 +53,7 @@ pub fn worker_with(
     (control, thread)
 }
 
-/// A run with two honest workers and a liar; returns the hash and what the coordinator said.
+/// Runs with two honest workers and a liar. Returns the hash, and the coordinator's messages.
 fn with_liar(honest: u64) -> Option<(String, String)> {
     let server = Server::start()?;
     let _workers = [worker(&server.url()), worker(&server.url())];

@@ -1,4 +1,4 @@
-//! A connection that can be cut: bytes are held as by a network without a cable, and no side is told.
+//! A connection that can be cut: bytes are held back as by an unplugged network cable, and neither side is notified.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -7,14 +7,14 @@ use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::SeqCst;
 use std::time::Duration;
 
-/// Forwards connections to a server while it is not cut.
+/// Forwards connections to a server, except while it is cut.
 pub struct Proxy {
     pub port: u16,
     is_cut: Arc<AtomicBool>,
 }
 
 impl Proxy {
-    /// A proxy for the server at a port of this machine.
+    /// Starts a proxy for the server at a port of this machine.
     pub fn to(port: u16) -> Self {
         let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
         let own = listener.local_addr().expect("an address").port();
@@ -23,7 +23,7 @@ impl Proxy {
         std::thread::spawn(move || {
             for client in listener.incoming() {
                 let Ok(client) = client else { return };
-                // While it is cut, a new connection is accepted by the network's edge and hears nothing.
+                // While the network is cut, a new connection is accepted but receives nothing.
                 let cut = Arc::clone(&cut);
                 std::thread::spawn(move || forward(client, port, &cut));
             }
@@ -35,7 +35,7 @@ impl Proxy {
         format!("nats://127.0.0.1:{}", self.port)
     }
 
-    /// Cuts the network, or mends it.
+    /// Cuts the network (`true`), or repairs it (`false`).
     pub fn cut(&self, is_cut: bool) {
         self.is_cut.store(is_cut, SeqCst);
     }

@@ -1,4 +1,4 @@
-//! Servers and machines that cannot be used: one line each, exit code 1, or 2 if the address is none; nothing lost.
+//! Servers and machines that cannot be used: each gives one line and exit code 1, or 2 for a wrong address, and nothing is lost.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn refusal(folder: &Path, arguments: &str) -> String {
     lines[0].to_owned()
 }
 
-/// The error lines of a coordinator and of a worker.
+/// Returns the error lines of a coordinator and of a worker.
 fn refusals(folder: &Path, flags: &str) -> [String; 2] {
     let evolve = format!("--no-render --population 6 --generations 1 --duration 1 {flags}");
     [refusal(folder, &evolve), refusal(folder, &format!("worker {flags}"))]
@@ -57,7 +57,7 @@ fn without_the_right_credentials_there_is_no_connection() {
         return;
     }
     let place = folder();
-    // Pairs of keys that were made for this test.
+    // The pairs of keys were made for this test.
     let config = place.path().join("server.conf");
     let user = "UDIVNDU75JOXBUGTAN2ENBBEWGMQSW2FNKX4GMAS6P6QINQEEWPUGRNS";
     let text = format!("jetstream {{ }}\nauthorization {{ users = [ {{ nkey: {user} }} ] }}\n");
@@ -99,7 +99,7 @@ fn without_the_right_credentials_there_is_no_connection() {
 
 #[test]
 fn a_certificate_that_does_not_fit_is_refused() {
-    // Made for this test: an authority, another one, and a server's certificate that the first one signed.
+    // The files were made for this test: an authority, another authority, and a server's certificate that the first one signed.
     let keys = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/cluster/tls");
     let file = |name: &str| format!("{keys}/{name}");
     let (certificate, key) = (file("server.pem"), file("server.key"));

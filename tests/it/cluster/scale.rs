@@ -1,4 +1,4 @@
-//! Many workers, whose evaluation is a sleep.
+//! Many workers, which sleep instead of evaluating.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
@@ -18,7 +18,7 @@ use snakes_lab::run::{Evaluator, RunControl};
 use super::liars::worker_with;
 use super::server::Server;
 
-/// Sleeps, and returns the same evaluation for each genome.
+/// Sleeps instead of evaluating, and returns the same evaluation for each genome.
 #[derive(Debug)]
 struct Sleeper {
     scored: Scored,
@@ -31,7 +31,7 @@ impl Compute for Sleeper {
     }
 }
 
-/// Resident memory of this process, in MiB.
+/// Returns the resident memory of this process, in MiB.
 fn resident_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("a line");
@@ -82,7 +82,7 @@ fn two_hundred_workers_are_kept_busy_and_memory_stays_flat() {
         assert_eq!(reported.into_inner(), GENOMES as usize);
         memory_mib.push(resident_mib());
         if call == 0 {
-            // The first call waits for the workers, and checks each of them.
+            // The first call waits for the workers and checks each of them, so its time is subtracted.
             first_s = began.elapsed().as_secs_f64();
         }
     }

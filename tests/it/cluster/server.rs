@@ -1,4 +1,4 @@
-//! A server, workers and coordinators as processes of their own.
+//! A server, workers and coordinators as separate processes.
 
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -24,7 +24,7 @@ impl Process {
         assert!(status.expect("kill starts").success(), "kill {signal} {id}");
     }
 
-    /// Its whole output, after its end.
+    /// Waits for the end of the process, and returns its standard error.
     pub fn said(&mut self) -> String {
         let mut said = String::new();
         let stderr = self.0.stderr.as_mut().expect("piped");
@@ -40,7 +40,7 @@ impl Drop for Process {
     }
 }
 
-/// A `nats-server` with its own folder.
+/// A `nats-server` with a folder of its own.
 pub struct Server {
     process: Option<Process>,
     pub port: u16,
@@ -48,19 +48,19 @@ pub struct Server {
     arguments: Vec<String>,
 }
 
-/// Writes a line to standard error, also of a test that passes.
+/// Writes a line to standard error, even if the test passes.
 pub fn say(line: &str) {
-    // A test is no worse without the line.
+    // The test does not depend on the line.
     let _ = std::io::stderr().write_all(format!("{line}\n").as_bytes());
 }
 
-/// A port that was free a moment ago.
+/// Returns a port that was free a moment ago.
 pub fn free_port() -> u16 {
     let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     listener.local_addr().expect("an address").port()
 }
 
-/// Whether there is a server program. Says so if there is none, or fails where it is required.
+/// Returns whether `nats-server` is installed. If not, prints a line, or fails if the server is required.
 pub fn is_there() -> bool {
     let found = Command::new("nats-server").arg("--version").output().is_ok();
     let is_required = std::env::var_os("SNAKES_CLUSTER_TESTS").is_some_and(|it| it == "required");
@@ -72,12 +72,12 @@ pub fn is_there() -> bool {
 }
 
 impl Server {
-    /// Starts a server with JetStream, if the program is installed.
+    /// Starts a server with JetStream, if `nats-server` is installed.
     pub fn start() -> Option<Self> {
         Self::start_with(&["-js"])
     }
 
-    /// Starts a server that stores 8 MB at most, if the program is installed.
+    /// Starts a server that stores at most 8 MB, if `nats-server` is installed.
     pub fn start_small() -> Option<Self> {
         let mut server = Self::start_with(&["-js"])?;
         let config = server.folder.path().join("server.conf");
@@ -88,7 +88,7 @@ impl Server {
         Some(server)
     }
 
-    /// Starts a server with these arguments, if the program is installed.
+    /// Starts a server with these arguments, if `nats-server` is installed.
     pub fn start_with(arguments: &[&str]) -> Option<Self> {
         if !is_there() {
             return None;
@@ -99,7 +99,7 @@ impl Server {
         Some(server)
     }
 
-    /// Starts the server, or starts it again with the files it had.
+    /// Starts the server, with the files of its earlier start if there was one.
     pub fn restart(&mut self) {
         let mut command = Command::new("nats-server");
         command.args(&self.arguments).args([
@@ -123,13 +123,13 @@ impl Server {
         self.process = None;
     }
 
-    /// Kills the server and removes what it stored, as when its folder lies in a file system that a restart empties.
+    /// Kills the server and removes its store, as after a restart of a machine with a temporary file system.
     pub fn lose_store(&mut self) {
         self.kill();
         std::fs::remove_dir_all(self.folder.path().join("jetstream")).expect("removed");
     }
 
-    /// Ends the server as its user would.
+    /// Ends the server in an orderly way.
     pub fn stop(&mut self) {
         if let Some(mut process) = self.process.take() {
             process.signal("-TERM");
@@ -137,7 +137,7 @@ impl Server {
         }
     }
 
-    /// Stops the server for a while, or lets it go on: it keeps its connections and does not answer.
+    /// Suspends the server, or lets it continue. A suspended server keeps its connections but does not answer.
     pub fn freeze(&self, is_frozen: bool) {
         let process = self.process.as_ref().expect("it runs");
         process.signal(if is_frozen { "-STOP" } else { "-CONT" });
@@ -156,7 +156,7 @@ pub fn worker(url: &str) -> Process {
     Process(quiet.spawn().expect("the worker starts"))
 }
 
-/// Starts a worker with one thread whose words can be read after its end.
+/// Starts a worker with one thread whose messages can be read after its end.
 pub fn worker_that_tells(url: &str) -> Process {
     let folder = std::env::temp_dir();
     let mut command = snakes(&folder, &format!("worker --nats {url} --threads 1"));
@@ -183,19 +183,19 @@ impl Pipe {
         Self { bytes, reader }
     }
 
-    /// Number of lines so far.
+    /// Returns the number of lines read so far.
     fn lines(&self) -> usize {
         self.bytes.lock().expect("no panic").iter().filter(|byte| **byte == b'\n').count()
     }
 
-    /// All bytes, after the end of the process.
+    /// Returns all bytes, after the end of the process.
     fn whole(self) -> Vec<u8> {
         self.reader.join().expect("no panic");
         std::mem::take(&mut *self.bytes.lock().expect("no panic"))
     }
 }
 
-/// A coordinator in a folder of its own.
+/// A running coordinator.
 pub struct Run {
     pub folder: PathBuf,
     arguments: String,
@@ -205,7 +205,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Starts a command on a server.
+    /// Starts a command as a coordinator on a server.
     pub fn start(folder: &Path, arguments: &str, url: &str) -> Self {
         let arguments = format!("{arguments} --json --nats {url}");
         let (process, stdout, stderr) = spawned(folder, &arguments);
@@ -222,7 +222,7 @@ impl Run {
         }
     }
 
-    /// Whether it has not ended.
+    /// Returns whether the coordinator has not ended.
     pub fn is_running(&mut self) -> bool {
         self.process.0.try_wait().expect("a state").is_none()
     }
@@ -234,7 +234,7 @@ impl Run {
         (self.process, self.stdout, self.stderr) = spawned(&self.folder, &self.arguments);
     }
 
-    /// Stops it with the interrupt key, and returns what it said.
+    /// Stops the coordinator with the interrupt key, and returns its standard error.
     pub fn stopped(self) -> String {
         self.process.signal("-INT");
         let output = self.output();
@@ -243,14 +243,14 @@ impl Run {
         said
     }
 
-    /// Waits for the end.
+    /// Waits for the end of the coordinator, and returns its output.
     pub fn output(mut self) -> Output {
         let (stdout, stderr) = (self.stdout.whole(), self.stderr.whole());
         let status = self.process.0.wait().expect("it ends");
         Output { status, stdout, stderr }
     }
 
-    /// Waits for the end, which must be a success, and returns the JSON lines.
+    /// Waits for the end of the coordinator, which must be a success, and returns its JSON lines.
     pub fn lines(self) -> Vec<Value> {
         let arguments = self.arguments.clone();
         let output = self.output();
@@ -260,13 +260,13 @@ impl Run {
         text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
     }
 
-    /// Waits for the end, and returns the hash of the run.
+    /// Waits for the end of the coordinator, and returns the hash of the run.
     pub fn hash(self) -> String {
         run_hash(&self.lines())
     }
 }
 
-/// The process, its standard output and its standard error.
+/// Starts a coordinator. Returns the process, its standard output and its standard error.
 fn spawned(folder: &Path, arguments: &str) -> (Process, Pipe, Pipe) {
     let mut command = snakes(folder, arguments);
     let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped()).stdin(Stdio::null());
@@ -276,13 +276,13 @@ fn spawned(folder: &Path, arguments: &str) -> (Process, Pipe, Pipe) {
     (Process(child), stdout, stderr)
 }
 
-/// The hash of a run on the last of its lines.
+/// Returns the hash of a run from the last of its lines.
 pub fn run_hash(lines: &[Value]) -> String {
     let last = lines.last().expect("a line");
     last["run_hash"].as_str().expect("a hash").to_owned()
 }
 
-/// A connection of the test itself.
+/// Runs `task` with a connection of the test itself to the server.
 fn with_server<T>(server: &Server, task: impl AsyncFnOnce(async_nats::Client) -> T) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime
@@ -290,7 +290,7 @@ fn with_server<T>(server: &Server, task: impl AsyncFnOnce(async_nats::Client) ->
         .block_on(async { task(async_nats::connect(server.url()).await.expect("connected")).await })
 }
 
-/// Stores as much on a server as it takes.
+/// Fills the store of a server up to its limit.
 pub fn fill(server: &Server) {
     with_server(server, async |client| {
         let jetstream = async_nats::jetstream::new(client);
@@ -320,7 +320,7 @@ pub fn empty(server: &Server) {
     });
 }
 
-/// Sends this number of messages of every wrong kind to the subjects of a run that is there and of its workers.
+/// Sends this number of messages of every wrong kind to the subjects of the present run and of its workers.
 pub fn attack(server: &Server, messages: usize) {
     with_server(server, async |client| {
         let first = async |subject: &'static str| -> Value {
@@ -364,7 +364,7 @@ pub fn attack(server: &Server, messages: usize) {
     });
 }
 
-/// Tells for some seconds of a run that computes with another engine.
+/// Sends notices of a run with another engine for some seconds.
 pub fn tell_of_another_engine(server: &Server) {
     let notice = "{\"format\":1,\"run\":\"old\",\"host\":\"computer\",\"engine\":2,\"processors\":\"x86-64\",\
                   \"proof\":\"00000000000000aa\",\"pending\":1,\"results\":0,\"set_aside\":[]}";

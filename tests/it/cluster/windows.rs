@@ -1,4 +1,4 @@
-//! A server as a window watches it: the machines that it lists, and the coordinator that it starts.
+//! A server as a window watches it: the machines that are listed, and the coordinator that is started.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ use snakes_lab::run::{Evaluator, Experiment, LocalPool, RunControl};
 
 use super::server::{Server, worker};
 
-/// The hash of a short run.
+/// Returns the hash of a short run with this evaluator.
 fn hash_with(evaluator: &dyn Evaluator) -> u64 {
     let mut settings = Settings::default();
     settings.evolution.population = 40;

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use super::server::{Process, Run, Server, worker, worker_that_tells};
 use crate::program::{folder, run};
 
-/// A run that is longer than these tests.
+/// A run that takes longer than these tests.
 const LONG: &str = "--no-render --preset climb --seed 7 --population 200 --generations 500";
 
-/// Stops a worker with the interrupt key, and returns what it said. It must end within two seconds.
+/// Stops a worker with the interrupt key, and returns its messages. The worker must end within two seconds.
 fn stopped(mut worker: Process, when: &str) -> String {
     let began = Instant::now();
     worker.signal("-INT");
@@ -24,7 +24,7 @@ fn stopped(mut worker: Process, when: &str) -> String {
     said
 }
 
-/// The lines about the server.
+/// Returns the lines about the server.
 fn of_server<'a>(said: &'a str, server: &Server) -> Vec<&'a str> {
     let start = format!("{}: ", server.url());
     said.lines().filter_map(|line| line.strip_prefix(start.as_str())).collect()
@@ -98,7 +98,7 @@ fn a_server_that_is_away_is_told_in_two_lines() {
         } else {
             server.stop()
         }
-        // Longer than a worker may be silent.
+        // The pause is longer than a worker may be silent.
         sleep(Duration::from_secs(7));
         server.restart();
         sleep(Duration::from_secs(5));

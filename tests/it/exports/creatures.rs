@@ -7,7 +7,7 @@ use snakes_core::world::JointPlan;
 
 use super::models::{champion_of, compared_in_mujoco, description, export};
 
-/// With joints about a single axis, in which both engines have the same coordinates.
+/// The creatures have joints about a single axis, for which both engines have the same coordinates.
 #[test]
 fn a_hundred_random_creatures_move_in_mujoco_as_here() {
     let test = "a_hundred_random_creatures_move_in_mujoco_as_here";
@@ -20,7 +20,7 @@ fn a_hundred_random_creatures_move_in_mujoco_as_here() {
         let mut genome = settings.genome.random_genome(trial.genome_shape(), rng);
         for node in &mut genome.body.nodes {
             node.joint = NodeJoint::Revolute;
-            // Half of the range is left to either side for the motion.
+            // Half of the joint's range is left on either side for the motion.
             node.bend_start *= 0.5;
         }
         let champion = champion_of(genome, trial);

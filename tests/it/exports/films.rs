@@ -1,8 +1,7 @@
-//! Films: their frames show the moments that they should, their files open elsewhere, and a film that is not finished
-//! leaves nothing behind.
+//! Films: their frames show the right moments, other programs can open their files, and an unfinished film leaves nothing behind.
 //!
-//! Needs Debian's `mesa-vulkan-drivers` and `ffmpeg`. Where they are missing the tests are skipped and say so; with
-//! `SNAKES_PEER_TESTS=required` in the environment a skip is a failure.
+//! The tests need Debian's `mesa-vulkan-drivers` and `ffmpeg`. Without them they are skipped with a line, or fail if
+//! `SNAKES_PEER_TESTS=required` is set.
 
 use std::fs;
 use std::io::BufReader;
@@ -17,10 +16,10 @@ use crate::program::{folder, run, snakes, stdout_of};
 
 /// A champion that climbs the stairs in 15 s.
 const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
-/// Another one.
+/// Another champion that climbs the stairs.
 const FAST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/fast.ron");
 
-/// Whether something is missing that films need. The test is skipped then.
+/// Returns whether something is missing that films need. The test is then skipped.
 pub fn lacks(test: &str, needs_ffmpeg: bool) -> bool {
     let drivers = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let has_files = |folder: &&str| fs::read_dir(folder).is_ok_and(|mut of| of.next().is_some());
@@ -34,7 +33,7 @@ pub fn lacks(test: &str, needs_ffmpeg: bool) -> bool {
     };
     let required = std::env::var("SNAKES_PEER_TESTS").is_ok_and(|value| value == "required");
     assert!(!required, "{test}: {missing}");
-    // Past the test harness, which would keep it to itself.
+    // The line bypasses the test harness, which would hide it if the test passes.
     let _ = writeln!(std::io::stderr(), "skipped: {test}: {missing}");
     true
 }
@@ -44,7 +43,7 @@ fn is_installed(tool: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
 }
 
-/// The names in a folder, sorted, but for the program's data.
+/// Returns the names in a folder, sorted, without the program's data.
 fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let names = entries.map(|of| of.expect("one").file_name().to_string_lossy().into_owned());
@@ -53,7 +52,7 @@ fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The only line of an error, with its exit code.
+/// Returns the exit code and the only line of an error.
 fn refusal(output: &Output) -> (Option<i32>, String) {
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(text.lines().count(), 1, "{text}");
@@ -96,7 +95,7 @@ fn frames_show_the_moment_that_a_single_picture_of_it_shows() {
     }
     let folder = folder();
     let size = "--size 320x180 --camera side --theme dark --show contacts,line";
-    // A film of one frame stands where a picture stands.
+    // A film of one frame equals the picture of its moment.
     let order =
         format!("export {CLIMBER} -o a.png {size} --start 6 --end 6.01 --fps 10 --no-captions");
     assert_eq!(stdout_of(folder.path(), &order), "saved to a-frames\n");
@@ -104,14 +103,14 @@ fn frames_show_the_moment_that_a_single_picture_of_it_shows() {
     stdout_of(folder.path(), &format!("export {CLIMBER} -o single.png {size} --at 6"));
     let single = pixels(&folder.path().join("single.png"));
     assert_eq!(pixels(&folder.path().join("a-frames/a-0001.png")), single);
-    // A folder with files is never replaced.
+    // An existing folder with files is never replaced.
     let again = run(folder.path(), &format!("export {CLIMBER} -o a.png --start 6 --end 6.01"));
     let (code, line) = refusal(&again);
     assert_eq!(code, Some(1), "{line}");
     assert!(line.contains("a-frames: cannot be written: it exists already"), "{line}");
 }
 
-/// The pixels of a PNG file.
+/// Returns the pixels of a PNG file.
 fn pixels(path: &Path) -> Vec<u8> {
     let file = fs::File::open(path).expect("a picture");
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a PNG");
@@ -175,7 +174,7 @@ fn a_story_films_the_first_the_middle_and_the_last_generation_with_titles() {
     let run_folder = names_in(&folder.path().join("run")).remove(0);
     let order = format!("export run/{run_folder} --story -o a.png --size 160x90 --fps 2");
     stdout_of(folder.path(), &order);
-    // Three parts of 0.5 s, each with 1.2 s of standing still at its beginning and its end.
+    // The film has three parts of 0.5 s, each with a still of 1.2 s at its beginning and at its end.
     let frames = names_in(&folder.path().join("a-frames"));
     assert_eq!(frames.len(), 3 * (1 + 2 + 2), "{frames:?}");
     let order = format!("export run/{run_folder} {run_folder} --story -o b.png");
@@ -230,7 +229,7 @@ fn a_film_that_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
     let (code, line) = refusal(&without_programs.expect("it starts"));
     assert_eq!(code, Some(1));
     assert!(line.starts_with("error: a .mp4 film is written by ffmpeg, which is not"), "{line}");
-    // No file may grow beyond some kilobytes: what a full disk is to a program.
+    // The size of files is limited to some kilobytes, which has the effect of a full disk.
     for (name, blocks) in [("a.gif", 4), ("a.mp4", 1)] {
         let order = format!("export {CLIMBER} -o {name} --size 320x180 --start 1 --end 1.3");
         let program = env!("CARGO_BIN_EXE_snakes");
@@ -280,7 +279,7 @@ fn the_interrupt_key_and_the_end_of_the_input_cancel_a_film_and_end_ffmpeg() {
             let sent = Command::new("kill").args(["-INT", &id]).status();
             assert!(sent.is_ok_and(|sent| sent.success()));
         }
-        // A pipe that is no longer read must not keep the process from ending.
+        // A pipe without a reader must not keep the process from ending.
         drop(lines);
         let (code, line) = refusal(&ended(process));
         assert_eq!((code, line.as_str()), (Some(1), "error: cancelled; nothing was written"));
@@ -291,7 +290,7 @@ fn the_interrupt_key_and_the_end_of_the_input_cancel_a_film_and_end_ffmpeg() {
     }
 }
 
-/// Waits for the end of a process, but not for long.
+/// Waits at most a minute for the end of a process, and returns its output.
 fn ended(mut process: Child) -> Output {
     let begin = Instant::now();
     while process.try_wait().expect("a process").is_none() {

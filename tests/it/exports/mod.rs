@@ -1,8 +1,8 @@
-//! Exported files, read by the programs for which they are made.
+//! Exported files, read by the programs for which they are intended.
 //!
-//! Tests that need such a program are skipped with a line if it is not there. With `SNAKES_PEER_TESTS=required` they fail
-//! instead. `SNAKES_PEER_PYTHON` names the Python, which needs the packages in `tests/peers/requirements.txt`; Node needs
-//! those of `npm install --prefix tests/peers`.
+//! Tests that need such a program are skipped with a line if it is missing, or fail if `SNAKES_PEER_TESTS=required` is set.
+//! `SNAKES_PEER_PYTHON` names the Python, which needs the packages in `tests/peers/requirements.txt`. Node needs the packages of
+//! `npm install --prefix tests/peers`.
 
 mod creatures;
 #[cfg(all(feature = "studio", target_os = "linux"))]
@@ -17,16 +17,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The Python of the peers.
+/// Environment variable that names the Python of the tests.
 const PYTHON_VARIABLE: &str = "SNAKES_PEER_PYTHON";
 
-/// A script of `tests/peers`.
+/// Returns the path of a script in `tests/peers`.
 fn peer_script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(name)
 }
 
-/// A command that runs a program, if it is there: `probe` are arguments with which it succeeds. If not, a line says which
-/// test is skipped.
+/// Returns a command that runs a program, if the program succeeds with the arguments `probe`. Otherwise prints a line that the test
+/// is skipped.
 fn peer(program: &str, probe: &[&str], test: &str) -> Option<Command> {
     let found = Command::new(program).args(probe).output();
     if found.as_ref().is_ok_and(|output| output.status.success()) {
@@ -43,18 +43,18 @@ fn peer(program: &str, probe: &[&str], test: &str) -> Option<Command> {
         std::env::var("SNAKES_PEER_TESTS").as_deref() != Ok("required"),
         "{test} needs {program} {probe:?}: {reason}"
     );
-    // Past the test harness, which would keep it to itself.
+    // The line bypasses the test harness, which would hide it if the test passes.
     let _ = writeln!(std::io::stderr(), "skipped: {test} needs {program} {probe:?}: {reason}");
     None
 }
 
-/// A command that runs Python, if it has these modules.
+/// Returns a command that runs Python, if it has these modules.
 fn peer_python(modules: &str, test: &str) -> Option<Command> {
     let python = std::env::var(PYTHON_VARIABLE).unwrap_or_else(|_| "python3".to_owned());
     peer(&python, &["-c", &format!("import {modules}")], test)
 }
 
-/// Runs a command, which must succeed, and returns what it printed.
+/// Runs a command, which must succeed, and returns its standard output.
 fn succeed(command: &mut Command) -> String {
     let output = command.output().expect("it starts");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

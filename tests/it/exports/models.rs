@@ -1,4 +1,4 @@
-//! Bodies as models for MuJoCo and URDF, and champions that climb there.
+//! Bodies as models for MuJoCo and URDF, and champions that climb in MuJoCo.
 
 use std::f32::consts::TAU;
 use std::fs;
@@ -22,21 +22,22 @@ use crate::program::{folder, snakes};
 
 /// Number of random bodies.
 const BODIES: u32 = 100;
-/// Steps here for each step of control, where free limbs are compared.
+/// Number of steps of this engine for each step of control, where limbs are compared in free motion.
 const FINER: u32 = 4;
 /// Time after which a body rests on the ground, in s.
 const SETTLED_S: f32 = 4.0;
 
-/// A random number between two bounds, even on a logarithmic scale.
+/// Draws a number between two bounds, evenly on a logarithmic scale.
 pub(super) fn log_between(rng: &mut ChaCha8Rng, [least, most]: [f32; 2]) -> f32 {
     least * libm::powf(most / least, rng.random_range(0.0..=1.0))
 }
 
-/// Sizes of the limbs of a random snake, in m: at most 12 m long, and neighbours of at most eight times the mass.
+/// Draws the sizes of the limbs of a snake, in m. The snake is at most 12 m long, and neighbours differ in mass by a factor of at
+/// most eight.
 fn random_sizes(rng: &mut ChaCha8Rng) -> Vec<[f32; 3]> {
     let limbs = rng.random_range(2..=12);
     let height_m = log_between(rng, [0.4, 2.0]);
-    // Every other snake has limbs of other heights, which begin in the air.
+    // Half of the snakes have limbs of different heights, which begin in the air.
     let lowest = if rng.random_bool(0.5) { 0.6 } else { 1.0 };
     loop {
         let mut limb = || {
@@ -55,13 +56,13 @@ fn random_sizes(rng: &mut ChaCha8Rng) -> Vec<[f32; 3]> {
     }
 }
 
-/// A random body, on random stairs, as settings.
+/// Draws a body on stairs, as a trial.
 pub(super) fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
     let sizes = random_sizes(rng);
     let joints = sizes.len() - 1;
     let list = |values: Vec<f32>| format!("{values:?}");
     let of_limbs = |axis: usize| list(sizes.iter().map(|size| size[axis]).collect());
-    // Strength and damping grow with the cross-section and its height.
+    // Strength and damping of a joint grow with the cross-section and the height.
     let scales: Vec<f32> = sizes
         .windows(2)
         .map(|pair| {
@@ -99,7 +100,7 @@ pub(super) fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
         ("trial.duration_s", "0.1".to_owned()),
         ("steps_per_s", "60".to_owned()),
         ("substeps", "4".to_owned()),
-        // Chains of twelve limbs need more than four for the accuracy of MuJoCo's joints.
+        // For the accuracy of MuJoCo's joints, chains of twelve limbs need more than four iterations.
         ("iterations", "16".to_owned()),
     ];
     let fields = fields.iter().map(|(name, value)| (*name, value.as_str()));
@@ -114,7 +115,7 @@ fn raise(world: &mut Simulation, height_m: f32) {
     }
 }
 
-/// Takes this number of steps with the torques of each, and reads the world after it.
+/// Takes `count` steps, each with its torques, and reads the world after each.
 fn steps<T>(
     world: &mut Simulation,
     count: u32,
@@ -132,7 +133,7 @@ fn no_torques(plan: &WorldPlan) -> Vec<JointTorque> {
     vec![JointTorque::default(); plan.body.joints.len()]
 }
 
-/// Height of the centre of mass, in m.
+/// Returns the centre of mass, in m.
 fn centre_m(world: &Simulation) -> [f64; 3] {
     let limbs = || world.body().parts.iter().map(|limb| f64::from(limb.mass_kg()));
     let mut sum = [0.0; 3];
@@ -144,7 +145,7 @@ fn centre_m(world: &Simulation) -> [f64; 3] {
     sum.map(|sum| sum / limbs().sum::<f64>())
 }
 
-/// The bend of a limb that hangs on a clamped one, in each of 1.3 s.
+/// Returns the bend of a limb that hangs on a clamped one, in each step of 1.3 s.
 fn pendulum_rad(plan: &WorldPlan) -> Vec<f32> {
     let mut world = Simulation::new(plan);
     raise(&mut world, 20.0);
@@ -154,7 +155,7 @@ fn pendulum_rad(plan: &WorldPlan) -> Vec<f32> {
     steps(&mut world, 78, |_| no_torques(plan), bend)
 }
 
-/// Torques about the bend axes in each step of two seconds: a sine for each joint, weak enough for its limit.
+/// Returns the torques about the bend axes in each step of two seconds: a sine for each joint, weak enough for its limit.
 fn sines_nm(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Vec<Vec<f32>> {
     let sines: Vec<[f32; 3]> = plan
         .body
@@ -162,7 +163,7 @@ fn sines_nm(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Vec<Vec<f32>> {
         .iter()
         .map(|joint| {
             let (hz, phase) = (rng.random_range(0.5..1.5), rng.random_range(0.0..TAU));
-            // The damping alone would hold it within an eighth of its limit to each side.
+            // At this strength the damping alone keeps the bend within an eighth of its limit.
             let held_nm = joint.damping_nms_per_rad * joint.bend_limit_rad * TAU * hz / 8.0;
             let strongest_nm = 40.0 / 30.0 * joint.damping_nms_per_rad;
             [held_nm.min(strongest_nm).min(joint.max_bend_torque_nm), hz, phase]
@@ -176,7 +177,7 @@ fn sines_nm(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Vec<Vec<f32>> {
     (0..120).map(at).collect()
 }
 
-/// The expected model of a world, and the motion of its body in this engine.
+/// Returns the expected model of a world, and the motion of its body in this engine.
 pub(super) fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
     let start = Simulation::new(plan);
     let masses = start.physics().bodies.iter().map(|(_, limb)| {
@@ -207,7 +208,7 @@ pub(super) fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaC
 
     let mut weightless = plan.clone();
     weightless.physics.gravity_m_s2 = 0.0;
-    // Light limbs with strong damping: at 60 Hz this engine's own error is as large as the bound.
+    // For light limbs with strong damping, this engine's own error at 60 Hz would be as large as the bound.
     weightless.physics.steps_per_s = 60 * FINER;
     let mut free = Simulation::new(&weightless);
     raise(&mut free, 20.0);
@@ -243,7 +244,7 @@ pub(super) fn description(plan: &WorldPlan, pendulum: &WorldPlan, rng: &mut ChaC
     })
 }
 
-/// Exports a genome's body in a trial.
+/// Exports a champion to a file whose ending decides the format.
 pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
     let loaded = LoadedChampion {
         champion: champion.clone(),
@@ -258,20 +259,20 @@ pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
     order.carry_out(&ExportProgress::new(&|_| (), &RunControl::default())).expect("written");
 }
 
-/// A random snake that nothing has found.
+/// Makes a champion of a random snake.
 pub(super) fn champion(trial: Trial, rng: &mut ChaCha8Rng) -> Champion {
     let genome = Settings::default().genome.random_genome(trial.genome_shape(), rng);
     champion_of(genome, trial)
 }
 
-/// A genome with its evaluation.
+/// Makes a champion of a genome, by evaluating it.
 pub(super) fn champion_of(genome: Genome, trial: Trial) -> Champion {
     let evaluation = evaluate(&genome, &trial);
     let origin = Origin { preset: "test".to_owned(), seed: 1, generation: 1, individual: 0 };
     Champion { genome, trial, evaluation, chosen_by: None, origin }
 }
 
-/// The front two limbs of a trial's snake, without damping, for a pendulum.
+/// Returns a trial with the front two limbs of a snake, without damping, for a pendulum.
 fn pendulum_trial(trial: &Trial) -> Trial {
     let agent = &trial.agent;
     let first = |of: &dyn Fn(usize) -> f32| format!("[{}, {}]", of(0), of(1));
@@ -299,8 +300,8 @@ fn pendulum_trial(trial: &Trial) -> Trial {
     with_fields(&Settings::default(), fields).expect("allowed").trial
 }
 
-/// Writes a hundred random bodies with their descriptions, and lets MuJoCo compare them. `write` exports a body to the files
-/// that a path with each ending names, and returns its description. Returns what MuJoCo said; nothing if it is not there.
+/// Writes a hundred random bodies with their descriptions, and lets MuJoCo compare them. `write` exports a body to files, whose
+/// path it gets for each ending, and returns the description. Returns MuJoCo's output, or an empty text if MuJoCo is missing.
 pub(super) fn compared_in_mujoco(
     test: &str,
     seed: u64,
@@ -352,7 +353,7 @@ fn champions_with_and_without_senses_climb_in_mujoco() {
     assert_eq!(lines.len(), 3, "{said}");
     for line in &lines[..2] {
         assert_eq!((&line["suite"], &line["trials"]), (&json!("mujoco"), &json!(20)), "{line}");
-        // No threshold; but a snake whose torques or senses were wrong would stay before the stairs.
+        // There is no exact threshold, but a snake with wrong torques or senses would not get onto the stairs.
         assert!(line["there"]["climbed"].as_u64() > Some(0), "{line}");
     }
 }

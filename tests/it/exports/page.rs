@@ -1,4 +1,4 @@
-//! Exported pages in Chromium: they play, compute the same bits, run no text of a file, and ask nothing of a network.
+//! Exported pages in Chromium: they play, compute the same bits, execute no text from a file, and use no network.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +15,7 @@ use snakes_lab::run::verify::golden_plans;
 use super::{peer, peer_script, succeed};
 use crate::program::folder;
 
-/// A command that opens pages, if Node.js, its packages and Chromium are there.
+/// Returns a command that opens pages, if Node.js, its packages and Chromium are installed.
 fn browser(test: &str) -> Option<Command> {
     let script = peer_script("page.mjs");
     let script = script.to_str().expect("text");
@@ -158,8 +158,8 @@ fn the_core_of_a_page_computes_the_golden_trajectories() {
     println!("{} trajectories", hashes.len());
 }
 
-/// Where the snake is in a picture: width over height of the box around it, and in that box the middle of its red and of
-/// its blue pixels, from 0 to 1.
+/// Describes the snake in a picture: width divided by height of its bounding box, and within that box the middles of the red and of
+/// the blue pixels, from 0 to 1.
 #[cfg(all(feature = "studio", target_os = "linux"))]
 fn outline(path: &Path) -> [f64; 5] {
     let file = std::io::BufReader::new(std::fs::File::open(path).expect("a picture"));
@@ -171,7 +171,7 @@ fn outline(path: &Path) -> [f64; 5] {
     for (index, pixel) in bytes[..info.buffer_size()].chunks_exact(samples).enumerate() {
         let [r, g, b] = [pixel[0], pixel[1], pixel[2]].map(f64::from);
         let at = [(index % info.width as usize) as f64, (index / info.width as usize) as f64];
-        // Not the cyan of climbed steps, nor the blue of the sky.
+        // The cyan of climbed steps and the blue of the sky do not count.
         if r > 80.0 && g < 0.45 * r && b < 0.45 * r {
             reds.push(at);
         } else if b > 70.0 && r < 0.55 * b && g < 0.6 * b {

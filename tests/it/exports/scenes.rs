@@ -1,4 +1,4 @@
-//! Animated scenes, as the validator of Khronos sees them.
+//! Animated scenes, checked by the validator of Khronos.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::program::{folder, snakes};
 #[test]
 fn the_khronos_validator_finds_no_error_and_no_warning() {
     let test = "the_khronos_validator_finds_no_error_and_no_warning";
-    // It only loads the validator.
+    // The probe only loads the validator.
     let script = peer_script("gltf.cjs");
     let script = script.to_string_lossy();
     let Some(mut node) = peer("node", &[&script, "--probe"], test) else { return };

@@ -9,7 +9,7 @@ use snakes_core::world::{SOFTEST_M4_S2, STIFFEST_M4_S2, WorldPlan, modulus_at_pa
 
 use super::models::{champion, compared_in_mujoco, description, export, log_between, random_trial};
 
-/// The trial with soft limbs: each of a random modulus, from as soft as allowed to rigid.
+/// Returns the trial with soft limbs, each with a random modulus from the softest allowed to rigid.
 fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
     let agent = &trial.agent;
     let modulus = |limb: usize| {
@@ -26,7 +26,7 @@ fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
     with_fields(&settings, fields).expect("allowed").trial
 }
 
-/// The expected model of a body with soft limbs, and its motion in this engine without gravity.
+/// Returns the expected model of a body with soft limbs, and its motion in this engine without gravity.
 fn soft_description(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
     let body = &plan.body;
     let names: Vec<String> = (0..body.parts.len())

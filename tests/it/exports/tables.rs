@@ -1,4 +1,4 @@
-//! Tables of motion, as pandas and DuckDB read them.
+//! Tables of motion, read by pandas and DuckDB.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn pandas_and_duckdb_read_the_same_values_from_csv_and_parquet() {
     let Some(mut python) = peer_python("pandas, pyarrow, duckdb, numpy", test) else { return };
     let folder = folder();
     let saves = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves");
-    // A name as bad as a table can have.
+    // The second name has characters that tables must quote.
     let (first, second) = ("climber", "first, \"climber\"\u{e9}");
     fs::copy(saves.join("climber.ron"), folder.path().join("climber.ron")).expect("copied");
     let strange = folder.path().join("strange");

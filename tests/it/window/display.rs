@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use super::picture::Picture;
 use crate::program::{folder, snakes};
 
-/// The program in a window on its own display.
+/// The program in a window on a virtual display of its own.
 pub struct Studio {
     program: Mutex<Child>,
     xvfb: Child,
@@ -20,20 +20,20 @@ pub struct Studio {
     window: String,
     size: (i32, i32),
     folder: Arc<tempfile::TempDir>,
-    /// Opens one window at a time, because software rendering uses all cores.
+    /// Lock that allows one window at a time, because software rendering uses all cores.
     _turn: MutexGuard<'static, ()>,
 }
 
 static TURN: Mutex<()> = Mutex::new(());
 static SKIPPED: AtomicU32 = AtomicU32::new(0);
-/// Timeout. Software rendering on a busy machine draws a few frames per second.
+/// Timeout of a wait. Software rendering on a busy machine draws a few frames per second.
 const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 /// Pause between two pictures that must be equal.
 const STILL_FOR: Duration = Duration::from_millis(700);
-/// The champion on the stage of most tests.
+/// Path of the champion on the stage of most tests.
 const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
-/// Default window size: wide enough for all cards over the stage, small enough to draw quickly.
+/// Default width and height of the window: wide enough for all cards over the stage, small enough to be drawn quickly.
 const SIZE: (i32, i32) = (1000, 860);
 
 /// Skips a test, or fails where skipping is forbidden.
@@ -46,7 +46,7 @@ fn skip(test: &str, reason: &str) {
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).expect("standard error");
 }
 
-/// Whether there is no Vulkan driver. The test is skipped then.
+/// Returns whether there is no Vulkan driver. The test is then skipped.
 pub fn lacks_a_driver(test: &str) -> bool {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
     let is_there =
@@ -63,7 +63,7 @@ fn is_installed(tool: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(tool).is_file())
 }
 
-/// A folder with programs for the search path: a file manager that shows nothing.
+/// Returns a folder for the search path, with a file manager that shows nothing.
 fn file_manager(folder: &Path) -> PathBuf {
     let programs = folder.join("bin");
     let opener = programs.join("xdg-open");
@@ -75,26 +75,26 @@ fn file_manager(folder: &Path) -> PathBuf {
     programs
 }
 
-/// Text of a preferences file with these fields.
+/// Returns the text of a preferences file with these fields.
 pub fn preferences(fields: &str) -> String {
     format!("(kind: \"snakes-and-stairs preferences\", format: 1, preferences: ({fields}))")
 }
 
 impl Studio {
-    /// Opens the program with the keyboard focus and without the tour; `None` where that is impossible.
+    /// Opens the program with the keyboard focus and without the tour; `None` if that is impossible.
     pub fn open(test: &str, arguments: &str) -> Option<Self> {
         Self::open_sized(test, arguments, SIZE)
     }
 
-    /// Opens the program in a window of this size, with a champion on the stage, which stays there. The tour is skipped
-    /// unless the arguments name a preferences file.
+    /// Opens the program in a window of this size, with a champion that stays on the stage. The tour is skipped unless the
+    /// arguments name a preferences file.
     pub fn open_sized(test: &str, arguments: &str, size: (i32, i32)) -> Option<Self> {
         let names_show = ["replay ", "--resume "].iter().any(|word| arguments.contains(word));
         let show = if names_show { String::new() } else { format!("replay {CLIMBER} ") };
         Self::open_plain(test, &format!("{show}{arguments}"), size)
     }
 
-    /// Opens the program as a user does who names nothing to watch: it follows evolution.
+    /// Opens the program without anything to watch, so that it follows evolution.
     pub fn open_following(test: &str, arguments: &str) -> Option<Self> {
         Self::open_plain(test, arguments, SIZE)
     }
@@ -103,8 +103,8 @@ impl Studio {
         Self::open_in(&Arc::new(folder()), test, arguments, size, size)
     }
 
-    /// Opens the program as a user does who names nothing to watch, with this folder as its working directory and home,
-    /// and in a window of this size on a screen that may be larger.
+    /// Opens the program without anything to watch. `folder` is its working directory and home. The screen may be larger than the
+    /// window.
     pub fn open_in(
         folder: &Arc<tempfile::TempDir>,
         test: &str,
@@ -142,7 +142,7 @@ impl Studio {
             fs::write(path, preferences("tour_is_over: true")).expect("written");
             arguments += &format!(" --preferences {PREFERENCES}");
         }
-        // An earlier window in this folder has left its last list.
+        // An earlier window with this folder has left its last list.
         let _ = fs::remove_file(folder.path().join(PLACES));
         let program = snakes(folder.path(), &arguments)
             .env("DISPLAY", &display)
@@ -150,7 +150,7 @@ impl Studio {
             // Dialogs and file managers must not appear on the desktop of the user who runs the tests.
             .env_remove("DBUS_SESSION_BUS_ADDRESS")
             .env("PATH", file_manager(folder.path()))
-            // Plain text, also where the log would be coloured.
+            // The log must be plain text, even where it would be coloured.
             .env("NO_COLOR", "1")
             .stderr(fs::File::create(folder.path().join(LOG)).expect("created"))
             .spawn()
@@ -168,17 +168,17 @@ impl Studio {
         Some(studio)
     }
 
-    /// Process id of the program.
+    /// Returns the process id of the program.
     pub fn process(&self) -> u32 {
         self.program.lock().expect("no panic").id()
     }
 
-    /// Width and height of the window.
+    /// Returns width and height of the window.
     pub fn size(&self) -> (i32, i32) {
         self.size
     }
 
-    /// Waits for the window. The error is the program's message if it ended instead.
+    /// Waits for the window. The error is the log of the program if it ended instead.
     fn find_window(&mut self) -> Result<(), String> {
         let started = Instant::now();
         loop {
@@ -196,12 +196,12 @@ impl Studio {
         }
     }
 
-    /// Title of the window.
+    /// Returns the title of the window.
     pub fn title(&self) -> String {
         self.xdotool_quietly(&["getwindowname", &self.window]).trim().to_owned()
     }
 
-    /// Number of finished generations in the title.
+    /// Returns the number of finished generations from the title.
     pub fn generations(&self) -> u32 {
         let title = self.title();
         let number = title.split(" of ").next().and_then(|head| head.rsplit(' ').next());
@@ -239,24 +239,24 @@ impl Studio {
         self.wait(|| !shows_another(), || format!("the saved champion in {:?}", self.title()));
     }
 
-    /// Time at which the stage is paused, in simulated seconds, from the title.
+    /// Returns the time at which the stage is paused, in simulated seconds, from the title.
     pub fn held_at_s(&self) -> f64 {
         let title = self.title();
         let text = title.rsplit_once("stopped at ").and_then(|(_, rest)| rest.strip_suffix(" s"));
         text.and_then(|text| text.parse().ok()).unwrap_or_else(|| panic!("title: {title}"))
     }
 
-    /// Default folder of saves.
+    /// Returns the working directory and home of the program.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// The file of `--places`.
+    /// Returns the path of the file of `--places`.
     pub fn places_file(&self) -> PathBuf {
         self.folder.path().join(PLACES)
     }
 
-    /// The current picture.
+    /// Returns the current picture of the display.
     pub fn picture(&self) -> Picture {
         let screen = self.folder.path().join("Xvfb_screen0");
         Picture::of_xwd(&fs::read(screen).expect("Xvfb's screen"), self.scene())
@@ -283,7 +283,7 @@ impl Studio {
         let mut before = self.picture();
         let mut equal = 0;
         let started = Instant::now();
-        // A slow camera can look still for one frame, but not for three.
+        // A slow camera can look still for one frame, but not for three pictures in a row.
         while equal < 3 {
             std::thread::sleep(STILL_FOR);
             self.wait_for_frames(2);
@@ -295,17 +295,17 @@ impl Studio {
         before
     }
 
-    /// Moves the pointer to a place without tooltip.
+    /// Moves the pointer to a point without a tooltip.
     pub fn step_aside(&self) {
         self.move_to((1, self.size.1 - 2));
     }
 
-    /// How the program ended, if it has.
+    /// Returns how the program ended, or `None` while it runs.
     pub fn ended(&self) -> Option<ExitStatus> {
         self.program.lock().expect("no panic").try_wait().expect("a status")
     }
 
-    /// The text that the program has written to standard error, where its log goes.
+    /// Returns what the program has written to standard error, including its log.
     pub fn log(&self) -> String {
         String::from_utf8_lossy(&fs::read(self.folder.path().join(LOG)).expect("a log"))
             .into_owned()
@@ -332,7 +332,7 @@ impl Studio {
         }
     }
 
-    /// Runs xdotool.
+    /// Runs xdotool with these arguments, and waits for its end.
     pub fn xdotool(&self, arguments: &[&str]) {
         let status = self.xdotool_command(arguments).status().expect("xdotool starts");
         assert!(status.success(), "xdotool {arguments:?}: {status}");
@@ -344,7 +344,7 @@ impl Studio {
         command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("xdotool starts")
     }
 
-    /// Number by which xdotool knows the window.
+    /// Returns the number of the window in xdotool.
     pub fn window(&self) -> &str {
         &self.window
     }
@@ -361,11 +361,11 @@ impl Studio {
     }
 }
 
-/// The file of `--places`.
+/// Name of the file of `--places`.
 const PLACES: &str = "places.txt";
-/// The file of the program's standard error.
+/// Name of the file with the program's standard error.
 const LOG: &str = "stderr.txt";
-/// The preferences file.
+/// Name of the preferences file.
 const PREFERENCES: &str = "studio.ron";
 
 impl Drop for Studio {

@@ -14,7 +14,7 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     studio.open_panel("Lessons");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
-    // The race waits at its start for a guess, and the conclusion until the result was seen.
+    // The race waits at its start for a guess, and the conclusion waits until the result was seen.
     studio.wait_for_title(", stopped");
     assert!(studio.find(|place| place.label.contains(ANSWER)).is_none());
     studio.scroll_and_click("Button", "Guess: original");
@@ -22,7 +22,7 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     studio.scroll_and_click("Button", "Show the result now");
     studio.place_with("You guessed \"original\"");
     studio.place_with(ANSWER);
-    // Another panel in between loses nothing.
+    // Opening another panel in between loses nothing.
     studio.open_panel("World");
     studio.open_panel("Lessons");
     studio.place_with("You guessed \"original\"");
@@ -85,7 +85,7 @@ fn shortcuts_are_listed_and_commands_are_found_by_name() {
     studio.place("Find a command");
     studio.type_text("dark");
     studio.key("Return");
-    // The modal view is closed, and the button offers the other theme.
+    // The modal view has closed, and the button offers the other theme.
     studio.wait_for_no("Find a command");
     studio.place_of("Button", "Light");
     studio.key("ctrl+k");

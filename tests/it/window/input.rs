@@ -4,12 +4,12 @@ use std::time::Duration;
 
 use super::display::Studio;
 
-/// Frames until an input has its effect: the one that is being drawn, one that reads the input, and one that applies the
-/// commands.
+/// Number of frames until an input takes effect: the frame that is being drawn, a frame that reads the input, and a frame that
+/// applies the commands.
 const FRAMES: u64 = 3;
 
 impl Studio {
-    /// Acts, and waits until the effect is drawn. Software rendering can take a second for a frame.
+    /// Calls `act`, and waits until its effect is drawn. Software rendering can take a second for a frame.
     fn for_frames(&self, act: impl FnOnce()) {
         let before = self.frame();
         act();
@@ -21,7 +21,7 @@ impl Studio {
         self.for_frames(|| self.xdotool(&["key", key]));
     }
 
-    /// Acts while a key is held down.
+    /// Calls `act` while a key is held down.
     pub fn holding(&self, key: &str, act: impl FnOnce()) {
         self.for_frames(|| self.xdotool(&["keydown", key]));
         act();
@@ -35,13 +35,13 @@ impl Studio {
 
     /// Replaces the text of the focused field.
     pub fn retype(&self, text: &str) {
-        // Not with Ctrl A, because a field reads modifiers at the end of a frame, which may be after their release.
+        // Ctrl A would fail, because a field reads modifiers at the end of a frame, possibly after their release.
         self.key("End");
         self.xdotool(&["key", "--repeat", "40", "--delay", "20", "BackSpace"]);
         self.type_text(text);
     }
 
-    /// Moves the pointer.
+    /// Moves the pointer to a point of the window.
     pub fn move_to(&self, (x, y): (i32, i32)) {
         self.for_frames(|| self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]));
     }
@@ -49,7 +49,7 @@ impl Studio {
     /// Clicks a point of the window.
     pub fn click_at(&self, at: (i32, i32)) {
         self.move_to(at);
-        // Press and release at once, because egui treats a longer press differently.
+        // Press and release follow at once, because egui treats a longer press differently.
         self.for_frames(|| self.xdotool(&["click", "1"]));
     }
 
@@ -57,7 +57,7 @@ impl Studio {
     pub fn double_click_at(&self, at: (i32, i32)) {
         self.move_to(at);
         self.xdotool(&["click", "1"]);
-        // In separate frames, but close in time.
+        // The two clicks are in separate frames, but close in time.
         std::thread::sleep(Duration::from_millis(250));
         self.for_frames(|| self.xdotool(&["click", "1"]));
     }
@@ -83,7 +83,7 @@ impl Studio {
         self.for_frames(|| self.xdotool(&["mouseup", &button]));
     }
 
-    /// Turns the wheel over a point of the window; up is away from the user.
+    /// Turns the mouse wheel over a point of the window. Up is away from the user.
     pub fn wheel(&self, is_up: bool, at: (i32, i32)) {
         self.move_to(at);
         let button = if is_up { "4" } else { "5" };

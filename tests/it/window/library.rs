@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::display::Studio;
 use super::places::Place;
 
-/// A folder of saves with two champions and a damaged file.
+/// Makes a folder of saves with two champions and a damaged file, and returns its path.
 fn saves(folder: &Path) -> PathBuf {
     let saves = folder.join("saves");
     fs::create_dir(&saves).expect("created");
@@ -19,7 +19,7 @@ fn saves(folder: &Path) -> PathBuf {
     saves
 }
 
-/// A studio whose library shows only these three.
+/// Opens a studio whose library shows only the three files of `saves`.
 fn with_zebras(test: &str, saves: &Path) -> Option<Studio> {
     let arguments = format!("--preset quick --saves {}", saves.display());
     let studio = Studio::open(test, &arguments)?;
@@ -38,7 +38,7 @@ fn wait_for_count(studio: &Studio, count: &str) {
     });
 }
 
-/// The row of a loaded save with this name.
+/// Waits for the row of a loaded save with this name.
 fn row(studio: &Studio, name: &str) -> Place {
     let start = format!("{name}, ");
     studio.place_where(name, |place| {
@@ -54,7 +54,7 @@ fn choose(studio: &Studio, name: &str) {
     studio.wait(|| row(studio, name).value == "on", || format!("{name} to be chosen"));
 }
 
-/// Waits for a caption under the stage.
+/// Waits for a caption with this name under the stage.
 fn wait_for_caption(studio: &Studio, name: &str) {
     let left = studio.stage().left;
     studio.place_where(name, |place| {

@@ -51,7 +51,7 @@ fn clicking_a_point_or_bar_of_a_chart_replays_it() {
     let chart = studio.place_where("the spread", |place| {
         place.label.starts_with("Chart: ") && !place.label.contains("Fitness by generation")
     });
-    // Search for a bar along the bottom; all bars belong to the latest generation.
+    // Clicks along the bottom search for a bar. All bars belong to the latest generation.
     let is_shown = (1..24).any(|column| {
         studio.click_at(chart.area.at(f64::from(column) / 24.0, 0.985));
         studio.title().contains("showing generation 4")

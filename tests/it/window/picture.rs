@@ -8,13 +8,13 @@ use super::places::Area;
 pub struct Picture {
     width: i32,
     pixels: Vec<[u8; 3]>,
-    /// The area that shows only the scene, without panels, cards and messages.
+    /// Area that shows only the scene, without panels, cards and messages.
     scene: Area,
 }
 
 impl Picture {
-    /// Reads the XWD file that Xvfb keeps its screen in: a header of big-endian words, a colour map,
-    /// rows of 32-bit pixels with blue in the lowest byte.
+    /// Reads the XWD file in which Xvfb keeps its screen: a header of big-endian words, a colour map, and rows of 32-bit pixels
+    /// with blue in the lowest byte.
     pub fn of_xwd(file: &[u8], scene: Area) -> Self {
         let word = |index: usize| {
             let bytes = file[index * 4..index * 4 + 4].try_into().expect("four bytes");
@@ -33,22 +33,22 @@ impl Picture {
         Self { width: width as i32, pixels, scene }
     }
 
-    /// Rectangle of the scene.
+    /// Returns the rectangle of the scene.
     pub fn scene(&self) -> Area {
         self.scene
     }
 
-    /// The pixels of the scene.
+    /// Returns the pixels of the scene.
     pub fn scene_pixels(&self) -> Vec<[u8; 3]> {
         self.region(self.scene)
     }
 
-    /// Number of pixels of the scene that meet a condition.
+    /// Counts the pixels of the scene that meet a condition.
     pub fn count(&self, is: fn(&[u8; 3]) -> bool) -> usize {
         self.scene_pixels().iter().filter(|pixel| is(pixel)).count()
     }
 
-    /// Centre of a square of the scene in which all pixels meet a condition.
+    /// Returns the centre of a square of the scene in which all pixels meet a condition; `None` if there is none.
     pub fn find(&self, is: fn(&[u8; 3]) -> bool) -> Option<(i32, i32)> {
         const SIDE: i32 = 9;
         let Area { left, top, right, bottom } = self.scene;
@@ -60,7 +60,7 @@ impl Picture {
         squares.next().map(|(x, y)| (x + SIDE / 2, y + SIDE / 2))
     }
 
-    /// Mean brightness of a rectangle, from 0 to 255.
+    /// Returns the mean brightness of a rectangle, from 0 to 255.
     pub fn brightness(&self, area: Area) -> u32 {
         let pixels = self.region(area);
         let sum: u32 = pixels.iter().flatten().map(|part| u32::from(*part)).sum();
@@ -76,7 +76,7 @@ impl Picture {
         snakes_core::save::store_picture(path, &picture).expect("written");
     }
 
-    /// The pixels of a rectangle, row by row, as red, green, blue.
+    /// Returns the pixels of a rectangle, row by row, as red, green and blue.
     pub fn region(&self, area: Area) -> Vec<[u8; 3]> {
         let row = |y: i32| {
             let start = (y * self.width + area.left) as usize;
@@ -86,17 +86,17 @@ impl Picture {
     }
 }
 
-/// Whether a pixel has the red of the snake.
+/// Returns whether a pixel has the red of the snake.
 pub fn is_red(&[red, green, blue]: &[u8; 3]) -> bool {
     red > 90 && u32::from(red) > 2 * u32::from(green) && u32::from(red) > 2 * u32::from(blue)
 }
 
-/// Whether a pixel has the blue of the snake.
+/// Returns whether a pixel has the blue of the snake.
 pub fn is_blue(&[red, green, blue]: &[u8; 3]) -> bool {
     blue > 90 && u32::from(blue) * 2 > 3 * u32::from(green) && u32::from(blue) > 2 * u32::from(red)
 }
 
-/// Number of pixels of the scene that differ between two pictures.
+/// Counts the pixels of the scene that differ between two pictures.
 pub fn difference(before: &Picture, after: &Picture) -> usize {
     let after = after.region(before.scene);
     before.scene_pixels().iter().zip(after).filter(|(a, b)| **a != *b).count()

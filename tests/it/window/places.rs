@@ -1,4 +1,4 @@
-//! Finds controls in the window by name, with the list that the program itself writes.
+//! Finds controls in the window by name, using the list that the program writes for `--places`.
 
 use super::display::Studio;
 
@@ -12,38 +12,38 @@ pub struct Area {
 }
 
 impl Area {
-    /// Width.
+    /// Returns the width, in pixels.
     pub fn width(self) -> i32 {
         self.right - self.left
     }
 
-    /// Height.
+    /// Returns the height, in pixels.
     pub fn height(self) -> i32 {
         self.bottom - self.top
     }
 
-    /// The point at these fractions of width and height.
+    /// Returns the point at these fractions of width and height.
     pub fn at(self, x: f64, y: f64) -> (i32, i32) {
         let along = |from: i32, length: i32, share: f64| from + (f64::from(length) * share) as i32;
         (along(self.left, self.width(), x), along(self.top, self.height(), y))
     }
 
-    /// Centre.
+    /// Returns the centre.
     pub fn middle(self) -> (i32, i32) {
         self.at(0.5, 0.5)
     }
 }
 
-/// A control or a text.
+/// A control or a text in the window.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
-    /// Role: `Button`, `Slider`, `Label` and so on.
+    /// Role of the control: `Button`, `Slider`, `Label` and so on.
     pub role: String,
-    /// Label.
+    /// Label of the control.
     pub label: String,
-    /// Value; `on` or `off` for check boxes and toggles.
+    /// Value of the control; `on` or `off` for check boxes and toggles.
     pub value: String,
-    /// Rectangle.
+    /// Rectangle of the control.
     pub area: Area,
 }
 
@@ -63,26 +63,26 @@ impl Place {
 }
 
 impl Studio {
-    /// Number of frames that the program has drawn.
+    /// Returns the number of frames that the program has drawn.
     pub fn frame(&self) -> u64 {
         let frame = self.find(|place| place.role == "Frame");
         frame.map_or(0, |place| place.value.parse().expect("a number"))
     }
 
-    /// Waits for the next frames.
+    /// Waits until `count` more frames are drawn.
     pub fn wait_for_frames(&self, count: u64) {
         let last = self.frame() + count;
         self.wait(|| self.frame() >= last, || format!("frame {last}"));
     }
 
-    /// All listed controls, including those that are scrolled out of sight.
+    /// Returns all listed controls, including those that are scrolled out of sight.
     pub fn places(&self) -> Vec<Place> {
         // The file is written atomically and does not exist before the first frame.
         let text = std::fs::read_to_string(self.places_file()).unwrap_or_default();
         text.lines().filter_map(Place::of_line).collect()
     }
 
-    /// The first control that meets a condition.
+    /// Returns the first control that meets a condition.
     pub fn find(&self, is: impl Fn(&Place) -> bool) -> Option<Place> {
         self.places().into_iter().find(is)
     }
@@ -139,7 +139,7 @@ impl Studio {
         self.wait(is_gone, || format!("no {part:?}"));
     }
 
-    /// Value of the control with this role and label.
+    /// Returns the value of the control with this role and label.
     pub fn value_of(&self, role: &str, label: &str) -> String {
         self.place_of(role, label).value
     }
@@ -160,7 +160,7 @@ impl Studio {
         self.click_at(self.button_starting(start).area.middle());
     }
 
-    /// Clicks the control with this label while keys such as `ctrl` are held down.
+    /// Clicks a control while a key such as `ctrl` is held down.
     pub fn click_with(&self, key: &str, place: &Place) {
         self.holding(key, || self.click_at(place.area.middle()));
     }
@@ -215,10 +215,10 @@ impl Studio {
         self.click_at(self.scrolled_to(role, label).area.middle());
     }
 
-    /// A row of the list of champions: 0 is the saved one, 1 the first generation's.
+    /// Returns a row of the list of champions: 0 is the saved champion, 1 that of the first generation.
     pub fn champion(&self, row: u32) -> Place {
         let tab = self.place("Panel Champions").area;
-        // A row that is half scrolled behind the names of the columns cannot be clicked in its middle.
+        // A row that is partly hidden by the names of the columns cannot be clicked in its middle.
         let head = self.find(|place| place.label == "Energy" && place.area.top > tab.bottom);
         let top = head.map_or(tab.bottom, |head| head.area.bottom);
         let generation = format!("Generation {row}");
@@ -232,14 +232,14 @@ impl Studio {
         for _ in 0..40 {
             match self.find(is_it) {
                 Some(place) if place.area.middle().1 < bottom - 4 => return place,
-                // Rows that are out of sight are not listed; the saved champion is at the top.
+                // Rows out of sight are not listed. The saved champion is at the top.
                 _ => self.wheel(row == 0, (tab.left + 100, bottom - 40)),
             }
         }
         panic!("no row for champion {row}");
     }
 
-    /// Clicks a row of the list of champions: 0 is the saved one, 1 the first generation's.
+    /// Clicks a row of the list of champions: 0 is the saved champion, 1 that of the first generation.
     pub fn click_champion(&self, row: u32) {
         self.click_at(self.champion(row).area.middle());
     }
@@ -250,20 +250,20 @@ impl Studio {
         self.click_with("shift", &place);
     }
 
-    /// The area of the stage.
+    /// Returns the area of the stage.
     pub fn stage(&self) -> Area {
         let stage = self.find(|place| place.label == "The stage");
         stage.unwrap_or_else(|| self.place("The stage")).area
     }
 
-    /// The area of the stage that only the board of a race can cover.
+    /// Returns the area of the stage that only the board of a race can cover.
     pub fn scene(&self) -> Area {
         let Area { left, top, right, bottom } = self.stage();
         let cards = if self.find(|place| place.label == "Follow").is_some() { 100 } else { 10 };
         Area { left: left + 10, top: top + cards, right: right - 10, bottom: bottom - 10 }
     }
 
-    /// Seeks to this fraction of the time.
+    /// Seeks to this fraction of the trial's duration.
     pub fn seek(&self, share: f64) {
         self.click_at(self.place("Time, in simulated seconds").area.at(share, 0.5));
     }

@@ -6,14 +6,14 @@ use super::places::Place;
 
 /// A tab of the panels, which the presenting mode hides.
 const TAB: &str = "Panel World";
-/// A button of the player, which it hides, too.
+/// A button of the player, which the presenting mode hides, too.
 const PLAYER: &str = "Play from start";
 
 fn has(studio: &Studio, label: &str) -> bool {
     studio.find(|place| place.label == label).is_some()
 }
 
-/// Whether a text is high enough to be read from the back of a room: a twentieth of the window.
+/// Returns whether a text is legible from the back of a room: at least a twentieth of the window high.
 fn is_large(studio: &Studio, place: &Place) -> bool {
     place.area.height() * 20 >= studio.size().1
 }
@@ -36,7 +36,7 @@ fn f11_presents_the_stage_with_a_large_caption_and_escape_restores_the_window() 
     studio.wait_for_title(", stopped at ");
     studio.key("space");
     studio.wait_for_title_without(", stopped at ");
-    // A clicker's keys lead through the champions of the generations.
+    // The keys of a clicker step through the champions of the generations.
     studio.key("Next");
     studio.place_with("Generation 1: ");
     studio.key("Next");
@@ -63,7 +63,7 @@ fn the_flag_presents_from_the_start_and_the_caption_follows_the_stage() {
     assert!(is_large(&studio, &caption), "{caption:?}");
     assert!(!has(&studio, TAB));
     studio.wait_for_title("4 of 4 generations, finished");
-    // Any key that a clicker has not ends it, and does nothing else.
+    // Any key that a clicker does not have ends the mode, and does nothing else.
     studio.key("n");
     studio.place(TAB);
     assert!(!studio.title().contains("showing a race of "), "{}", studio.title());

@@ -2,9 +2,9 @@
 //!
 //!     cargo test --release --test it random_hand -- --ignored --nocapture
 //!
-//! `SNAKES_HAND_SEED` changes the seed, `SNAKES_HAND_ACTIONS` the number of actions. The choices depend on the controls
-//! that the window shows at each moment, so a seed repeats a session only as far as the machine is equally fast; a
-//! failure therefore tells its last actions.
+//! `SNAKES_HAND_SEED` changes the seed, `SNAKES_HAND_ACTIONS` the number of actions. The choices depend on the controls that the
+//! window shows at each moment, so a seed repeats a session only as far as the machine is equally fast. A failure therefore reports
+//! its last actions.
 
 mod actions;
 mod losses;
@@ -23,19 +23,19 @@ use super::{folder, json_lines};
 use actions::{Action, RandomHand, SCREEN, USUAL_SIZE};
 use losses::{Inventory, assert_tidy};
 
-/// A run that goes on for the whole session, slowly enough that the window stays the subject.
+/// Arguments of a run that lasts for the whole session and is slow enough to leave the processor to the window.
 const ARGUMENTS: &str = "--preset quick --population 20 --generations 1000 --duration 5 --threads 1 \
                          --saves saves --preferences preferences/studio.ron";
-/// Number of actions that a failure tells.
+/// Number of latest actions that a failure reports.
 const TOLD: usize = 30;
 /// Number of actions between two inventories.
 const BETWEEN_INVENTORIES: u32 = 250;
-/// Time after which a window without a new frame counts as hung. Ten snakes in software take a second.
+/// Time after which a window without a new frame counts as hung. Ten snakes in software rendering take a second.
 const HUNG: Duration = Duration::from_secs(60);
 /// Pause after an action of a hurried hand.
 const HURRY: Duration = Duration::from_millis(25);
 
-/// Lines of the log that are no faults, each with the reason.
+/// Parts of log lines that are no faults, each with the reason.
 const HARMLESS: [(&str, &str); 8] = [
     ("error setting XSETTINGS", "a bare display has no daemon for settings"),
     ("only supports software rendering", "the driver of the tests does"),
@@ -71,7 +71,7 @@ fn a_long_random_hand_breaks_and_loses_nothing() {
     );
 }
 
-/// Acts and checks.
+/// Performs `count` random actions in the window, and checks the results.
 fn play(test: &str, seed: u64, count: u32) {
     let folder = Arc::new(folder());
     let saves = folder.path().join("saves");
@@ -101,7 +101,7 @@ fn play(test: &str, seed: u64, count: u32) {
             session.tell_progress(number);
         }
     }
-    // It ends after its last commands, or with the window that the last action closed.
+    // xdotool ends after its last commands, or with the window that the last action closed.
     tool.wait().expect("xdotool");
     assert_eq!(studio.end(), Some(0), "{}", studio.log());
     assert_no_fault(&studio.log());
@@ -113,8 +113,8 @@ fn play(test: &str, seed: u64, count: u32) {
     session.tell(count, at_the_end.counts());
 }
 
-/// Fills a folder of saves: champions, one of them of another engine, a damaged file, a finished run and a stopped one.
-/// Returns the hashes of the damaged files.
+/// Fills a folder of saves: champions, one of them of another engine; a damaged file; a finished run and a stopped one. Returns the
+/// hashes of the damaged files.
 fn furnish(folder: &Path, saves: &Path) -> Vec<u64> {
     let run = "--no-render --json --preset quick --population 6 --generations 3 --duration 1 --saves saves";
     fs::create_dir(saves).expect("created");
@@ -136,7 +136,7 @@ fn furnish(folder: &Path, saves: &Path) -> Vec<u64> {
     vec![xxhash_rust::xxh3::xxh3_64(broken.as_bytes())]
 }
 
-/// Hands an action to xdotool. False if xdotool has ended, as it does when the window is gone.
+/// Sends an action to xdotool. Returns false if xdotool has ended, as it does when the window is closed.
 fn send(tool: &mut Child, action: &Action, window: &str) -> bool {
     let script = action.script.join("\n").replace("WINDOW", window) + "\n";
     tool.stdin.as_mut().expect("piped").write_all(script.as_bytes()).is_ok()
@@ -184,7 +184,7 @@ impl Session {
         self.controls.extend(action.control.clone());
     }
 
-    /// Waits for frames. False if the program has ended instead.
+    /// Waits for frames. Returns false if the program has ended instead.
     fn wait(&mut self, studio: &Studio, frames: u64) -> bool {
         thread::sleep(HURRY);
         let (before, started) = (studio.frame(), Instant::now());
@@ -199,7 +199,7 @@ impl Session {
         studio.ended().is_none()
     }
 
-    /// Notes an end of the program, which must be the orderly one of its command.
+    /// Records an end of the program, which must be an orderly one.
     fn end(&mut self, studio: &Studio) {
         studio.wait(|| studio.ended().is_some(), || "the end of the program".to_owned());
         let (status, log) = (studio.ended(), studio.log());
@@ -231,7 +231,7 @@ impl Drop for Session {
         if thread::panicking() {
             let latest: Vec<&str> = self.latest.iter().map(String::as_str).collect();
             report(&format!("seed {}, the last actions:\n{}", self.seed, latest.join("\n")));
-            // Under another name it is not removed with the test.
+            // Under another name the folder is not removed with the test.
             let kept = self.folder.with_extension("failed");
             if fs::rename(&self.folder, &kept).is_ok() {
                 report(&format!("its files: {}", kept.display()));

@@ -1,5 +1,5 @@
-//! Screenshots of every view in every size of window, at every scale that fits, in both themes: for a look at what is
-//! cut, covered or misaligned.
+//! Screenshots of every view in every size of window, at every scale that fits, in both themes, to find what is cut, covered or
+//! misaligned.
 //!
 //! `SNAKES_SCREENSHOTS=target/screenshots cargo test --release --test it views_at_every_size -- --ignored` takes them all, in half
 //! an hour or more. `SNAKES_SCREENSHOTS_SIZE=1280x720` and `SNAKES_SCREENSHOTS_SCALE=1.5` take those of one size or
@@ -10,19 +10,19 @@ use std::time::Duration;
 
 use super::display::{Studio, preferences};
 
-/// Sizes of the window, in pixels.
+/// Widths and heights of the window, in pixels.
 const SIZES: [(u16, u16); 5] = [(1024, 640), (1280, 720), (1600, 900), (2560, 1440), (3840, 2160)];
 const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
-/// Least size of the window in the panels' units, below which the program reduces the scale.
+/// Least width and height of the window in the panels' units, below which the program reduces the scale.
 const LEAST: (f32, f32) = (800.0, 480.0);
 
 /// A run that ends in the first minute.
 const RUN: &str = "--preset climb --generations 30 --threads 2";
 
-/// Brings a view on.
+/// Brings up a view.
 type Show = fn(&Studio);
 
-/// The views, in an order in which each can follow the one before.
+/// Names of the views, and functions that bring them up, in an order in which each can follow the one before.
 const VIEWS: [(&str, Show); 8] = [
     ("story", story),
     ("main", main_view),
@@ -34,7 +34,7 @@ const VIEWS: [(&str, Show); 8] = [
     ("lesson", lesson),
 ];
 
-/// Pauses the stage at this fraction of the time.
+/// Pauses the stage at this fraction of the trial's duration.
 fn hold(studio: &Studio, share: f64) {
     if !studio.title().contains(", stopped") {
         studio.key("space");
@@ -103,7 +103,7 @@ fn lesson(studio: &Studio) {
     hold(studio, 0.6);
 }
 
-/// Takes the pictures of one size and scale in both themes; `None` where no window can be opened.
+/// Takes the pictures of one size and scale in both themes; `None` if no window can be opened.
 fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
     let scratch = super::folder();
     let path = scratch.path().join("studio.ron");

@@ -15,9 +15,9 @@ const RUN: &str = "--preset climb --generations 30 --threads 2";
 /// The README's screenshots; only these are written to `assets/screenshots`.
 const IN_README: [&str; 6] = ["single", "race", "charts", "library", "lesson", "senses"];
 
-/// Target folder, sizes and theme of the screenshots.
+/// Folder, size, scale and theme of the screenshots.
 struct Album {
-    /// `None` for the README's screenshots.
+    /// Target folder; `None` for the folder of the README's screenshots.
     folder: Option<PathBuf>,
     size: (i32, i32),
     scale: String,
@@ -42,7 +42,7 @@ impl Album {
         Self { folder, size, scale, theme, scratch: super::folder() }
     }
 
-    /// Opens the program; `None` where that is impossible. Saves are shared, everything else is fresh.
+    /// Opens the program; `None` if that is impossible. Saves are shared between screenshots, everything else is fresh.
     fn open(&self, arguments: &str, tour_is_over: bool) -> Option<Studio> {
         let path = self.scratch.path().join("studio.ron");
         let fields = format!("ui_scale: {}, tour_is_over: {tour_is_over}", self.scale);
@@ -69,12 +69,12 @@ impl Album {
             None => return,
         };
         studio.step_aside();
-        // Messages disappear after eight seconds; a camera moves for one, and a large picture takes one.
+        // Messages disappear after eight seconds. A camera moves for one second, and a large picture takes one.
         std::thread::sleep(Duration::from_secs(9));
         studio.picture().store(&folder.join(format!("{name}-{}.png", self.theme)));
     }
 
-    /// Screenshots of the stage: a race, another world, a close-up.
+    /// Takes screenshots of the stage: a race, another world, a close-up.
     fn stage(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");
@@ -96,7 +96,7 @@ impl Album {
         self.keep(&studio, "what-if");
         drop(studio);
 
-        // A close-up at a moment with contacts.
+        // The close-up shows a moment with contacts.
         let robust =
             concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
         let studio = self.open(robust, true)?;
@@ -111,7 +111,7 @@ impl Album {
         Some(())
     }
 
-    /// A screenshot of a snake that feels its way, beside its copy without touch.
+    /// Takes a screenshot of a snake with touch, beside its copy without touch.
     fn senses(&self) -> Option<()> {
         let feeler =
             concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/feeler.ron --preset quick");
@@ -131,7 +131,7 @@ impl Album {
         Some(())
     }
 
-    /// Screenshots of the main view, the panels and the modal views.
+    /// Takes screenshots of the main view, the panels and the modal views.
     fn panels(&self) -> Option<()> {
         let studio = self.open(RUN, true)?;
         studio.key("a");

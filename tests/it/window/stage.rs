@@ -4,7 +4,7 @@ use super::display::Studio;
 use super::picture::{Picture, difference, is_blue, is_red};
 use super::places::Area;
 
-/// A studio with the saved champion paused at the start and evolution paused.
+/// Opens a studio with the saved champion paused at its start and evolution paused.
 fn held_at_start(test: &str) -> Option<Studio> {
     let studio = Studio::open(test, "--preset quick --saves saves")?;
     studio.pause_evolution();
@@ -22,7 +22,7 @@ fn the_player_pauses_steps_and_seeks() {
     studio.click_label("Pause playback");
     studio.wait_for_title(", stopped at ");
     studio.seek(0.5);
-    // A pixel of the strip is a few hundredths of a second.
+    // A pixel of the timeline stands for a few hundredths of a second.
     let is_there =
         || ["stopped at 7.4", "stopped at 7.5"].iter().any(|at| studio.title().contains(at));
     studio.wait(is_there, || format!("the middle of 15 s in {:?}", studio.title()));
@@ -45,7 +45,7 @@ fn the_player_pauses_steps_and_seeks() {
     studio.wait_for_title("stopped at 15.00 s");
     studio.click_label("Play from start");
     studio.wait_for_title_without("stopped");
-    // Four times the speed, without looping.
+    // The replay runs at four times the speed, without looping.
     studio.key("o");
     for _ in 0..4 {
         studio.key("plus");
@@ -61,7 +61,7 @@ fn a_race_starts_by_key_or_click_and_ends_by_key() {
     studio.wait_for_title("showing a race of 4");
     studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
     studio.key("Escape");
-    // The race selects its best snake, of whichever generation.
+    // The race selects its best snake, from any generation.
     studio.wait_for_title("showing generation ");
     studio.click_champion(0);
     studio.wait_for_title("showing climber");
@@ -101,7 +101,7 @@ fn a_change_is_tried_from_the_present_moment_on_and_copies_stay_side_by_side() {
     studio.wait_for_title("showing climber");
     studio.seek(0.4);
     let rail = studio.scrolled_to("Slider", "Friction").area;
-    // While the button is held, the copy is already there.
+    // The copy exists already while the button is held.
     studio.drag_and_hold(1, rail.at(0.5, 0.5), rail.at(0.25, 0.5), || {
         studio.wait_for_title("showing climber with a what-if copy, from ");
     });
@@ -141,7 +141,7 @@ fn clicking_a_limb_shows_its_numbers_and_dragging_disturbs_the_snake() {
     studio.click_at(limb);
     let with_card = studio.still_picture();
     assert!(card(&before) != card(&with_card), "its numbers are shown");
-    // Grab it while it is paused, and pull once it moves.
+    // The limb is grabbed while the stage is paused, and pulled once it moves.
     studio.drag_and_hold(1, limb, (limb.0 - 60, limb.1 - 90), || {
         studio.key("space");
         studio.wait_for_title(", pulled");
@@ -173,7 +173,7 @@ fn camera_modes_differ_and_follow_can_be_restored() {
     studio.picture_with(|now| difference(&follow, now) > 3000);
     studio.key("Home");
     studio.picture_with(|now| difference(&follow, now) < 200);
-    // A double click on the ground focuses there; from near, the snake is large or out of the picture.
+    // A double click on the ground focuses there. From this near, the snake is large or out of the picture.
     studio.double_click_at(studio.stage().at(0.67, 0.55));
     studio.picture_with(|now| difference(&follow, now) > 20_000);
 }
@@ -217,7 +217,7 @@ fn the_theme_applies_to_panels_and_scene_and_pictures_are_saved() {
     both_are(false);
 }
 
-/// Not a window test, but it needs the same driver: a moment without a display.
+/// This test opens no window, but needs the same driver: it draws a moment without a display.
 #[test]
 fn a_moment_is_drawn_without_a_display() {
     if super::display::lacks_a_driver("export") {

@@ -1,4 +1,4 @@
-//! Chooses what a random hand does next, from a seed and from the controls that the window shows.
+//! Chooses the next action of a random hand, from a seed and from the controls that the window shows.
 
 use rand::RngExt;
 use rand::seq::IndexedRandom;
@@ -7,13 +7,12 @@ use snakes_core::rng::{Purpose, stream};
 
 use crate::window::places::{Area, Place};
 
-/// Screen, in pixels: room for windows of several sizes.
+/// Width and height of the screen, in pixels, for windows of several sizes.
 pub const SCREEN: (i32, i32) = (1280, 800);
-/// Usual size of the window: the smallest that the panels are laid out for, which is drawn soonest.
+/// Usual width and height of the window: the smallest for which the panels are laid out, and the fastest to draw.
 pub const USUAL_SIZE: (i32, i32) = (1024, 640);
 
-/// Texts that the hand types. No text has a slash or climbs to the folder above, so no path leads out of the test's
-/// folder.
+/// Texts that the hand types. No text has a slash or leads to the parent folder, so no path leaves the test's folder.
 const TEXTS: [&str; 24] = [
     "0",
     "-1",
@@ -69,25 +68,25 @@ const PANEL_KEYS: [&str; 24] = [
     "alt+F",
 ];
 
-/// One action, as lines for xdotool.
+/// An action, as commands for xdotool.
 #[derive(Debug)]
 pub struct Action {
-    /// The action in words.
+    /// Description of the action in words.
     pub words: String,
-    /// The control that it is meant for, if it is.
+    /// Name of the control at which the action aims; `None` without one.
     pub control: Option<String>,
     /// Commands for xdotool; `WINDOW` stands for the window's number.
     pub script: Vec<String>,
     /// Number of frames to wait for before the next action.
     pub frames: u64,
-    /// New size of the window, if it is resized.
+    /// New size of the window; `None` if it is not resized.
     pub resized: Option<(i32, i32)>,
 }
 
-/// Chooses actions.
+/// Chooses random actions.
 ///
-/// It is careful for some actions in a row, and waits until it sees what they do; this is how it gets through menus and
-/// dialogs. Then it is hurried, and its clicks and keys reach the program many to a frame.
+/// The hand is careful for some actions in a row: it waits until their effects are visible, and so gets through menus and dialogs.
+/// Then it is hurried, and several clicks and keys reach the program in a frame.
 pub struct RandomHand {
     rng: ChaCha8Rng,
     is_careful: bool,
@@ -95,7 +94,7 @@ pub struct RandomHand {
 }
 
 impl RandomHand {
-    /// The hand of a seed.
+    /// Creates the hand of a seed.
     pub fn new(seed: u64) -> Self {
         Self {
             rng: stream(seed, 0, 0, Purpose::Calibration),
@@ -104,7 +103,7 @@ impl RandomHand {
         }
     }
 
-    /// The next action in a window of this size that shows these controls.
+    /// Returns the next action in a window of this size that shows these controls.
     pub fn act(&mut self, places: &[Place], size: (i32, i32)) -> Action {
         let kind = self.rng.random_range(0..100);
         let mut action = match kind {
@@ -137,7 +136,7 @@ impl RandomHand {
         action
     }
 
-    /// Uses a control in the way of its kind, or clicks it.
+    /// Uses a control in the way that its role suggests, or clicks it.
     fn use_control(&mut self, places: &[Place], (width, height): (i32, i32)) -> Action {
         let is_in_sight = |place: &&Place| {
             let (x, y) = place.area.middle();
@@ -186,7 +185,7 @@ impl RandomHand {
             script.push(format!("keydown {held}"));
         }
         if self.rng.random_bool(0.3) {
-            // Pressed for longer than a frame.
+            // The button is pressed for longer than a frame.
             script.extend([format!("mousedown {button}"), "sleep 0.25".to_owned()]);
             script.push(format!("mouseup {button}"));
         } else {
@@ -206,7 +205,7 @@ impl RandomHand {
         let mut script = vec![format!("mousemove {x} {y}"), format!("mousedown {button}")];
         script.push(format!("mousemove {} {}", (x + to_x) / 2, (y + to_y) / 2));
         if self.rng.random_bool(0.5) {
-            // Held across frames.
+            // The button is held across frames.
             script.push("sleep 0.25".to_owned());
         }
         script.extend([format!("mousemove {to_x} {to_y}"), "sleep 0.05".to_owned()]);
@@ -277,7 +276,7 @@ fn typed(text: &str) -> String {
     format!("type --delay 5 -- \"{text}\"")
 }
 
-/// All shortcuts of the program, as xdotool names them. They are read from the list that menus and keys are made of.
+/// Returns all shortcuts of the program in the notation of xdotool, read from the source of menus and keys.
 fn shortcuts() -> Vec<String> {
     let source = include_str!("../../../../src/studio/commands/actions.rs");
     let lists = source.split("&[").skip(1).filter_map(|rest| rest.split_once(']'));
@@ -287,7 +286,7 @@ fn shortcuts() -> Vec<String> {
     keys
 }
 
-/// The shortcut `Ctrl Shift Z` as `ctrl+shift+z`.
+/// Converts a shortcut such as `Ctrl Shift Z` into `ctrl+shift+z`.
 fn xdotool_key(shortcut: &str) -> String {
     let parts = shortcut.split(' ').map(|part| match part {
         "Esc" => "Escape".to_owned(),

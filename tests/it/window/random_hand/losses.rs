@@ -1,4 +1,4 @@
-//! Checks that a random hand has lost nothing: every save and run is still there or among the deleted ones, and readable.
+//! Checks that a random hand has lost nothing: every save and run is readable, and still in its place or among the deleted ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -16,7 +16,7 @@ use crate::program::snakes;
 
 /// Beginning of the names of files that are not complete yet.
 const UNFINISHED: &str = ".unfinished-";
-/// Time in which a resumed run must report a generation, or be ended in good order.
+/// Time within which a resumed run must report a generation; after it, the run is interrupted.
 const RESUMED_FOR: Duration = Duration::from_secs(4);
 
 /// Contents of a folder of saves.
@@ -25,7 +25,7 @@ pub struct Inventory {
     taken: SystemTime,
     /// Hashes of the files outside runs, except notes, which may change.
     files: BTreeMap<u64, PathBuf>,
-    /// The folders of each run, by the hash of its plan. A run may have been copied.
+    /// Folders of each run, by the hash of its plan. A run may have been copied.
     runs: BTreeMap<u64, Vec<RunContents>>,
 }
 
@@ -35,12 +35,12 @@ struct RunContents {
     /// Time at which the run began, or began again.
     begun: SystemTime,
     generations: usize,
-    /// Hashes of the champions of its generations.
+    /// Hashes of the champions of the run's generations.
     champions: BTreeSet<u64>,
 }
 
 impl Inventory {
-    /// Lists a folder of saves, in which the program may be working: what vanishes meanwhile is left out.
+    /// Lists a folder of saves, in which the program may be working. Files that vanish meanwhile are left out.
     pub fn of(saves: &Path) -> Self {
         let (taken, files, runs) = (SystemTime::now(), BTreeMap::new(), BTreeMap::new());
         let mut inventory = Self { taken, files, runs };
@@ -68,13 +68,13 @@ impl Inventory {
         }
     }
 
-    /// Number of files outside runs, and of runs.
+    /// Returns the number of files outside runs, and the number of runs.
     pub fn counts(&self) -> (usize, usize) {
         (self.files.len(), self.runs.len())
     }
 
-    /// Fails if something of an earlier inventory is no longer there. A run may have fewer generations only if it has
-    /// begun again meanwhile, which writes its plan again.
+    /// Fails if something of an earlier inventory is missing. A run may have fewer generations only if it has begun again
+    /// meanwhile, which writes its plan again.
     pub fn assert_keeps(&self, earlier: &Self) {
         for (hash, path) in &earlier.files {
             assert!(self.files.contains_key(hash), "lost: {}", path.display());
@@ -92,8 +92,8 @@ impl Inventory {
         }
     }
 
-    /// Reads every champion, preset and run, and resumes each run without a window. `damaged` are the hashes of the
-    /// files that were damaged from the start.
+    /// Reads every champion, preset and run, and resumes each run without a window. `damaged` are the hashes of files that were
+    /// damaged from the start.
     pub fn assert_readable(&self, saves: &Path, damaged: &[u64]) {
         for (hash, path) in &self.files {
             let is_champion = path.extension().is_some_and(|ending| ending == "ron");
@@ -148,10 +148,10 @@ fn resume(folder: &Path) {
             let _ = sender.send(line);
         }
     });
-    // A generation of a slow run takes longer; then it is interrupted within it.
+    // A generation of a slow run may take longer; the run is then interrupted within it.
     let _ = reported.recv_timeout(RESUMED_FOR);
     let process = child.id().to_string();
-    // It may have ended by itself.
+    // The process may have ended by itself.
     let _ = Command::new("kill").args(["-INT", &process]).stderr(Stdio::null()).status();
     let mut said = String::new();
     child.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
