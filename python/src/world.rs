@@ -13,9 +13,9 @@ use crate::errors::{crashed, invalid};
 /// Meaning of an action's number for each joint axis.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ActionKind {
-    /// Target angle of the servo, in rad.
+    /// The number is the target angle of a servo, in rad.
     Targets,
-    /// Torque, in N·m.
+    /// The number is a torque, in N·m.
     Torques,
 }
 

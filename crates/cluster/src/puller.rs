@@ -16,7 +16,7 @@ use super::names::PULL_WAIT;
 
 /// The outcome of a fetch.
 pub enum Pulled {
-    /// A message.
+    /// A message that was fetched.
     Message(Box<Message>),
     /// No message arrived for some seconds.
     Nothing,

@@ -57,7 +57,7 @@ impl Share {
     }
 }
 
-/// Returns the probability, from 0 to 1, that the counts of both signs among `more + fewer` pairs differ by at least `more - fewer`
+/// Returns the probability, from 0 to 1, that the counts of both signs among `more + fewer` pairs differ by at least `|more - fewer|`
 /// if both signs are equally likely: the exact two-sided sign test (Dixon and Mood, The statistical sign test, Journal of the
 /// American Statistical Association 41 (1946)). Ties must not be counted.
 pub fn sign_test(more: u32, fewer: u32) -> f64 {

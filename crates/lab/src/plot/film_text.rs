@@ -21,11 +21,11 @@ const BANDS: u32 = 14;
 /// The texts of the band along the lower edge.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FilmBand {
-    /// Name at the left.
+    /// Name at the left end of the band.
     pub name: String,
-    /// Text after the name.
+    /// Text after the name in the band.
     pub detail: String,
-    /// Time at the right.
+    /// Time at the right end of the band.
     pub clock: String,
 }
 

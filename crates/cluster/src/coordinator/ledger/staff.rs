@@ -28,7 +28,7 @@ pub enum Standing {
     SetAside,
 }
 
-/// A worker.
+/// A worker, as the ledger knows it.
 #[derive(Debug, Clone)]
 pub struct StaffMember {
     /// Latest notice of the worker; `None` if only results have arrived from it.
