@@ -148,7 +148,7 @@ mod tests {
                 fitness: Fitness::Climb,
                 budget: 300,
                 stops_at_goal: false,
-        changed: None,
+                changed: None,
             };
             let values = [("fitness", Some(24.5)), ("first_landing", first_landing)];
             let values = values
