@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use super::{Mount, Pose, Rotation, Vector};
 
-/// The whole body. Part 0 is the head, or its foremost part: nearest to the stairs.
+/// The whole body. Part 0 is the head, or the foremost part of a soft head: the part nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
     /// The parts, limb by limb from the head. The world inserts them in this order and lays them out in a row, unless joints
@@ -21,12 +21,12 @@ pub struct BodyPlan {
     pub joints: Vec<JointPlan>,
     /// The springs within soft limbs, from the head; empty if all limbs are rigid.
     pub springs: Vec<SpringPlan>,
-    /// Pairs of limbs that pass through each other, the front limb first: neighbours of a short limb, and joined limbs of which
-    /// one is soft. Joined rigid limbs always do.
+    /// Pairs of limbs that pass through each other, the front limb first: neighbours of a short limb, and joined limbs of which at least
+    /// one is soft. Joined rigid limbs always pass through each other and are not listed.
     pub contact_free_pairs: Vec<[usize; 2]>,
     /// Index of the part whose centre counts as the centre of the snake.
     pub middle_part: usize,
-    /// Rate at which the air takes the parts' angular velocity, in 1/s: after a time t, `exp(-rate t)` of it is left.
+    /// Rate at which the air slows the rotation of the parts, in 1/s: after a time t, a part keeps `exp(-rate t)` of its angular velocity.
     pub angular_damping_per_s: f32,
     /// Power that a joint axis takes for its torque alone, per square of the torque, in W/(N·m)².
     pub holding_w_per_n2m2: f32,
@@ -35,28 +35,27 @@ pub struct BodyPlan {
 /// One box-shaped part: a rigid limb, or a piece of a soft one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartPlan {
-    /// Index of the limb that it belongs to; the head is 0.
+    /// Index of the limb to which the part belongs; the head is 0.
     pub limb: usize,
-    /// Size across x, in metres.
+    /// Size of the part across x, in metres.
     pub width_m: f32,
-    /// Size along y, in metres.
+    /// Size of the part along y, in metres.
     pub length_m: f32,
-    /// Size along z, in metres.
+    /// Size of the part along z, in metres.
     pub height_m: f32,
-    /// Density, in kg/m³; with the size it gives the mass.
+    /// Density of the part, in kg/m³.
     pub density_kg_m3: f32,
 }
 
-/// One universal joint between the rear face of its parent, or the place of its mount, and the front face of its child: bend
-/// about the parent's x axis (snapping a stick), twist about its y axis (wringing a sponge), no other relative
-/// motion.
+/// One universal joint. It connects the rear face of its parent, or the place of its mount, to the front face of its child. It bends about
+/// the parent's x axis (snapping a stick) and twists about the parent's y axis (wringing a sponge), and allows no other relative motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPlan {
     /// Index of the part in front of the joint.
     pub parent: usize,
     /// Index of the part behind the joint; larger than `parent`.
     pub child: usize,
-    /// Where it holds its child; none at the rear face of its parent, straight behind it.
+    /// Where the joint holds its child on its parent. `None`: at the rear face of the parent, with the child straight behind it.
     pub mount: Option<Mount>,
     /// Largest bend to either side, in radians.
     pub bend_limit_rad: f32,
@@ -69,8 +68,8 @@ pub struct JointPlan {
     /// Torque that resists bend and twist, per joint rate, in N·m·s/rad. Integrated implicitly by
     /// the solver, so that large values stay stable.
     pub damping_nms_per_rad: f32,
-    /// Factor of the allowed distance between its anchors: 1, or for a body of its own the smallest side of both limbs
-    /// in metres, so that small limbs may not come further apart for their size.
+    /// Factor on the allowed distance between the joint's two anchors: 1, or for a body from the genome the smallest side of both limbs in
+    /// metres, so that the anchors of small limbs may only come apart in proportion to their size.
     pub gap_scale: f32,
     /// Constraint force mixing, in m/s per N: 0 holds anchors, locked axis and limits practically
     /// rigidly, larger is softer. It stands for a spring of `12 / CFM` N/m along the snake: see
@@ -84,32 +83,32 @@ pub struct JointPlan {
 pub struct SpringPlan {
     /// Index of the part in front of the spring.
     pub parent: usize,
-    /// Index of the part behind it.
+    /// Index of the part behind the spring.
     pub child: usize,
     /// Torque per angle about x (bending up and down), y (torsion) and z (bending sideways), in N·m/rad.
     pub stiffness_nm_per_rad: [f32; 3],
-    /// Torque per rate about the same axes, in N·m·s/rad.
+    /// Torque per angular rate about x, y and z, in N·m·s/rad.
     pub damping_nms_per_rad: [f32; 3],
-    /// Factor of the allowed distance between its anchors: the smallest side of the parts in metres, but at most 1.
+    /// Factor on the allowed distance between the spring's two anchors: the smallest side of the parts in metres, but at most 1.
     pub gap_scale: f32,
 }
 
-/// Length of a part relative to the height of its neighbours below which these pass through each other.
+/// Length of a part, as a share of the height of its taller neighbour, below which its two neighbours pass through each other.
 const SHORT_MIDDLE: f32 = 0.6;
 
-/// Whether the neighbours of a part of this length pass through each other, given their heights, all in metres: a bend of the
-/// joints between them would press their edges together, and block them.
+/// Returns whether the neighbours of a part of this length pass through each other, given their heights. All are in metres. If they
+/// collided, a bend of the joints between them would press their edges together and block the joints.
 pub fn neighbours_pass(middle_length_m: f32, heights_m: [f32; 2]) -> bool {
     middle_length_m < SHORT_MIDDLE * heights_m[0].max(heights_m[1])
 }
 
 impl PartPlan {
-    /// Size across x, along y and along z, in metres.
+    /// Returns the size of the part across x, along y and along z, in metres.
     pub fn size_m(&self) -> [f32; 3] {
         [self.width_m, self.length_m, self.height_m]
     }
 
-    /// Its smallest side, in metres.
+    /// Returns the part's smallest side, in metres.
     pub fn smallest_side_m(&self) -> f32 {
         self.size_m().into_iter().fold(f32::INFINITY, f32::min)
     }
@@ -121,7 +120,8 @@ impl PartPlan {
 }
 
 impl BodyPlan {
-    /// Length of the straight body from head to tail, in metres; of a branching body its extent along y before its trial.
+    /// Returns the length of the straight body from head to tail, in metres. For a branching body, it is the extent along y before the
+    /// trial.
     pub fn length_m(&self) -> f32 {
         if self.is_branching() {
             return self.branching_length_m();
@@ -134,26 +134,26 @@ impl BodyPlan {
         self.parts.last().map_or(0, |last| last.limb + 1)
     }
 
-    /// The parts of a limb, as a range of indices.
+    /// Returns the range of the indices of a limb's parts.
     pub fn parts_of(&self, limb: usize) -> Range<usize> {
         let first = self.parts.partition_point(|part| part.limb < limb);
         first..self.parts.partition_point(|part| part.limb <= limb)
     }
 
-    /// Size of a limb at rest across x, along y and along z, in metres; zeros without such a limb.
+    /// Returns the size of a limb at rest across x, along y and along z, in metres; zeros if there is no such limb.
     pub fn limb_size_m(&self, limb: usize) -> [f32; 3] {
         let parts = &self.parts[self.parts_of(limb)];
         let length_m = parts.iter().map(|part| part.length_m).sum();
         parts.first().map_or([0.0; 3], |first| [first.width_m, length_m, first.height_m])
     }
 
-    /// The joint in front of a limb; none of the head.
+    /// Returns the joint in front of a limb; `None` for the head.
     pub fn joint_before(&self, limb: usize) -> Option<&JointPlan> {
         let first = self.parts_of(limb).start;
         self.joints.iter().find(|joint| joint.child == first)
     }
 
-    /// The first spring within a limb, which is like its others; none in a rigid one.
+    /// Returns the first spring within a limb, which is equal to the limb's other springs; `None` for a rigid limb.
     pub fn spring_of(&self, limb: usize) -> Option<&SpringPlan> {
         let parts = self.parts_of(limb);
         self.springs.iter().find(|spring| parts.contains(&spring.parent))
@@ -169,8 +169,8 @@ impl BodyPlan {
         self.parts[self.parts_of(limb)].iter().map(PartPlan::mass_kg).sum()
     }
 
-    /// The poses of the limbs, given those of the parts: of a soft limb the mean of its parts' places, and the mean of the two
-    /// middle rotations.
+    /// Computes the poses of the limbs from the poses of the parts. A soft limb has the mean position of its parts, and the rotation of
+    /// its middle part or the mean of its two middle ones.
     pub fn limb_poses(&self, parts: &[Pose]) -> Vec<Pose> {
         if self.springs.is_empty() {
             return parts.to_vec();
@@ -197,12 +197,12 @@ impl BodyPlan {
         self.parts.iter().map(PartPlan::mass_kg).sum()
     }
 
-    /// Greatest torque of all joints together about both axes, in N·m.
+    /// Returns the sum of the greatest torques of all joints about both axes, in N·m.
     pub fn torque_nm(&self) -> f32 {
         self.joints.iter().map(|joint| joint.max_bend_torque_nm + joint.max_twist_torque_nm).sum()
     }
 
-    /// Distance of the middle part's centre from the front of the straight body, in metres.
+    /// Returns the distance of the middle part's centre from the front of the body before its trial, in metres.
     pub fn front_to_middle_m(&self) -> f32 {
         if self.is_branching() {
             return -self.rest_poses()[self.middle_part].translation.y;
@@ -216,12 +216,12 @@ impl BodyPlan {
         self.parts.iter().map(|part| part.size_m().into_iter().product::<f32>()).sum()
     }
 
-    /// Height of the line on which the joints lie at the start, in metres: the centre of the tallest limb.
+    /// Returns the height of the line on which the joints lie at the start, in metres: half the height of the tallest limb.
     pub fn axis_height_m(&self) -> f32 {
         self.parts.iter().map(|part| part.height_m).fold(0.0, f32::max) / 2.0
     }
 
-    /// Index of the middle one of parts that are alike: the third of five.
+    /// Returns the index of the middle part of equal parts: the third of five.
     pub fn middle_of(parts: &[PartPlan]) -> usize {
         parts.len() / 2
     }

@@ -16,19 +16,19 @@ pub(super) struct LimbVelocity {
     pub angular: Vector,
 }
 
-/// A corner that bounces in this step.
+/// A corner of a limb that bounces in this step.
 struct BouncingCorner {
-    /// From the limb's centre, in m.
+    /// Vector from the limb's centre to the corner, in m.
     lever: Vector,
     /// Unit vector along which the surface pushes the limb.
     direction: Vector,
-    /// Required speed after the bounce, in m/s.
+    /// Required speed of the corner after the bounce, in m/s.
     leaving_m_s: f32,
     /// Total impulse on the corner in this step so far, in N·s. It never becomes negative: a surface does not pull.
     impulse_ns: f32,
 }
 
-/// Number of passes over the corners. The four corners of a block agree to a thousandth after ten.
+/// Number of passes over the corners. After ten passes, the speeds of a block's four corners agree to a thousandth.
 const ROUNDS: u32 = 16;
 
 /// Repeats the engine's restitution of a limb's contacts with the world until all corners agree.

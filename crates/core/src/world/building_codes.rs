@@ -1,11 +1,11 @@
-//! Rules of building codes for stairs, in the proportions of real ones.
+//! Rules of building codes for stairs, compared at the scale of real stairs.
 //!
-//! The snake is a toy of another size than a person, so only proportions can be compared: a rise of 0.5 m stands for one of
-//! 175 mm, where the snake of five blocks would be 3.5 m long.
+//! The snake is far larger than a person, so only proportions can be compared: a rise of 0.5 m stands for a rise of 175 mm. On this scale
+//! the snake of five blocks is 3.5 m long.
 
 use super::Stairs;
 
-/// Millimetres of a real staircase for a metre of the snake's.
+/// Millimetres of a real staircase that correspond to one metre of the simulated stairs.
 pub const TRUE_MM_PER_M: f32 = 350.0;
 
 /// Rules for the rises and treads of stairs. All lengths are in millimetres of real stairs.
@@ -13,19 +13,19 @@ pub const TRUE_MM_PER_M: f32 = 350.0;
 pub struct BuildingCode {
     /// Kind of building and country to which the code applies.
     pub name: &'static str,
-    /// Its name and section.
+    /// Name and section of the code.
     pub source: &'static str,
-    /// Least and greatest rise.
+    /// Least and greatest rise allowed, in mm.
     pub rise_mm: [f32; 2],
-    /// Least and greatest tread.
+    /// Least and greatest tread allowed, in mm.
     pub tread_mm: [f32; 2],
-    /// Greatest difference between the rises of a flight, and between its treads.
+    /// Greatest difference allowed between the rises of a flight, and between its treads, in mm; `None` if the code sets no limit.
     pub spread_mm: Option<f32>,
-    /// Least and greatest sum of two rises and a tread, which is about a pace.
+    /// Least and greatest sum of two rises and a tread, which is about a pace, in mm; `None` if the code sets no limit.
     pub pace_mm: Option<[f32; 2]>,
 }
 
-/// The codes that stairs are compared with.
+/// The building codes with which stairs are compared.
 pub const BUILDING_CODES: [BuildingCode; 3] = [
     BuildingCode {
         name: "Homes, United States",
@@ -53,20 +53,20 @@ pub const BUILDING_CODES: [BuildingCode; 3] = [
     },
 ];
 
-/// Depth from which a tread is a landing, which the rules for treads leave out, in millimetres: that of the International
-/// Residential Code, R311.7.6.
+/// Depth from which a tread counts as a landing, to which the rules for treads do not apply, in millimetres: the depth in the
+/// International Residential Code, R311.7.6.
 const LANDING_MM: f32 = 914.0;
-/// Errors of rounding, in millimetres.
+/// Tolerance for errors of rounding, in millimetres.
 const TOLERANCE_MM: f32 = 0.01;
 
 impl Stairs {
-    /// Whether the tread of step number `index` (0 is the first) is so deep that it is a landing for building codes.
+    /// Returns whether the tread of step number `index` (0 is the first) is so deep that it counts as a landing in building codes.
     fn is_landing(&self, index: u32) -> bool {
         true_mm(self.step_tread_m(index)) >= LANDING_MM
     }
 
-    /// The mean rise and the mean tread in millimetres of real stairs, without treads that are landings; none without steps,
-    /// and a step down counts like one up.
+    /// Returns the mean rise and the mean tread in millimetres of real stairs; `None` without steps. A step down counts like a step up.
+    /// Treads that are landings do not count.
     pub fn mean_step_mm(&self) -> Option<[f32; 2]> {
         let mean = |lengths: Vec<f32>| {
             (!lengths.is_empty()).then(|| lengths.iter().sum::<f32>() / lengths.len() as f32)
@@ -74,7 +74,7 @@ impl Stairs {
         let rise_mm = mean((0..self.steps).map(|step| true_mm(self.step_rise_m(step))).collect())?;
         let treads = (0..self.steps).filter(|step| !self.is_landing(*step));
         let tread_mm = mean(treads.map(|step| true_mm(self.step_tread_m(step))).collect());
-        // Stairs of landings alone are as steep as their first step.
+        // If all treads are landings, the depth of the first one stands for the mean.
         Some([rise_mm, tread_mm.unwrap_or_else(|| true_mm(self.step_tread_m(0)))])
     }
 }
@@ -84,7 +84,7 @@ fn true_mm(length_m: f32) -> f32 {
 }
 
 impl BuildingCode {
-    /// The steepest stairs that it allows: rise over tread.
+    /// Returns the slope, rise over tread, of the steepest stairs that the code allows.
     pub fn steepest(&self) -> f32 {
         let [_, rise_mm] = self.rise_mm;
         let [mut tread_mm, _] = self.tread_mm;
@@ -94,7 +94,7 @@ impl BuildingCode {
         rise_mm / tread_mm
     }
 
-    /// Why the rises and treads of stairs do not follow it, in words; `None` if they do. A step down counts like one up.
+    /// Describes how the rises and treads of stairs break the code; `None` if they follow it. A step down counts like a step up.
     pub fn problem(&self, stairs: &Stairs) -> Option<String> {
         if let Some(step) = (0..stairs.steps).find(|step| stairs.step_slope_m(*step) > 0.0) {
             return Some(format!("step {} is a ramp", step + 1));
@@ -115,7 +115,7 @@ impl BuildingCode {
             if problem.is_some() {
                 return problem;
             }
-            // The last tread is level with the landing.
+            // The last tread is level with the landing and belongs to it.
             if number == stairs.steps || stairs.is_landing(step) {
                 continue;
             }
@@ -131,7 +131,7 @@ impl BuildingCode {
         self.problem_of_flights(stairs)
     }
 
-    /// Why the steps between two landings are too unequal.
+    /// Describes how unequal the steps between two landings are, if the code does not allow it; `None` if it does.
     fn problem_of_flights(&self, stairs: &Stairs) -> Option<String> {
         let most_mm = self.spread_mm?;
         let too_uneven = |what: &str, lengths_mm: &[f32]| {

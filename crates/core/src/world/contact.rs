@@ -1,4 +1,4 @@
-//! Translates the surface parameters that rapier lacks into terms that it knows.
+//! Expresses those surface parameters that rapier lacks in terms that rapier knows.
 //!
 //! Softness becomes contact springs of the solver ([`soften`]); bounce velocity and slip act through
 //! contact hooks ([`ContactHooks`]), which are switched on only where a contact needs them.
@@ -9,7 +9,7 @@ use rapier3d::prelude::*;
 use super::surface::{ContactLaw, ERP_TIME_S, Softness, Spring, spring};
 use super::{PartPlan, PhysicsSettings, WorldPlan};
 
-/// The collider of a contact pair that is not `collider`.
+/// Returns the collider of a contact pair that is not `collider`.
 pub(super) fn other_collider(pair: &ContactPair, collider: ColliderHandle) -> ColliderHandle {
     if pair.collider1 == collider { pair.collider2 } else { pair.collider1 }
 }
@@ -17,41 +17,41 @@ pub(super) fn other_collider(pair: &ContactPair, collider: ColliderHandle) -> Co
 /// The laws of all contacts in a world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ContactLaws {
-    /// Between the snake and the stairs.
+    /// Law of contacts between the snake and the stairs.
     pub stairs: ContactLaw,
-    /// Between the snake and the ground.
+    /// Law of contacts between the snake and the ground.
     pub ground: ContactLaw,
-    /// Between limbs of the snake.
+    /// Law of contacts between limbs of the snake.
     pub limbs: ContactLaw,
-    /// Whether a joint of the snake is a spring.
+    /// Whether at least one joint of the snake is a spring.
     pub joints_are_soft: bool,
 }
 
 impl ContactLaws {
-    /// Whether any contact or joint is a spring: then the solver runs without its velocity-only passes,
-    /// which would make every contact rigid again and let every soft joint drift apart.
+    /// Returns whether any contact or joint is a spring. The solver then runs without its velocity-only passes, which would make every
+    /// contact rigid again and let every soft joint drift apart.
     pub fn has_springs(&self) -> bool {
         self.joints_are_soft
             || [self.stairs, self.ground, self.limbs].iter().any(|law| law.softness.is_soft())
     }
 
-    /// Whether ground and stairs differ in softness. Rapier knows two softnesses, one for contacts
-    /// with fixed bodies and one for the others, so the ground then is an immovable body of the other
-    /// kind, and contacts between limbs are as soft as contacts with the ground.
+    /// Returns whether ground and stairs differ in softness. Rapier knows two softnesses, one for contacts with fixed bodies and one for
+    /// all others. If ground and stairs differ, the ground is therefore an immovable body that is not fixed, and contacts between limbs
+    /// are as soft as contacts with the ground.
     pub fn ground_is_apart(&self) -> bool {
         self.ground.softness != self.stairs.softness
     }
 }
 
-/// How a solver makes contacts as soft as these laws say. The springs are computed for the weight of one limb, the reference.
+/// How the solver makes contacts as soft as the laws say. The springs are computed for the weight of a reference limb.
 pub(super) struct ContactSoftness {
-    /// The laws.
+    /// The laws of all contacts.
     pub laws: ContactLaws,
     corner_kg: f32,
     quarter_kg: f32,
 }
 
-/// The softness of all contacts of a plan, whose middle part is the reference.
+/// Returns the softness of all contacts of a plan. Its middle part is the reference for the springs.
 pub(super) fn soft_contacts(plan: &WorldPlan) -> ContactSoftness {
     let laws = ContactLaws {
         stairs: ContactLaw::between(&plan.surface, &plan.skin),
@@ -66,7 +66,7 @@ pub(super) fn soft_contacts(plan: &WorldPlan) -> ContactSoftness {
 }
 
 impl ContactSoftness {
-    /// Rapier's coefficients for contacts of this softness.
+    /// Returns rapier's coefficients for contacts of this softness.
     pub fn of(&self, softness: Softness, physics: &PhysicsSettings) -> SpringCoefficients<Real> {
         let soft = |softness| {
             soft_coefficients(softness, physics.substep_s(), self.corner_kg, self.quarter_kg)
@@ -74,14 +74,14 @@ impl ContactSoftness {
         if softness.is_soft() {
             soft(softness)
         } else if self.laws.has_springs() {
-            // A rigid contact beside soft ones must be a very stiff spring: the solver has one mode for all.
+            // A rigid contact beside soft ones must be a very stiff spring, because the solver has one mode for all contacts.
             soft(Softness { cfm_m_s_per_n: HARD_CFM_M_S_PER_N, ..softness })
         } else {
             hard_coefficients(softness.erp, physics)
         }
     }
 
-    /// Sets up rapier's solver.
+    /// Sets the parameters of rapier's solver.
     pub fn set_up(&self, parameters: &mut IntegrationParameters, physics: &PhysicsSettings) {
         let laws = &self.laws;
         parameters.static_contact_softness = self.of(laws.stairs.softness, physics);
@@ -90,13 +90,13 @@ impl ContactSoftness {
         parameters.contact_softness = self.of(others, physics);
         if laws.has_springs() {
             parameters.num_internal_stabilization_iterations = 0;
-            // A cap on the speed at which a spring pushes back would make it weaker the deeper it is.
+            // Rapier caps the speed at which a spring pushes back. The cap would weaken a spring the more, the deeper it is pressed.
             parameters.normalized_max_corrective_velocity = Real::MAX;
         }
     }
 }
 
-/// The value the report's engine manual calls hard, in m/s per N.
+/// CFM that the engine manual of the report calls hard, in m/s per N.
 const HARD_CFM_M_S_PER_N: f32 = 1.0e-5;
 
 /// Rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is
@@ -115,7 +115,7 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
     }
 }
 
-/// Rapier's softness for a contact with the spring and damper that ERP and CFM describe (see [`spring`]).
+/// Returns rapier's softness for a contact with the spring and damper that ERP and CFM describe (see [`spring`]).
 ///
 /// Rapier scales its springs with the effective mass at each contact, `w² m` and `2 z w m`; so the conversion holds
 /// exactly for one mass, `effective_kg`: see [`corner_mass_kg`]. `moved_kg` is the mass that the spring moves.
@@ -123,9 +123,8 @@ fn hard_coefficients(erp: f32, physics: &PhysicsSettings) -> SpringCoefficients<
 /// Rapier integrates a spring k and a damper c in substeps of length h as the force `-k x - (c + h k) v'`, with the
 /// velocity v' after the substep. The term `h k` damps as much as the damper of a trampoline, and the more the longer
 /// the substep. Without it the motion is that of the symplectic Euler method, which keeps the energy of a spring, with
-/// an angular frequency w wrong by `(h w)² / 24`. It is therefore taken from the damper, except where `h w` is too large
-/// for that to be stable; so stiff it also is not to be seen. The damper itself is made stronger, so that implicit
-/// integration takes `exp(-c h / m)` of a velocity.
+/// for that to be stable; there the motion is too fast to be seen. The damper itself is made stronger, so that implicit integration takes
+/// `exp(-c h / m)` of a velocity.
 fn soft_coefficients(
     softness: Softness,
     substep_s: f32,
@@ -135,7 +134,7 @@ fn soft_coefficients(
     const LEAST_DAMPING: f32 = 2.0e-3;
     const LEAST_RATIO: f32 = 1.0e-3;
     let Spring { kp_n_per_m, kd_ns_per_m } = spring(softness);
-    // Where a motion is gone within a substep, exp would be beyond all numbers.
+    // If the motion is over within one substep, the exponential would overflow.
     let lost = (kd_ns_per_m * substep_s / moved_kg).min(1.0);
     let stronger = if lost > 1.0e-3 { libm::expm1f(lost) / lost } else { 1.0 };
     // Without any damping (an ERP of 1) rapier would divide by zero.
@@ -168,12 +167,11 @@ pub(super) fn joint_coefficients(
     soft_coefficients(Softness { erp: JOINT_ERP, cfm_m_s_per_n }, substep_s, reduced_kg, reduced_kg)
 }
 
-/// The share of a soft joint's error that is corrected in [`ERP_TIME_S`]: ODE's default for a step.
+/// Share of a soft joint's error that is corrected in [`ERP_TIME_S`]: ODE's default per step.
 pub(super) const JOINT_ERP: f32 = 0.2;
 
-/// Effective mass, in kg, at a contact in a corner of a limb that lies flat:
-/// `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² + h²)) / m`, from the inertia of a box. A limb of the
-/// report, 1 by 2 by 1, has 4.9 / m.
+/// Returns the effective mass, in kg, at a contact in a corner of a limb that lies flat: `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² +
+/// h²)) / m`, from the inertia of a box. For a limb of the report, 1 by 2 by 1, the result is m / 4.9.
 fn corner_mass_kg(limb: &PartPlan) -> f32 {
     let [w2, l2, h2] = limb.size_m().map(|size| size * size);
     limb.mass_kg() / (1.0 + 3.0 * l2 / (l2 + h2) + 3.0 * w2 / (w2 + h2))
@@ -205,8 +203,7 @@ impl PhysicsHooks for ContactHooks<'_> {
             &self.laws.stairs
         };
         if law.softness.is_soft() {
-            // The engine stops an approaching contact rigidly before it touches; a spring pushes only
-            // once it is touched.
+            // The engine stops an approaching contact rigidly before the bodies touch; a spring pushes only once they touch.
             context.solver_contacts.retain(|contact| contact.dist <= 0.0);
         }
         if law.bounce_velocity_m_s > 0.0 && incoming_m_s(context) < law.bounce_velocity_m_s {
@@ -218,7 +215,7 @@ impl PhysicsHooks for ContactHooks<'_> {
     }
 }
 
-/// Velocity of the first body's surface relative to the second's at a point, in m/s.
+/// Returns the velocity of the first body's surface relative to the second's at a point, in m/s.
 fn relative_velocity(context: &ContactModificationContext, at: Vector) -> Vector {
     let velocity = |body: Option<RigidBodyHandle>| {
         body.map_or(Vector::ZERO, |body| context.bodies[body].velocity_at_point(at))
@@ -226,7 +223,7 @@ fn relative_velocity(context: &ContactModificationContext, at: Vector) -> Vector
     velocity(context.rigid_body1) - velocity(context.rigid_body2)
 }
 
-/// The greatest speed at which the bodies approach each other at their contacts, in m/s.
+/// Returns the greatest speed at which the bodies approach each other at their contacts, in m/s.
 fn incoming_m_s(context: &ContactModificationContext) -> f32 {
     // The normal points from the first body to the second.
     let approach =
@@ -241,12 +238,12 @@ impl ContactHooks<'_> {
         if count == 0.0 {
             return;
         }
-        // The manifold also holds points that are only near, with the impulses of their last touch.
+        // The manifold also holds points that are near but do not touch, with the impulses of their last touch.
         let touching = context.solver_contacts.iter().filter_map(|contact| {
             context.manifold.points.get((contact.contact_id[0] & !NEW_CONTACT_BIT) as usize)
         });
-        // The engine keeps the impulses of the last substep: the pressure of each point, but the friction
-        // of the whole patch. (Its sum over a step counts a persistent contact once too often.)
+        // The engine keeps the impulses of the last substep: for each point its own pressure, but the friction of the whole patch. (Its
+        // sum over a step counts a persistent contact once too often.)
         let (mut friction_ns, mut pressed_ns) = (Vector::ZERO, 0.0);
         for point in touching {
             friction_ns += point.data.warmstart_tangent_world;
@@ -271,7 +268,7 @@ impl ContactHooks<'_> {
         }
     }
 
-    /// Mass of the touching limb, in kg; if two limbs touch, of the lighter one.
+    /// Returns the mass of the touching limb, in kg; if two limbs touch, the mass of the lighter one.
     fn limb_mass_kg(&self, context: &ContactModificationContext) -> f32 {
         let bodies = [context.rigid_body1, context.rigid_body2];
         let masses = bodies.iter().flatten().map(|body| context.bodies[*body].mass());
@@ -279,7 +276,7 @@ impl ContactHooks<'_> {
     }
 }
 
-/// A contact patch that creeps at slip times its tangential force, by a lower friction.
+/// A contact patch that creeps with the speed slip times its tangential force. The creep is made by a lower friction.
 ///
 /// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
 /// stop a contact or let it slide, so it is told to stop it with no more than the viscous force
@@ -290,16 +287,16 @@ impl ContactHooks<'_> {
 /// slip. Friction never does more than stop a motion, so it cannot add energy, even where the
 /// estimates are poor, as in a fall.
 pub(super) struct SlippingPatch {
-    /// Sum over its points of the friction that each had in the last substep on the body whose sliding is given, in N·s; each
-    /// point has that of the whole patch.
+    /// Sum over the patch's points of their friction in the last substep, in N·s, on the body whose sliding is given. The engine gives
+    /// each point the friction of the whole patch.
     pub friction_ns: Vector,
-    /// Number of its points.
+    /// Number of the patch's points.
     pub points: f32,
     /// Sum of the normal impulses of the points in the last substep, in N·s.
     pub pressed_ns: f32,
-    /// Velocity along the surface, in m/s.
+    /// Velocity of the limb along the surface, in m/s.
     pub sliding_m_s: Vector,
-    /// Speed along the normal towards the surface, in m/s.
+    /// Speed of the limb along the normal towards the surface, in m/s.
     pub approach_m_s: f32,
     /// Mass of the limb, in kg.
     pub mass_kg: f32,
@@ -308,7 +305,7 @@ pub(super) struct SlippingPatch {
 }
 
 impl SlippingPatch {
-    /// The coefficient of friction that lets it creep; none while nothing presses.
+    /// Returns the coefficient of friction that lets the patch creep; `None` while nothing presses on it.
     pub fn friction(&self, slip_m_s_per_n: f32) -> Option<f32> {
         let per_s = self.substeps as f32 / self.step_s;
         let (force_n, pressed_n) =
@@ -324,6 +321,6 @@ impl SlippingPatch {
     }
 }
 
-/// Share of a limb's mass that a push along the surface at its underside has to move: less than all,
-/// because the limb also turns. Too large a share would be unstable, too small a share only slower.
+/// Share of a limb's mass that a push along the surface at its underside has to move: less than 1, because the limb also turns. Too large
+/// a share would be unstable; too small a share only makes the creep slower.
 const PATCH_SHARE_OF_MASS: f32 = 0.3;

@@ -1,23 +1,23 @@
-//! Factors by which air and surfaces slow the limbs, with the same effect at every step rate.
+//! Factors by which air and surfaces slow the limbs. They have the same effect at every step rate.
 //!
-//! A velocity that decays at a rate d loses the factor `exp(-d h)` in a step of length h. Half of it acts before the
-//! engine's step and half after it (Strang's splitting, SIAM J. Numer. Anal. 5, 1968), so that the final velocity under a
-//! constant force agrees with `force / (d · mass)` up to `(d h)² / 24`. The engine's own damping divides by `1 + d h` at
-//! the end of a step instead, whose rate and final velocity both depend on the step.
+//! A velocity that decays at a rate d loses the factor `exp(-d h)` in a step of length h. Half of the decay acts before the engine's step
+//! and half after it (Strang's splitting, SIAM J. Numer. Anal. 5, 1968), so that the final velocity under a constant force agrees with
+//! `force / (d · mass)` up to `(d h)² / 24`. The engine's own damping instead divides by `1 + d h` at the end of a step. Its rate of decay
+//! and its final velocity both depend on the length of the step.
 
-/// Factors on velocities in half a step.
+/// Factors by which velocities shrink in half a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HalfStepDamping {
-    /// Factor of the air on the angular velocity.
+    /// Factor of the air on a limb's angular velocity.
     pub air: f32,
-    /// Factor of the stairs on both velocities of a limb that touches them.
+    /// Factor of the stairs on the linear and angular velocity of a limb that touches them.
     pub stairs: f32,
-    /// Factor of the ground on both velocities of a limb that touches it.
+    /// Factor of the ground on the linear and angular velocity of a limb that touches it.
     pub ground: f32,
 }
 
 impl HalfStepDamping {
-    /// The factors for these rates, in 1/s, and steps of `step_s`.
+    /// Computes the factors for these rates, in 1/s, and steps of `step_s` seconds.
     pub fn of_rates(air_per_s: f32, stairs_per_s: f32, ground_per_s: f32, step_s: f32) -> Self {
         let factor = |rate_per_s: f32| libm::expf(-rate_per_s * step_s / 2.0);
         Self { air: factor(air_per_s), stairs: factor(stairs_per_s), ground: factor(ground_per_s) }

@@ -1,24 +1,24 @@
-//! Reasons why a running world cannot continue under another plan, and those that the plans alone show.
+//! Reasons why a running world cannot continue under another plan, and the check for the reasons that follow from the plans alone.
 
 use super::{BodyPlan, WorldPlan};
 
 /// Why a running world cannot continue under another plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Discontinuity {
-    /// The snake has another number, size or arrangement of limbs.
+    /// The other snake has another number, size or arrangement of limbs.
     Body,
-    /// A step has another length, so the steps of both worlds have different times.
+    /// The physics steps have another length, so the steps of both worlds have different times.
     StepLength,
-    /// The snake has another place at the start, and the start is over.
+    /// The snake starts in another place.
     Start,
-    /// The stairs have another shape, and a limb has reached them: it could be inside a step.
+    /// The stairs have another shape, and a limb has already reached them, so it could end up inside a step.
     Stairs,
-    /// The other trial is over by that step.
+    /// The other trial is already over by the current step.
     Duration,
 }
 
 impl Discontinuity {
-    /// The reason in words, to follow "because ".
+    /// Returns the reason in words, to follow "because ".
     pub fn words(self) -> &'static str {
         match self {
             Self::Body => "the snake has another shape",
@@ -31,11 +31,11 @@ impl Discontinuity {
 }
 
 impl WorldPlan {
-    /// Whether a world of this plan can continue under `next`, whatever its state; the shape of the stairs also
-    /// depends on that: see [`Simulation::can_continue`](super::Simulation::can_continue).
+    /// Checks whether a world of this plan can continue under `next`, whatever its state. The shape of the stairs is not compared, because
+    /// it matters only once a limb has reached them: see [`Simulation::can_continue`](super::Simulation::can_continue).
     ///
     /// # Errors
-    /// The reason, if it cannot.
+    /// Returns the reason if the world cannot continue.
     pub fn can_continue(&self, next: &Self) -> Result<(), Discontinuity> {
         let start = |plan: &Self| (plan.start_x_m, plan.start_y_m, plan.start_turn_rad);
         if !self.body.has_shape_of(&next.body) {
@@ -51,7 +51,8 @@ impl WorldPlan {
 }
 
 impl BodyPlan {
-    /// Whether parts have the same sizes, and joints and springs connect the same parts in the same places.
+    /// Returns whether the parts of two bodies have the same sizes, and their joints and springs connect the same parts in the same
+    /// places.
     fn has_shape_of(&self, other: &Self) -> bool {
         let sizes = |body: &Self| {
             body.parts.iter().map(|part| (part.limb, part.size_m())).collect::<Vec<_>>()

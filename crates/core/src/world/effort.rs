@@ -1,16 +1,15 @@
-//! Energy, speeds and distances of a rollout, which show how near it came to disqualification.
+//! Energy, speed and distances of a rollout. They show how close it came to disqualification.
 
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
 
-/// Totals and maxima over the healthy steps so far.
+/// Totals and maxima over all healthy steps of a rollout.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Effort {
-    /// Energy that the joints spent, in J: the integral of |torque × joint rate| over both axes of all
-    /// joints. Energy that flows back from a joint driven against its torque counts as spent, too. With a holding power, the
-    /// integral of its product with the square of the torque is added.
+    /// Energy that the joints spent, in J: the integral of |torque × joint rate| over both axes of all joints. Energy that flows back from
+    /// a joint driven against its torque counts as spent, too. With a holding power, the integral of holding power × torque² is added.
     pub energy_j: f32,
     /// Greatest speed of a limb's centre, in m/s.
     pub top_speed_m_s: f32,
@@ -24,7 +23,7 @@ impl Effort {
     /// Checks every value that was read from a file.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(self) -> Result<(), Invalid> {
         let Effort { energy_j, top_speed_m_s, joint_drift_m, sideways_m } = self;
         for (field, value) in [
@@ -38,7 +37,7 @@ impl Effort {
         Ok(())
     }
 
-    /// The effort of two consecutive parts of a rollout.
+    /// Combines the effort of two consecutive parts of a rollout: adds the energies and takes the greater of each maximum.
     pub fn and(self, later: Self) -> Self {
         Self {
             energy_j: self.energy_j + later.energy_j,

@@ -1,8 +1,7 @@
 //! Limits beyond which a rollout no longer counts, because the physics broke or was exploited.
 //!
-//! A learning method finds every weakness of an engine. A snake that tears its joints apart, is shot
-//! across the arena by a bad contact, or leaves the arena has not climbed; it is disqualified in the
-//! step in which that shows, and every report states the reason.
+//! Learning methods exploit every weakness of an engine. A snake that tears its joints apart, is shot across the arena by a bad contact,
+//! or leaves the arena has not climbed. It is disqualified in the step in which this is detected, and every report states the reason.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,9 +18,9 @@ pub enum Disqualification {
     TooFast,
     /// The agent left the arena.
     LeftArena,
-    /// The agent gained mechanical energy that its joints did not supply.
+    /// The agent gained mechanical energy that its joints had not supplied.
     EnergyFromNothing,
-    /// A body of its own fell over or did not come to rest before its trial.
+    /// The agent, with a body from its genome, fell over or did not come to rest before its trial.
     FellOver,
     /// The program failed while it simulated the agent.
     Crashed,
@@ -43,12 +42,11 @@ impl Disqualification {
 }
 
 setting_group! {
-    /// The tolerances beyond which an agent is disqualified. Each range goes from the error that the solver itself
-    /// leaves to a value that limits nothing.
+    /// Tolerances beyond which an agent is disqualified. The range of each goes from the error that the solver itself leaves to a value
+    /// that limits nothing.
     pub struct HealthLimits in "Disqualification": "A snake that breaks the physics instead of climbing is disqualified." {
-        /// Largest distance between the two anchors of a joint, in metres. A tenth of a block's
-        /// width by default: a gap that can be seen. Of a body of its own it is that of blocks of 1 m, and in proportion
-        /// to the smallest side of both.
+        /// Largest distance between the two anchors of a joint, in metres. The default is a tenth of a block's width, a gap that can be
+        /// seen. For a body from the genome the limit applies to blocks of 1 m, and scales with the smallest side of the two joined limbs.
         joint_drift_m: f32 = 0.1,
             number("Joint gap", 0.001..=10.0)
                 .unit("m")
@@ -56,8 +54,8 @@ setting_group! {
                 .slider(0.01, 1.0)
                 .logarithmic_from(0.01);
 
-        /// Largest speed of a limb's centre, in m/s. A fall from the landing ends at 10 m/s, so 25
-        /// is out of reach for anything but an explosion.
+        /// Largest speed of a limb's centre, in m/s. A fall from the landing ends at 10 m/s, so only a failure of the simulation reaches
+        /// 25 m/s.
         speed_m_s: f32 = 25.0,
             number("Speed limit", 1.0..=1000.0)
                 .unit("m/s")
@@ -73,7 +71,7 @@ setting_group! {
                 )
                 .slider(2.0, 50.0);
 
-        /// Extent of the arena behind the origin of the y axis, in metres: a limb's least y is minus this.
+        /// Extent of the arena behind the origin of the y axis, in metres: no limb may have a y below the negative of this value.
         arena_back_m: f32 = 30.0,
             number("Backward limit", 1.0..=1000.0).advanced()
                 .unit("m")

@@ -1,4 +1,4 @@
-//! Branching bodies: where a joint holds its child on its parent, and how such a body stands before its trial.
+//! Branching bodies: where a joint holds its child on its parent, and how a branching body stands before its trial.
 
 use super::{BodyPlan, JointPlan, PartPlan, Pose, Rotation, Vector};
 
@@ -11,35 +11,34 @@ pub struct Mount {
     /// Rotation of the child against its parent in the middle of the joint's range. The joint bends about the x axis of the
     /// rotated frame and twists about its y axis.
     pub turn: Rotation,
-    /// Bend and twist at the start, from the middle of the range, in radians. A joint whose range has another middle than the
-    /// built pose has asymmetric limits; about the middle they are symmetric, as the engine needs them for equal bits
-    /// everywhere.
+    /// Bend and twist at the start, measured from the middle of the range, in radians. The built pose need not be the middle of a joint's
+    /// range. The limits are symmetric about the middle, as the engine needs them to compute equal bits everywhere.
     pub start_rad: [f32; 2],
 }
 
 impl Mount {
-    /// The pose of a child of this length, in metres, before a trial, given that of its parent.
+    /// Returns the pose before a trial of a child of this length, in metres, given the pose of its parent.
     pub fn place(&self, parent: &Pose, length_m: f32) -> Pose {
         let turn = parent.rotation * (self.turn * joint_turn(self.start_rad));
         let at = parent.translation + parent.rotation * self.at_m;
         Pose::from_parts(at - turn * Vector::new(0.0, length_m / 2.0, 0.0), turn)
     }
 
-    /// The mount of a part of a chain or of a soft limb: straight behind a part of this length, in metres.
+    /// Returns the mount of a part of a chain or of a soft limb: straight behind a parent of this length, in metres.
     fn straight_behind(length_m: f32) -> Self {
         let at_m = Vector::new(0.0, -length_m / 2.0, 0.0);
         Self { at_m, turn: Rotation::IDENTITY, start_rad: [0.0; 2] }
     }
 }
 
-/// The rotation of a universal joint at a bend and a twist, in radians: its quaternion has no z part.
+/// Returns the rotation of a universal joint at a bend and a twist, in radians. The quaternion has no z part.
 pub fn joint_turn([bend_rad, twist_rad]: [f32; 2]) -> Rotation {
     let [x, y] = [bend_rad, twist_rad].map(|angle_rad| libm::tanf(angle_rad / 2.0));
     Rotation::from_xyzw(x, y, 0.0, 1.0).normalize()
 }
 
 impl PartPlan {
-    /// Half the size along each axis of a frame that sees the part turned, in metres.
+    /// Returns half the extent of the part along each axis of a frame in which the part has this rotation, in metres.
     pub(super) fn reach_m(&self, turn: Rotation) -> Vector {
         let axes = [Vector::X, Vector::Y, Vector::Z].into_iter().zip(self.size_m());
         axes.map(|(axis, size_m)| (turn * axis).abs() * (size_m / 2.0)).sum()
@@ -47,25 +46,25 @@ impl PartPlan {
 }
 
 impl JointPlan {
-    /// The axes of the joint in a frame in which its parent is turned so: the bend is about x, the twist about y.
+    /// Returns the axes of the joint in a frame in which its parent has this rotation: the joint bends about x and twists about y.
     pub fn axes(&self, parent: Rotation) -> Rotation {
         self.mount.map_or(parent, |mount| parent * mount.turn)
     }
 
-    /// Place of the joint on its parent, in metres from the centre of a part of this length.
+    /// Returns the place of the joint on its parent, in metres from the parent's centre, for a parent of this length in metres.
     pub fn anchor_m(&self, parent_length_m: f32) -> Vector {
         self.mount.unwrap_or_else(|| Mount::straight_behind(parent_length_m)).at_m
     }
 }
 
 impl BodyPlan {
-    /// Whether its parts form a tree instead of a row.
+    /// Returns whether the body's parts form a tree instead of a row.
     pub fn is_branching(&self) -> bool {
         self.joints.iter().any(|joint| joint.mount.is_some())
     }
 
-    /// The poses of the parts of a body before its trial. Its foremost point lies at y = 0, its lowest at z = 0, its centre of
-    /// mass at x = 0.
+    /// Computes the poses of the parts of a body before its trial. The body's foremost point lies at y = 0, its lowest at z = 0, its
+    /// centre of mass at x = 0.
     pub fn rest_poses(&self) -> Vec<Pose> {
         let mut poses = vec![Pose::from_parts(Vector::ZERO, Rotation::IDENTITY); self.parts.len()];
         let joints = self.joints.iter().map(|joint| ([joint.parent, joint.child], joint.mount));
@@ -90,7 +89,7 @@ impl BodyPlan {
         poses
     }
 
-    /// The least and the greatest corner of a box around each part before its trial, in metres: see [`Self::rest_poses`].
+    /// Returns the least and the greatest corner of a box around each part before the trial, in metres: see [`Self::rest_poses`].
     pub fn rest_boxes_m(&self) -> Vec<[Vector; 2]> {
         let parts = self.rest_poses().into_iter().zip(&self.parts);
         let around = |(pose, part): (Pose, &PartPlan)| {
@@ -102,12 +101,12 @@ impl BodyPlan {
 
     /// Extent of a branching body along y before its trial, in metres.
     pub(super) fn branching_length_m(&self) -> f32 {
-        // The front lies at 0.
+        // The front of the body lies at y = 0.
         -self.rest_boxes_m().into_iter().map(|[rear, _]| rear.y).fold(0.0, f32::min)
     }
 
-    /// Index of the part whose centre is nearest to the centre of mass of a branching body before its trial; the first of
-    /// several.
+    /// Returns the index of the part whose centre is nearest to the centre of mass of a branching body before its trial; of several, the
+    /// first.
     pub fn branching_middle(&self) -> usize {
         let poses = self.rest_poses();
         let moments = poses.iter().zip(&self.parts);

@@ -7,11 +7,11 @@ use crate::schema::{
     whole,
 };
 
-/// Allowed numbers of physics steps per second. Below 20 bodies pass through each other; above 1000 nothing changes.
+/// Allowed numbers of physics steps per second. Below 20, bodies pass through each other; above 1000, the motion hardly changes.
 pub const STEP_RATES_HZ: RangeInclusive<u32> = 20..=1000;
 
 choices! {
-    /// The program that computes the motion.
+    /// The program that computes the motion: rapier or *lanes*.
     #[derive(Default)]
     pub enum PhysicsEngine {
         #[default]
@@ -24,7 +24,7 @@ choices! {
 }
 
 impl PhysicsEngine {
-    /// The engine that this one is not.
+    /// Returns the other of the two engines.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -35,16 +35,16 @@ impl PhysicsEngine {
 }
 
 setting_group! {
-    /// Settings of the physics engine. They belong to the trial, because they change the bits.
+    /// Settings of the physics engine. They belong to the trial, because they change the bits of its results.
     pub struct PhysicsSettings {
-        /// The engine.
+        /// The engine that computes the motion.
         #[serde(default, skip_serializing_if = "is_default")]
         engine: PhysicsEngine = PhysicsEngine::Rapier;
         /// Physics steps per simulated second, in Hz. Every step has the same length.
         steps_per_s: u32 = 60;
         /// Solver substeps within one step.
         substeps: u32 = 2;
-        /// Solver iterations within one substep. Engine 2 had one.
+        /// Solver iterations within one substep. Engine version 2 had one.
         #[serde(default = "one_iteration")]
         iterations: u32 = 4;
         /// Downward acceleration, in m/s².
@@ -57,7 +57,7 @@ impl SettingGroup for PhysicsSettings {
         let Self { engine, steps_per_s, substeps, iterations, gravity_m_s2 } = self;
         walk.section(Section { title: "Physics", about: "Gravity and time step." });
         settings! { walk,
-            // From weightlessness to four times Jupiter.
+            // The range goes from weightlessness to four times Jupiter's gravity.
             gravity_m_s2: number("Gravity", 0.0..=100.0)
                 .unit("m/s²")
                 .hint("Acceleration of free fall: 9.81 on Earth, 1.62 on the Moon")
@@ -83,12 +83,12 @@ impl SettingGroup for PhysicsSettings {
     }
 }
 
-/// Iterations in files that do not state them.
+/// Returns the number of iterations for files that do not state it.
 fn one_iteration() -> u32 {
     1
 }
 
-/// Step rates, in Hz, and substeps at which every closed form is tested.
+/// Step rates, in Hz, with the substeps, at which the motion is tested against every closed formula.
 #[cfg(test)]
 pub const TESTED_RATES: [(u32, u32); 7] =
     [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8), (120, 2), (240, 2)];
@@ -99,8 +99,8 @@ impl PhysicsSettings {
         1.0 / self.steps_per_s as f32
     }
 
-    /// Share of the joints' damping that the solver integrates, implicitly, in each of n substeps: `n / (n + 1)`. The rest
-    /// acts as a torque that is constant over a step.
+    /// Returns the share of the joints' damping that the solver integrates, implicitly, in each of n substeps: `n / (n + 1)`. The rest of
+    /// the damping acts as a torque that is constant over a step.
     ///
     /// Implicit integration alone damps too little, by half of `damping · substep / inertia`. With these shares a rate
     /// decays in one step by `1 - x + x²/2 - ...` for `x = damping · step / inertia`, which agrees with `exp(-x)` to second

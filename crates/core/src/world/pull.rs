@@ -4,29 +4,29 @@ use rapier3d::prelude::RigidBody;
 
 use super::Vector;
 
-/// A pull on a part of the snake by the user. It is no part of any trial.
+/// A user's pull on a part of the snake. No trial contains pulls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull {
-    /// Index of the part.
+    /// Index of the pulled part.
     pub part: usize,
-    /// Point at which the spring holds the part, in the part's own frame, in metres from its centre.
+    /// Point of the part at which the spring holds it, in the part's own frame, in metres from the part's centre.
     pub held_at_m: Vector,
     /// Target of the pull in the world, in metres.
     pub to_m: Vector,
 }
 
-/// Natural frequency of the limb's mass on the spring, in rad/s. Its weight stretches the spring by 0.1 m.
+/// Natural frequency of the part's mass on the spring, in rad/s. The part's weight stretches the spring by 0.1 m.
 const FREQUENCY_RAD_S: f32 = 10.0;
-/// Damping ratio.
+/// Damping ratio of the spring.
 const DAMPING_RATIO: f32 = 0.6;
-/// Maximum damping per step. At a limb's end a quarter of its mass resists, so that from 0.5 on an explicit
-/// step would overshoot.
+/// Maximum damping per step, dimensionless. At a limb's end the effective mass is only a quarter of the limb's mass, so an explicit step
+/// would overshoot from 0.5 on.
 const MAX_DAMPING_PER_STEP: f32 = 0.4;
-/// Maximum stretch of the spring, in metres: a jerk of the mouse must not tear the snake apart.
+/// Maximum stretch of the spring, in metres, so that a jerk of the mouse does not tear the snake apart.
 const MAX_STRETCH_M: f32 = 4.0;
 
 impl Pull {
-    /// The force, in N, and the point on which it acts, in metres.
+    /// Returns the force of the spring, in N, and the point on which it acts, in metres.
     pub(super) fn force_on(&self, body: &RigidBody, step_s: f32) -> (Vector, Vector) {
         let point = *body.position() * self.held_at_m;
         let stretch = (self.to_m - point).clamp_length_max(MAX_STRETCH_M);

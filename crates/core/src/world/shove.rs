@@ -1,17 +1,17 @@
-//! A shove: a limb's velocity changes at one moment, as if something had hit it.
+//! A shove: a sudden change of a limb's velocity, as if something had hit the limb.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Vector;
 use crate::check::{Invalid, within};
 
-/// A sudden change of a limb's velocity. It turns the limb no faster and acts on no other limb, except through the joints.
+/// A sudden change of a limb's velocity. It leaves the limb's angular velocity as it is, and acts on other limbs only through the joints.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shove {
     /// Index of the limb; the head is 0.
     pub limb: usize,
-    /// When it happens, in s from the start. It acts before the step that begins then.
+    /// Time of the shove, in s from the start. It acts before the step that begins at this time.
     pub at_s: f32,
     /// Change of the limb's velocity, in m/s, added at once.
     #[serde(serialize_with = "write_vector", deserialize_with = "read_vector")]
@@ -22,7 +22,7 @@ impl Shove {
     /// Checks every value.
     ///
     /// # Errors
-    /// A value that no exam draws.
+    /// Returns the first value outside the range that exams draw from.
     pub fn check(&self) -> Result<(), Invalid> {
         within("limb", self.limb, 0..=1000)?;
         within("at_s", self.at_s, 0.0..=1.0e4)?;
@@ -33,7 +33,7 @@ impl Shove {
     }
 }
 
-/// A vector as the list of its three coordinates.
+/// Writes a vector as the list of its three coordinates.
 fn write_vector<S: Serializer>(vector: &Vector, serializer: S) -> Result<S::Ok, S::Error> {
     vector.to_array().serialize(serializer)
 }

@@ -1,6 +1,6 @@
 //! One snake on one staircase, advanced by one constant step at a time.
 //!
-//! Everything that scores, replays, shows or tests a snake goes through [`Simulation::step`].
+//! All code that scores, replays, shows or tests a snake calls [`Simulation::step`].
 
 use rapier3d::prelude::*;
 
@@ -31,24 +31,24 @@ use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
 use lanes::LanesWorld;
 pub use lanes::{LANES, LockStep, SeenPoint};
 
-/// A running world. A clone continues with the bits of the original.
+/// A running world. A clone continues with the same bits as the original.
 pub struct Simulation {
     physics: PhysicsWorld,
-    /// Whether more changed since the last step than velocities and torques.
+    /// Whether something besides velocities and torques changed since the last step.
     is_changed: bool,
     contacts: ContactSettings,
     profile: StairProfile,
     damping: HalfStepDamping,
-    /// Share of the joints' damping that acts as a torque.
+    /// Share of the joints' damping that acts as an explicit torque, outside the solver.
     damping_as_torque: f32,
     body: BodyPlan,
-    /// The engine's bodies of the parts, in the order of the plan.
+    /// The engine's bodies of the parts, in the order of the plan's parts.
     parts: Vec<RigidBodyHandle>,
     health: HealthLimits,
     arena_front_y_m: f32,
     /// Torque of the joints' drives on each part, in N·m.
     torques_in_world: Vec<Vector>,
-    /// Torque of the joints' damping on each part, in N·m, added to that of the drives.
+    /// Torque of the joints' damping on each part, in N·m. It is added to the torque of the drives.
     damping_in_world: Vec<Vector>,
     applied: Vec<AppliedTorque>,
     effort: Effort,
@@ -56,19 +56,19 @@ pub struct Simulation {
     /// The user's pull on a limb, and whether there was one in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
-    /// Forces on the parts in another engine, if this world mirrors one; empty if not.
+    /// Forces on each part in another engine, if this world mirrors one; empty otherwise.
     mirrored: Vec<Option<Vector>>,
-    /// The snake in the engine *lanes*, if that computes the motion. Rapier's bodies then hold the state, and take no steps.
+    /// The snake in the engine *lanes*, if *lanes* computes the motion. Rapier's bodies then hold the state, but rapier takes no steps.
     lanes: Option<Box<LanesWorld>>,
-    /// Rotations and rates of the limbs before the step, in memory that is used again.
+    /// Rotations and angular velocities of the limbs before the step. The memory is reused in each step.
     turns_before: Vec<LimbTurn>,
 }
 
-/// Settings of the contacts, needed in each step.
+/// Settings of the contacts that each step needs.
 #[derive(Debug, Clone)]
 struct ContactSettings {
     laws: ContactLaws,
-    /// Whether any material bounces.
+    /// Whether any material has restitution.
     bounces: bool,
     ground: ColliderHandle,
     substeps: u32,
@@ -76,9 +76,9 @@ struct ContactSettings {
 }
 
 impl Simulation {
-    /// Builds the world: ground, stairs from the lowest up, parts from the head, joints and springs from the head.
+    /// Builds the world: the ground, the stairs from the lowest up, the parts from the head, and the joints and springs from the head.
     ///
-    /// The order of insertion is part of the bits of every run.
+    /// The order of insertion influences the bits of every run.
     pub fn new(plan: &WorldPlan) -> Self {
         let softness = soft_contacts(plan);
         let laws = softness.laws;
@@ -97,7 +97,7 @@ impl Simulation {
             .iter()
             .any(|&bounce| bounce > 0.0);
         if bounces {
-            // Recycled contacts keep their mark as new, on which the bounce correction relies.
+            // Without recycling, contacts keep the mark that they are new. The bounce correction needs this mark.
             physics.integration_parameters.contact_recycling = false;
         }
         let ground = insert_ground(&mut physics, plan, &laws);
@@ -146,14 +146,14 @@ impl Simulation {
     /// step.
     ///
     /// # Errors
-    /// The reason for which this step disqualified the agent. The world must not be stepped further then.
+    /// Returns the reason if this step disqualified the agent. The world must not be stepped any further then.
     pub fn step(&mut self, torques: &[JointTorque]) -> Result<(), Disqualification> {
         self.apply(torques);
         self.advance();
         self.take_in_step()
     }
 
-    /// Checks the state after a step, and adds its effort.
+    /// Checks the state after a step, and adds the effort of the step to the total.
     fn take_in_step(&mut self) -> Result<(), Disqualification> {
         let mut effort = self.check_health()?;
         let motion_j = self.motion_energy_j();
@@ -169,7 +169,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The built body: its parts, joints, springs, sizes, masses and limits.
+    /// Returns the built body: its parts, joints, springs, sizes, masses and limits.
     pub fn body(&self) -> &BodyPlan {
         &self.body
     }
@@ -179,7 +179,7 @@ impl Simulation {
         self.effort
     }
 
-    /// Lets the engine take one step, and then air and surfaces slow the limbs.
+    /// Advances the engine by one step, and then slows the limbs by the damping of air and surfaces.
     pub(crate) fn advance(&mut self) {
         self.read_turns();
         if self.lanes.is_some() {
@@ -222,24 +222,25 @@ impl Simulation {
         }
     }
 
-    /// The engine's state, for reading: debug drawing, picking, the bench.
+    /// Gives read access to the engine's state, for debug drawing, picking and benchmarks.
     pub fn physics(&self) -> &PhysicsWorld {
         &self.physics
     }
 
-    /// The engine's bodies of the parts, in the order of the plan. The ground can be a body, too.
+    /// Returns the engine's bodies of the parts, in the order of the plan's parts. The ground can be another body, which is not among
+    /// them.
     pub fn parts(&self) -> &[RigidBodyHandle] {
         &self.parts
     }
 
-    /// The engine's state, for the bench, which steps rapier alone. The energy balance says nothing from then on.
+    /// Gives write access to the engine's state, for benchmarks that step rapier alone. From then on the energy balance is meaningless.
     pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
         self.balance.has_unknown_work = true;
         self.is_changed = true;
         &mut self.physics
     }
 
-    /// Sets or ends the pull on a part, from the next step on. A pulled snake is no longer in its trial.
+    /// Sets or ends the user's pull on a part, from the next step on. A pulled snake no longer runs its trial.
     pub fn pull(&mut self, pull: Option<Pull>) {
         self.pull = pull;
     }
@@ -260,13 +261,13 @@ impl Simulation {
     }
 }
 
-/// Lets the next step of the engine process all that changed in any body.
+/// Marks all bodies as changed, so that the engine's next step takes account of every change in them.
 fn mark_all_bodies(bodies: &mut RigidBodySet) {
     bodies.iter_mut().for_each(drop);
 }
 
-/// Spares the next step of the engine the changes of bodies. A torque or a velocity takes effect without, but the engine
-/// would take it for a change that concerns the joints, and assemble them anew in each step, with the same bits.
+/// Clears the engine's list of changed bodies. Torques and velocities take effect without a mark. With it, the engine would assemble the
+/// joints anew in each step, with the same bits as a result.
 fn unmark_all_bodies(bodies: &mut RigidBodySet) {
     // The iterator clears the list of changed bodies, and lists each body that it yields.
     drop(bodies.iter_mut());
@@ -279,7 +280,7 @@ impl Clone for Simulation {
             physics: PhysicsWorld {
                 gravity: physics.gravity,
                 integration_parameters: physics.integration_parameters,
-                // It holds working memory only; a new one gives the same bits.
+                // The pipeline holds working memory only; a new pipeline gives the same bits.
                 physics_pipeline: PhysicsPipeline::new(),
                 islands: physics.islands.clone(),
                 broad_phase: physics.broad_phase.clone(),

@@ -1,9 +1,9 @@
 //! Soft limbs: elastic beams as chains of parts with springs between them.
 //!
-//! A limb of length l is cut into n parts of length d = l / n. Between two parts acts a spring about each axis, as stiff as a
-//! piece of the beam of length d: `E I / d` for bending, with Young's modulus E and the second moment of area I of the
-//! cross-section, and `G J / d` for torsion. The deflection of a clamped beam then differs from that of Euler and Bernoulli
-//! by the factor `1 + 1 / (2 n²)` under a load at its tip, if half a piece of beam clamps its root.
+//! A limb of length l is cut into n parts of length d = l / n. A spring between two parts acts about each axis. It is as stiff as a piece
+//! of the beam of length d: `E I / d` for bending, with Young's modulus E and the second moment of area I of the cross-section, and `G J /
+//! d` for torsion, with the shear modulus G and the torsion constant J. The deflection of a clamped beam then differs from that of Euler
+//! and Bernoulli by the factor `1 + 1 / (2 n²)` under a load at its tip, if half a piece of beam clamps its root.
 
 use super::WorldPlan;
 use super::body::{BodyPlan, PartPlan, SpringPlan};
@@ -12,41 +12,41 @@ use crate::check::Invalid;
 /// Elastic properties of a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elasticity {
-    /// Young's modulus of its material, in Pa.
+    /// Young's modulus of the limb's material, in Pa.
     pub youngs_modulus_pa: f32,
-    /// Number of parts of the limb.
+    /// Number of parts into which the limb is cut; a limb of one part is rigid.
     pub parts: u32,
     /// Damping of the limb's slowest vibration, as a share of the critical damping.
     pub damping_ratio: f32,
 }
 
-/// Least bending stiffness per mass per length, in m⁴/s²: softer limbs fold up under their own weight. A clamped limb of 2 m
-/// sags by 0.49 m there.
+/// Least bending stiffness per mass per length, in m⁴/s². Softer limbs fold up under their own weight. At this stiffness, a clamped limb
+/// of 2 m sags by 0.49 m.
 pub const SOFTEST_M4_S2: f32 = 40.0;
-/// Greatest bending stiffness per mass per length, in m⁴/s²: beyond it the solver, with four iterations, leaves a chain softer
-/// than its springs. A limb that is stiffer about its softer axis is rigid. A clamped limb of 2 m sags by 0.025 m there.
+/// Greatest bending stiffness per mass per length, in m⁴/s². Beyond it, the solver, with four iterations, makes a chain softer than its
+/// springs. A limb that is stiffer about its softer axis is made rigid. At this stiffness, a clamped limb of 2 m sags by 0.025 m.
 pub const STIFFEST_M4_S2: f32 = 800.0;
 
-/// Ratio of the shear modulus to Young's modulus: that of a material that keeps its volume (Poisson's ratio 1/2).
+/// Ratio of the shear modulus to Young's modulus, for a material that keeps its volume (Poisson's ratio 1/2).
 const SHEAR_SHARE: f64 = 1.0 / 3.0;
 /// Square of the first eigenvalue of a free beam: its slowest vibration has the angular frequency `22.4 √(E I / (ρ' l⁴))`,
 /// with the mass per length ρ'.
 const FREE_BEAM: f64 = 22.4;
 
-/// Bending stiffness of a beam about its softer axis, per mass per length, in m⁴/s²: `E t² / (12 ρ)` for the smaller side t of
-/// its cross-section and the density ρ.
+/// Returns the bending stiffness of a beam about its softer axis, per mass per length, in m⁴/s²: `E t² / (12 ρ)` for the smaller side t of
+/// the cross-section and the density ρ.
 pub fn bending_m4_s2(youngs_modulus_pa: f32, sides_m: [f32; 2], density_kg_m3: f32) -> f32 {
     let side_m = sides_m[0].min(sides_m[1]);
     youngs_modulus_pa * side_m * side_m / (12.0 * density_kg_m3)
 }
 
-/// Young's modulus, in Pa, at which a beam has this bending stiffness per mass per length: the inverse of [`bending_m4_s2`].
+/// Returns Young's modulus, in Pa, at which a beam has this bending stiffness per mass per length: the inverse of [`bending_m4_s2`].
 pub fn modulus_at_pa(bending_m4_s2: f32, sides_m: [f32; 2], density_kg_m3: f32) -> f32 {
     let side_m = sides_m[0].min(sides_m[1]);
     bending_m4_s2 * 12.0 * density_kg_m3 / (side_m * side_m)
 }
 
-/// Torsion constant J of a rectangular cross-section, in m⁴ (Roark's formula): 0.141 a⁴ for a square of side a.
+/// Returns the torsion constant J of a rectangular cross-section, in m⁴ (Roark's formula): 0.141 a⁴ for a square of side a.
 fn torsion_m4(width_m: f64, height_m: f64) -> f64 {
     let (long, short) = (width_m.max(height_m), width_m.min(height_m));
     let ratio = short / long;
@@ -55,14 +55,14 @@ fn torsion_m4(width_m: f64, height_m: f64) -> f64 {
 }
 
 impl Elasticity {
-    /// Whether a limb of this size and density bends; stiffer limbs are rigid.
+    /// Returns whether a limb of this size and density bends. Limbs stiffer than `STIFFEST_M4_S2` are rigid.
     fn bends(&self, limb: &PartPlan) -> bool {
         let sides_m = [limb.width_m, limb.height_m];
         self.parts > 1
             && bending_m4_s2(self.youngs_modulus_pa, sides_m, limb.density_kg_m3) <= STIFFEST_M4_S2
     }
 
-    /// Stiffness in N·m/rad and damping in N·m·s/rad of the springs in a limb, about its x, y and z axes.
+    /// Returns the stiffness, in N·m/rad, and the damping, in N·m·s/rad, of the springs in a limb about its x, y and z axes.
     fn springs(&self, limb: &PartPlan) -> [[f32; 3]; 2] {
         let [width, length, height] = limb.size_m().map(f64::from);
         let modulus = f64::from(self.youngs_modulus_pa);
@@ -76,7 +76,7 @@ impl Elasticity {
         ];
         let kg_m = f64::from(limb.density_kg_m3) * width * height;
         let slowest = |stiffness: f64| FREE_BEAM * (stiffness / kg_m).sqrt() / (length * length);
-        // Torsion is damped as bending about x is.
+        // Torsion is damped with the rate of bending about x.
         let rates = [slowest(bending), slowest(bending), slowest(sideways)];
         let damping = std::array::from_fn(|axis| {
             (2.0 * f64::from(self.damping_ratio) * stiffness[axis] / rates[axis]) as f32
@@ -86,8 +86,8 @@ impl Elasticity {
 }
 
 impl BodyPlan {
-    /// This body with elastic limbs where their material bends. All limbs must be rigid before. `elastic` gives the
-    /// elasticity of each limb, and none where a limb is rigid.
+    /// Replaces rigid limbs by chains of parts with springs where their material bends. All limbs must be rigid before. `elastic` returns
+    /// the elasticity of a limb, or `None` where the limb stays rigid.
     pub fn with_soft_limbs(mut self, elastic: impl Fn(usize) -> Option<Elasticity>) -> Self {
         let rigid = std::mem::take(&mut self.parts);
         let (mut first_of, mut last_of) = (Vec::new(), Vec::new());
@@ -119,7 +119,8 @@ impl BodyPlan {
         }
         let is_soft = |limb: usize| first_of[limb] != last_of[limb];
         for joint in &self.joints {
-            // The joint keeps the parts at its ends apart from contacts; the others beside it would touch in a sharp bend.
+            // The engine excludes contacts between the two parts that a joint connects, but not between the limbs' other parts, which
+            // would touch in a sharp bend.
             if is_soft(joint.parent) || is_soft(joint.child) {
                 self.contact_free_pairs.push([joint.parent, joint.child]);
             }
@@ -134,10 +135,10 @@ impl BodyPlan {
 }
 
 impl WorldPlan {
-    /// Number of steps into which an engine that integrates springs explicitly has to divide each physics step: that of the
-    /// substeps, or as many times more as the fastest spring of a soft limb calls for. A part between two springs swings at
-    /// most at `2 √(k / I)`, for the stiffness k and the part's moment of inertia I about its centre, and a step lasts at most
-    /// half of the inverse of that.
+    /// Returns the number of steps into which an engine that integrates springs explicitly has to divide each physics step: the number of
+    /// substeps, or a multiple of it if the fastest spring of a soft limb needs shorter steps. A part between two springs swings with an
+    /// angular frequency of at most `2 √(k / I)`, for the stiffness k and the part's moment of inertia I about its centre, and a step
+    /// lasts at most half of its inverse.
     pub fn explicit_steps(&self) -> u32 {
         let parts = &self.body.parts;
         let fastest = self.body.springs.iter().flat_map(|spring| {
@@ -154,10 +155,10 @@ impl WorldPlan {
     }
 }
 
-/// Checks that a limb of this material and size does not fold up under its own weight. `field` names the modulus in the error.
+/// Checks that a limb of this material and size does not fold up under its own weight. `field` is the name of the modulus in the error.
 ///
 /// # Errors
-/// It is too soft.
+/// Returns an error if the limb is too soft.
 pub fn check_softness(
     field: &str,
     youngs_modulus_pa: f32,

@@ -1,7 +1,7 @@
-//! The staircase in profile, as a snake senses it: the next riser and the surface below a point.
+//! The staircase in profile, as a snake senses it: the next riser, and the height of the surface below a point.
 //!
-//! Every question is answered from the shape of the stairs, without a ray through the engine: in constant time on equal
-//! treads, and on others in a time that grows with the logarithm of their number.
+//! All results are computed from the shape of the stairs, without a ray through the engine. With equal treads the time is constant;
+//! otherwise it grows with the logarithm of the number of treads.
 
 use super::Stairs;
 use crate::schema::PerPart;
@@ -24,36 +24,36 @@ pub struct StairProfile {
 /// Where the flat parts of the treads begin, on the y axis, in metres.
 #[derive(Debug, Clone, PartialEq)]
 enum Treads {
-    /// A tread of this depth behind each vertical riser.
+    /// All treads have this depth, in metres, and vertical risers.
     Equal(f32),
-    /// At these places.
+    /// The flat parts of the treads begin at these places on the y axis, in metres.
     At(Vec<f32>),
 }
 
 /// The next step ahead of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NextStep {
-    /// Way along y to its riser, in metres.
+    /// Distance along y to the front of the step, in metres.
     pub gap_m: f32,
-    /// Height of its tread over the ground, in metres.
+    /// Height of the step's tread over the ground, in metres.
     pub top_z_m: f32,
 }
 
 /// The progress of the middle limb up the stairs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClimbProgress {
-    /// Steps under it.
+    /// Number of steps under the limb.
     pub steps: u32,
-    /// Its y, in metres; without a step under it at most that of the first riser.
+    /// Position of the limb on the y axis, in metres; without a step under the limb, at most the position of the first riser.
     pub way_m: f32,
-    /// Mean depth of a step, in metres.
+    /// Mean depth of the steps, in metres.
     pub tread_m: f32,
-    /// Whether all steps are under it.
+    /// Whether all steps are under the limb.
     pub is_on_landing: bool,
 }
 
 impl StairProfile {
-    /// The profile of a staircase.
+    /// Computes the profile of a staircase.
     pub fn of(stairs: &Stairs) -> Self {
         let steps = || 0..stairs.steps;
         let edge_m = |step| [stairs.step_slope_m(step), stairs.step_nosing_m(step)];
@@ -73,8 +73,8 @@ impl StairProfile {
         }
     }
 
-    /// The next step ahead of a point of the floor plan, in metres: its riser, the edge of its nosing, or the foot of its
-    /// slope. None on the landing, beside the stairs and behind them.
+    /// Finds the next step ahead of a point of the floor plan, in metres. The step begins at its riser, at the edge of its nosing, or at
+    /// the foot of its slope. `None` on the landing, beside the stairs and behind them.
     pub fn next_step(&self, x_m: f32, y_m: f32) -> Option<NextStep> {
         if !self.is_in_line(x_m, y_m) {
             return None;
@@ -86,7 +86,7 @@ impl StairProfile {
         Some(NextStep { gap_m: edge_y_m - y_m, top_z_m })
     }
 
-    /// Height of the tread, the slope, the landing or the ground at a point of the floor plan, in metres.
+    /// Returns the height of the tread, the slope, the landing or the ground at a point of the floor plan, all in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
         if self.is_in_line(x_m, y_m) {
             self.surface_after_m(self.treads_passed(y_m), y_m)
@@ -95,7 +95,7 @@ impl StairProfile {
         }
     }
 
-    /// Height of the surface in line with the stairs, in metres, at a y with this number of treads passed.
+    /// Returns the height of the surface within the width of the stairs, in metres, at a y with this number of treads passed.
     fn surface_after_m(&self, passed: usize, y_m: f32) -> f32 {
         let below_m = self.heights_m.get(passed).copied().unwrap_or(0.0);
         let Some(top_m) = self.heights_m.get(passed + 1) else { return below_m };
@@ -110,7 +110,7 @@ impl StairProfile {
         }
     }
 
-    /// The progress up the stairs of a limb whose centre is at a place, in metres: see
+    /// Computes the progress up the stairs of a limb whose centre is at this point, in metres: see
     /// [`Stairs::steps_under`](super::Stairs::steps_under).
     pub fn climb(&self, [x_m, y_m, z_m]: [f32; 3]) -> ClimbProgress {
         let passed = if self.is_in_line(x_m, y_m) { self.treads_passed(y_m) } else { 0 };
@@ -136,7 +136,7 @@ impl StairProfile {
         x_m.abs() <= self.half_width_m && y_m <= self.end_y_m
     }
 
-    /// Number of treads whose flat part begins at or before a place on the y axis.
+    /// Counts the treads whose flat part begins at or before a place on the y axis.
     fn treads_passed(&self, y_m: f32) -> usize {
         let tread_m = match &self.treads {
             Treads::Equal(tread_m) => tread_m,
@@ -146,12 +146,12 @@ impl StairProfile {
         if y_m < self.first_riser_y_m {
             return 0;
         }
-        // The fraction is cut off; a number that is not finite becomes 0 or the greatest.
+        // The conversion cuts off the fraction. It turns NaN into 0, and infinity into the greatest number.
         let passed = ((y_m - self.first_riser_y_m) / tread_m) as usize;
         passed.saturating_add(1).min(steps)
     }
 
-    /// Where the flat part of tread number `index` begins, on the y axis, in metres.
+    /// Returns the position at which the flat part of tread number `index` begins, on the y axis, in metres.
     fn tread_y_m(&self, index: usize) -> f32 {
         match &self.treads {
             Treads::Equal(tread_m) => self.first_riser_y_m + index as f32 * tread_m,
@@ -159,7 +159,7 @@ impl StairProfile {
         }
     }
 
-    /// Depth of the slope and of the nosing before tread number `index`, in metres.
+    /// Returns the depth of the slope and of the nosing before tread number `index`, in metres.
     fn edge_m(&self, index: usize) -> [f32; 2] {
         self.edges_m.get(index).copied().unwrap_or_default()
     }
@@ -208,11 +208,11 @@ mod tests {
         let profile = StairProfile::of(stairs);
         for x_m in [0.0, 2.4, -2.6] {
             for number in -40..500_i16 {
-                // Between the risers, where both agree whatever the rounding.
+                // The points lie between the risers, where both computations agree whatever their rounding.
                 let y_m = f32::from(number) * 0.1 + 0.05;
                 let expected = stairs.surface_z_m(x_m, y_m);
                 let found = profile.surface_z_m(x_m, y_m);
-                // On slopes the two compute in other orders.
+                // On slopes the two functions compute in different orders.
                 assert!((found - expected).abs() < 1.0e-5, "at {x_m}, {y_m}: {found}, {expected}");
             }
         }

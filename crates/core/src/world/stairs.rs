@@ -1,4 +1,4 @@
-//! The staircase: its shape, and the meaning of a position on it.
+//! The staircase: its shape, and what a position on it means.
 
 mod editing;
 mod limits;
@@ -13,24 +13,23 @@ use crate::schema::{
 };
 
 setting_group! {
-    /// A straight staircase towards +y, with a landing behind its last step. A deep tread is a landing on the way, a
-    /// negative rise a step down, and a step down to the ground with a higher one behind it a gap where a step is missing.
+    /// A straight staircase towards +y, with a landing behind its last step. A deep tread is an intermediate landing. A negative rise is a
+    /// step down. A step down to the ground with a higher step behind it makes a gap, as if a step were missing.
     pub struct Stairs {
-        /// Number of steps. The report has ten.
+        /// Number of steps. The report has ten steps.
         steps: u32 = 10;
-        /// Height of each step over the one below, in metres, lowest first, or one height for all; negative for a step
-        /// down. The report has 0.5.
+        /// Height of each step over the one below, in metres, lowest first, or one height for all; negative for a step down. In the
+        /// report, the rise is 0.5 m.
         rise_m: PerPart = 0.5.into();
-        /// Depth of each step along y, in metres, lowest first, or one depth for all. From Table 1 of the report: one
-        /// step per 2 m.
+        /// Depth of each step along y, in metres, lowest first, or one depth for all. The default follows Table 1 of the report: one step
+        /// per 2 m.
         tread_m: PerPart = 2.0.into();
-        /// Width across x, in metres. The report has 5.
+        /// Width of the stairs across x, in metres. In the report, the width is 5 m.
         width_m: f32 = 5.0;
-        /// Position of the first riser on the y axis, in metres. From Table 1: the snake, 10 m long,
-        /// touches the stairs with its centre at -2, so the riser is at 3.
+        /// Position of the first riser on the y axis, in metres. The default follows Table 1 of the report: the snake, 10 m long, touches
+        /// the stairs with its centre at y = -2, so the riser is at y = 3.
         first_riser_y_m: f32 = 3.0;
-        /// Depth of the landing behind the last tread, in metres. Long enough by default that the
-        /// whole snake (10 m) stands on it.
+        /// Depth of the landing behind the last tread, in metres. By default the whole snake (10 m) fits on it.
         landing_m: f32 = 14.0;
         /// How far each tread overhangs its riser, in metres. Sloping rises and steps down have no nosing.
         #[serde(default, skip_serializing_if = "is_default")]
@@ -53,8 +52,8 @@ impl Stairs {
     /// The section of these settings.
     pub const SECTION: Section =
         Section { title: "Stairs", about: "Shape and position of the staircase." };
-    /// Stairs that do not evolve. Those that do begin low and without nosing or slopes; their number of steps and their treads
-    /// are those of the trial.
+    /// Stairs that do not evolve. Stairs that evolve begin low and without nosing or slopes; the trial sets their number of steps and
+    /// their treads.
     pub const GIVEN: Need = Need("stairs that do not evolve");
 }
 
@@ -65,11 +64,11 @@ impl SettingGroup for Stairs {
             self;
         walk.section(Self::SECTION);
         settings! { walk,
-            // A hundred steps are far more than any snake climbs, and still quick.
+            // A hundred steps are far more than any snake climbs, and are still computed quickly.
             steps: whole("Steps", 0..=100)
                 .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0);
-            // From a doorsill to a wall.
+            // The range goes from a doorsill to a wall.
             rise_m: per_part("Rise", -5.0..=5.0, each_step).needs(Self::GIVEN)
                 .unit("m")
                 .hint("Height of a step over the one below it; a negative rise leads down")
@@ -78,12 +77,12 @@ impl SettingGroup for Stairs {
                 .unit("m")
                 .hint("Depth of a step. A deep tread gives the snake more room")
                 .slider(0.2, 5.0);
-            // From a block's own width to a hall's.
+            // The range goes from a block's own width to a hall's.
             width_m: number("Width", 1.0..=100.0)
                 .unit("m")
                 .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
                 .slider(1.0, 20.0);
-            // Within a hundred metres floats still resolve a hundredth of a millimetre.
+            // Within a hundred metres, 32-bit floats still resolve a hundredth of a millimetre.
             first_riser_y_m: number("First riser at y", -100.0..=100.0).advanced()
                 .unit("m")
                 .hint("Position at which the stairs begin")
@@ -108,21 +107,21 @@ impl SettingGroup for Stairs {
     }
 }
 
-/// A height over the ground below which a tread is the ground itself, in metres: sums of rises are not exact.
+/// Height over the ground, in metres, below which a tread counts as the ground itself: sums of rises are not exact.
 const GROUND_M: f32 = 1.0e-4;
 
 impl Stairs {
     /// Position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         match &self.tread_m {
-            // Stairs of engine 2 and earlier have these bits.
+            // The product, not a sum, keeps the bits of stairs of engine version 2 and earlier.
             PerPart::All(tread_m) => self.first_riser_y_m + index as f32 * tread_m,
             PerPart::Each(_) => (0..index)
                 .fold(self.first_riser_y_m, |riser_m, step| riser_m + self.step_tread_m(step)),
         }
     }
 
-    /// Position at which the flat part of tread number `index` (0 is the first) begins, on the y axis, in metres: at its
+    /// Returns the position at which the flat part of tread number `index` (0 is the first) begins, on the y axis, in metres: at its
     /// riser, or at the end of its slope.
     pub fn tread_y_m(&self, index: u32) -> f32 {
         let slope_m = self.step_slope_m(index);
@@ -134,7 +133,7 @@ impl Stairs {
         self.tread_m.at(index as usize)
     }
 
-    /// Depth of all steps together along y, in metres.
+    /// Returns the sum of the depths of all steps along y, in metres.
     pub fn treads_m(&self) -> f32 {
         (0..self.steps).map(|step| self.step_tread_m(step)).sum()
     }
@@ -154,8 +153,8 @@ impl Stairs {
         self.slope_m.at(index as usize)
     }
 
-    /// How far the tread of step number `index` (0 is the first) overhangs its riser, in metres. Steps down, sloping
-    /// steps and those from which a slope leads down have no nosing.
+    /// Returns how far the tread of step number `index` (0 is the first) overhangs its riser, in metres. Steps down, sloping steps and
+    /// steps followed by a slope down have no nosing.
     pub fn step_nosing_m(&self, index: u32) -> f32 {
         let leads_down = |step| self.step_rise_m(step) < 0.0;
         let slopes = |step| self.step_slope_m(step) > 0.0;
@@ -171,10 +170,10 @@ impl Stairs {
         self.rise_m.at(index as usize)
     }
 
-    /// Height of the tread of step number `steps` over the ground, in metres; of 0 steps, the ground itself.
+    /// Returns the height of the tread after this number of steps over the ground, in metres; 0 for no steps.
     pub fn height_m(&self, steps: u32) -> f32 {
         match &self.rise_m {
-            // Stairs of engine 2 and earlier have these bits.
+            // The product, not a sum, keeps the bits of stairs of engine version 2 and earlier.
             PerPart::All(rise_m) => rise_m * steps as f32,
             PerPart::Each(_) => {
                 let sum_m = (0..steps).map(|step| self.step_rise_m(step)).sum::<f32>();
@@ -188,8 +187,8 @@ impl Stairs {
         (0..=self.steps).map(|steps| self.height_m(steps)).fold(0.0, f32::max)
     }
 
-    /// Position from which on a snake's middle block is on the landing, on the y axis, in metres: where the last tread
-    /// begins, which is level with the landing and belongs to it. Without steps it is where the stairs would begin.
+    /// Returns the position on the y axis, in metres, from which on a snake's middle block is on the landing: the beginning of the last
+    /// tread, which is level with the landing and belongs to it. Without steps, it is where the stairs would begin.
     pub fn landing_y_m(&self) -> f32 {
         match self.steps {
             0 => self.first_riser_y_m,
@@ -202,11 +201,10 @@ impl Stairs {
         self.riser_y_m(self.steps) + self.landing_m
     }
 
-    /// Number of steps climbed by a snake whose centre stands at `y_m`.
+    /// Counts the steps climbed by a snake whose centre is at `y_m`, in metres.
     ///
-    /// A step counts as climbed once the centre has passed its riser; that is the rule behind
-    /// Table 1 of the report: 3.84 is one step, 5.79 two, 8.05 three. Only y counts, as in the
-    /// report: a snake that crawls past the stairs at their side would count too.
+    /// A step counts as climbed once the centre has passed its riser. This rule reproduces Table 1 of the report: 3.84 is one step, 5.79
+    /// two, 8.05 three. Only y counts, as in the report: a snake that crawls past the stairs at their side counts, too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
         if let PerPart::All(_) = self.tread_m {
             let is_passed = |index: &u32| y_m >= f64::from(self.tread_y_m(*index));
@@ -224,8 +222,9 @@ impl Stairs {
         self.steps
     }
 
-    /// The way of a point along the stairs, in steps: from the first riser, in treads. Before the first riser it is
-    /// negative, in depths of the first step; behind the last tread it goes on in depths of the last one.
+    /// Converts a point's y, in metres, to its way along the stairs in steps: the distance from the first riser, measured in treads.
+    /// Before the first riser the way is negative, in depths of the first step; behind the last tread it goes on in depths of the last
+    /// step.
     pub fn way_steps(&self, y_m: f32) -> f32 {
         match &self.tread_m {
             PerPart::All(tread_m) => (y_m - self.first_riser_y_m) / tread_m,
@@ -244,18 +243,18 @@ impl Stairs {
         }
     }
 
-    /// Number of steps under a point at `at_m`, in metres: the point is past their risers, above the tread
-    /// of the last of them, and within the width. A point beside the stairs has none under it.
+    /// Counts the steps under a point at `at_m`, in metres: the point is past their risers, above the tread of the last of them, and
+    /// within the width. Beside the stairs the number is 0.
     pub fn steps_under(&self, at_m: [f32; 3]) -> u32 {
         let [x_m, y_m, z_m] = at_m;
         let climbed = self.steps_climbed(f64::from(y_m));
-        // On a slope down the surface is below the last tread, and on one up the tread counts only from its end.
+        // The surface of a slope down lies below the last tread. On a slope up, the tread counts only from the end of the slope.
         let least_z_m = self.surface_after_m(climbed, y_m).min(self.height_m(climbed));
         let is_over = z_m >= least_z_m && x_m.abs() <= self.width_m / 2.0;
         if is_over && y_m <= self.end_y_m() { climbed } else { 0 }
     }
 
-    /// Whether a point at `at_m`, in metres, is above the stairs: past the first riser, above the tread or slope there, and
+    /// Returns whether a point at `at_m`, in metres, is above the stairs: past the first riser, above the tread or slope below it, and
     /// within the width.
     pub fn is_over(&self, at_m: [f32; 3]) -> bool {
         let [x_m, y_m, z_m] = at_m;
@@ -266,7 +265,7 @@ impl Stairs {
             && z_m >= self.surface_z_m(x_m, y_m)
     }
 
-    /// Height of the tread, the slope, the landing or the ground at a point of the floor plan, in metres.
+    /// Returns the height of the tread, the slope, the landing or the ground at a point of the floor plan, all in metres.
     pub fn surface_z_m(&self, x_m: f32, y_m: f32) -> f32 {
         if x_m.abs() > self.width_m / 2.0 || y_m > self.end_y_m() {
             return 0.0;
@@ -274,7 +273,8 @@ impl Stairs {
         self.surface_after_m(self.steps_climbed(f64::from(y_m)), y_m)
     }
 
-    /// Height of the surface within the width at `y_m`, in metres, for a point with this number of steps behind it.
+    /// Returns the height of the surface within the width of the stairs at `y_m`, in metres, for a point with this number of steps behind
+    /// it.
     fn surface_after_m(&self, climbed: u32, y_m: f32) -> f32 {
         let below_m = self.height_m(climbed);
         if climbed == self.steps {
@@ -291,8 +291,8 @@ impl Stairs {
         }
     }
 
-    /// Describes in words the place of a snake whose centre has passed risers, but has no step under it, as by
-    /// [`Stairs::steps_under`]: the snake lies beside the stairs or behind them. `None` before the first riser.
+    /// Describes in words where a snake lies whose centre has passed risers, but has no step under it ([`Stairs::steps_under`]): beside
+    /// the stairs or behind them. Returns `None` before the first riser.
     pub fn meaning_off_the_stairs(&self, y_m: f64) -> Option<String> {
         match self.steps_climbed(y_m) {
             0 => None,
@@ -302,8 +302,8 @@ impl Stairs {
         }
     }
 
-    /// Describes in words the centre position `y_m` of a snake of length `snake_length_m` that started at
-    /// `start_y_m`. These are the words of the report's Table 1.
+    /// Describes in words the centre position `y_m` of a snake of length `snake_length_m` that started at `start_y_m`, in metres. The
+    /// words are those of Table 1 of the report.
     pub fn meaning(&self, y_m: f64, start_y_m: f64, snake_length_m: f64) -> String {
         let to_first_riser_m = f64::from(self.first_riser_y_m) - snake_length_m / 2.0;
         let climbed = self.steps_climbed(y_m);
@@ -325,14 +325,15 @@ impl Stairs {
     }
 }
 
-/// Table 1 calls a mean of -2.05 "reaches the stairs", where the head touches at exactly -2.
+/// Tolerance, in metres, for reaching the stairs. Table 1 says "reaches the stairs" for a mean of -2.05, although the head touches the
+/// stairs at exactly -2.
 const REACH_TOLERANCE_M: f64 = 0.1;
-/// A mean this near the start is "starting position": Table 1's own -7.23 has no digits to spare.
+/// Distance from the start, in metres, up to which a mean counts as the starting position: Table 1 gives -7.23 for it.
 const START_TOLERANCE_M: f64 = 0.25;
 
 impl Stairs {
-    /// Stairs with every kind of step, for tests: up by a slope, up by a riser with a nosing, down by a slope, down to the
-    /// ground, up again.
+    /// Returns stairs with every kind of step, for tests: up by a slope, up by a riser with a nosing, down by a slope, down to the ground,
+    /// up again.
     pub fn uneven() -> Self {
         Self {
             steps: 5,

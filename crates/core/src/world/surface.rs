@@ -3,27 +3,27 @@
 use crate::schema::{number, setting_group};
 
 setting_group! {
-    /// The material of the ground or the stairs: the seven parameters of the report. By default it is hard, and nothing
-    /// slips or bounces on it.
+    /// The material of the ground or the stairs: the seven parameters of the report. By default it is hard, and nothing slips or bounces
+    /// on it.
     pub struct Surface {
         /// Coulomb coefficient: the largest tangential force over the normal force.
         friction: f32 = 1.0,
-            // From ice without any friction to beyond the 150 of the report's engine manual.
+            // The range goes from ice without any friction to beyond the 150 of the report's engine manual.
             number("Friction", 0.0..=1000.0)
                 .hint("Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue")
                 .slider(0.0, 10.0)
                 .logarithmic_from(0.01);
 
-        /// Restitution, from 0 (no bounce) to 1 (all of the speed comes back).
+        /// Restitution, from 0 (no bounce) to 1 (the whole speed is kept).
         bounce: f32 = 0.0,
             // More than 1 would create energy.
             number("Bounce", 0.0..=1.0)
                 .hint("How much speed is kept after an impact: 0 does not bounce, 1 bounces back to full height")
                 .slider(0.0, 1.0);
 
-        /// Least incoming normal speed for a bounce, in m/s. Slower impacts do not bounce.
+        /// Least incoming normal speed at which a contact bounces, in m/s. Slower impacts do not bounce.
         bounce_velocity_m_s: f32 = 0.0,
-            // Up to the speed at which an agent is disqualified by default, and beyond.
+            // The range goes beyond the speed at which an agent is disqualified by default.
             number("Bounce velocity", 0.0..=1000.0).advanced()
                 .unit("m/s")
                 .hint("Impacts slower than this do not bounce, so that a snake at rest stays at rest")
@@ -31,7 +31,7 @@ setting_group! {
 
         /// Error reduction parameter: the share of a penetration that is corrected in [`ERP_TIME_S`].
         soft_erp: f32 = 0.25,
-            // At 0 nothing would ever be pushed out again and the snake would sink through the ground.
+            // With an ERP of 0, nothing would ever be pushed out again and the snake would sink through the ground.
             number("Springiness (ERP)", 0.01..=1.0).advanced()
                 .hint("How quickly a soft surface springs back: share of a dent that is corrected in 1/60 s")
                 .slider(0.01, 1.0);
@@ -59,7 +59,7 @@ setting_group! {
         /// Rate at which the linear and angular velocity of a limb decay while it touches the surface, in 1/s: after
         /// a time t they are `exp(-dampen t)` of what they were.
         dampen_per_s: f32 = 0.0,
-            // At 20 1/s a limb of 10 m/s comes to rest within its own length.
+            // With 20 1/s, a limb that moves at 10 m/s comes to rest within its own length.
             number("Damping", 0.0..=20.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
@@ -68,22 +68,22 @@ setting_group! {
 }
 
 setting_group! {
-    /// The snake's own material. The default is neutral: a contact then has the numbers of the surface.
+    /// The material of the snake. By default it is neutral: a contact then has the parameters of the surface.
     pub struct Skin {
-        /// Multiplies the surface's friction.
+        /// Factor on the surface's friction.
         friction: f32 = 1.0,
             number("Skin friction", 0.0..=1000.0)
                 .hint("Factor for the friction of everything that the snake touches. 1 changes nothing")
                 .slider(0.0, 10.0)
                 .logarithmic_from(0.01);
 
-        /// Restitution, from 0 to 1.
+        /// Restitution, from 0 to 1. The larger restitution of skin and surface counts.
         bounce: f32 = 0.0,
             number("Skin bounce", 0.0..=1.0)
                 .hint("How much speed is kept after an impact. The larger value of skin and surface counts")
                 .slider(0.0, 1.0);
 
-        /// Error reduction parameter, as [`Surface::soft_erp`]. Matters where the skin is soft.
+        /// Error reduction parameter, as [`Surface::soft_erp`]. It matters only where the skin is soft.
         soft_erp: f32 = 0.25,
             number("Skin springiness (ERP)", 0.01..=1.0).advanced()
                 .hint("How quickly a soft skin springs back: share of a dent that is corrected in 1/60 s")
@@ -108,7 +108,7 @@ impl Skin {
 /// Softness of a material or a contact under load, in the terms of ODE.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Softness {
-    /// Share of the penetration that is corrected in [`ERP_TIME_S`].
+    /// Share of a penetration that is corrected in [`ERP_TIME_S`].
     pub erp: f32,
     /// Constraint force mixing, in m/s per N.
     pub cfm_m_s_per_n: f32,
@@ -116,9 +116,8 @@ pub(super) struct Softness {
 
 /// Behaviour of a contact between a surface and a skin.
 ///
-/// The combine rules: frictions multiply; the larger bounce counts; two soft materials are
-/// springs in series, so their CFMs add and the softer one's ERP weighs more. Bounce velocity, slip
-/// and dampen are the surface's alone.
+/// Rules of combination: frictions multiply; the larger bounce counts; two soft materials are springs in series, so their CFMs add and the
+/// ERP of the softer one weighs more. Bounce velocity, slip and damping are the surface's alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ContactLaw {
     pub bounce_velocity_m_s: f32,
@@ -128,7 +127,7 @@ pub(super) struct ContactLaw {
 }
 
 impl ContactLaw {
-    /// Between a surface and the snake. Friction and bounce are combined by the engine itself.
+    /// Returns the law of contacts between a surface and the snake. The engine itself combines friction and bounce.
     pub fn between(surface: &Surface, skin: &Skin) -> Self {
         let surface_softness =
             Softness { erp: surface.soft_erp, cfm_m_s_per_n: surface.soft_cfm_m_s_per_n };
@@ -146,7 +145,7 @@ impl ContactLaw {
         }
     }
 
-    /// Between two limbs of the snake.
+    /// Returns the law of contacts between two limbs of the snake.
     pub fn within(skin: &Skin) -> Self {
         Self {
             bounce_velocity_m_s: 0.0,
@@ -156,20 +155,20 @@ impl ContactLaw {
         }
     }
 
-    /// Whether a contact under this law must pass the hooks before it is solved.
+    /// Returns whether a contact under this law must pass the contact hooks before it is solved.
     pub fn needs_hook(&self) -> bool {
         self.bounce_velocity_m_s > 0.0 || self.slip_m_s_per_n > 0.0 || self.softness.is_soft()
     }
 }
 
 impl Softness {
-    /// Whether the contact is a spring instead of a wall.
+    /// Returns whether the contact is a spring instead of rigid.
     pub fn is_soft(self) -> bool {
         self.cfm_m_s_per_n > 0.0
     }
 
-    /// Two materials pressed against each other by the same force: with the stiffness kp = ERP / (h ·
-    /// CFM) of each, 1/kp adds.
+    /// Combines two materials pressed against each other by the same force. The stiffness of each is kp = ERP / (h · CFM), and the values
+    /// of 1/kp add.
     fn in_series_with(self, other: Self) -> Self {
         let cfm_m_s_per_n = self.cfm_m_s_per_n + other.cfm_m_s_per_n;
         let erp = if cfm_m_s_per_n > 0.0 {
@@ -190,13 +189,13 @@ pub(super) struct Spring {
     pub kd_ns_per_m: f32,
 }
 
-/// Time in which a contact or a joint corrects its ERP of an error, in seconds. In ODE that is one step, so that another
-/// step rate makes another material of the same numbers. Here it is the step of 1/60 s with which the report's program
-/// ran, at every step rate.
+/// Time in which a contact or a joint corrects the share ERP of an error, in seconds. In ODE this time is one step, so that the same
+/// numbers make another material at another step rate. Here it is 1/60 s, the step with which the report's program ran, at every step
+/// rate.
 pub const ERP_TIME_S: f32 = 1.0 / 60.0;
 
-/// The spring and damper that ERP and CFM describe: `kp = ERP / (h · CFM)` and `kd = (1 - ERP) / CFM` with h =
-/// [`ERP_TIME_S`] (Open Dynamics Engine manual, section "How to use ERP and CFM").
+/// Returns the spring and damper that ERP and CFM describe: `kp = ERP / (h · CFM)` and `kd = (1 - ERP) / CFM` with h = [`ERP_TIME_S`]
+/// (Open Dynamics Engine manual, section "How to use ERP and CFM").
 pub(super) fn spring(softness: Softness) -> Spring {
     Spring {
         kp_n_per_m: softness.erp / (ERP_TIME_S * softness.cfm_m_s_per_n),

@@ -1,11 +1,12 @@
-//! Products of rotations with the same bits on every processor, for the engine whose bits are the same everywhere.
+//! Rotations that have the same bits on every processor, for the engine *lanes*, whose results are the same everywhere.
 //!
-//! glam, which rapier is built on, computes them with the vector instructions of each kind of processor, and adds the parts of a
-//! product in another order on each. These functions add them in the order of x86-64, one number at a time.
+//! glam, on which rapier is built, multiplies rotations with the vector instructions of each kind of processor. The order in which it adds
+//! the parts of a product therefore differs between processors. These functions always add the parts in glam's order on x86-64, one number
+//! at a time.
 
 use super::{Rotation, Vector};
 
-/// The rotation `second`, followed by `first`.
+/// Returns the product of two rotations: `second` acts first, and `first` after it.
 pub(super) fn product(first: Rotation, second: Rotation) -> Rotation {
     let (a, b) = (first, second);
     Rotation::from_xyzw(
@@ -16,7 +17,7 @@ pub(super) fn product(first: Rotation, second: Rotation) -> Rotation {
     )
 }
 
-/// A rotated vector.
+/// Rotates a vector.
 pub(super) fn turned(rotation: Rotation, vector: Vector) -> Vector {
     let axis = Vector::new(rotation.x, rotation.y, rotation.z);
     let w = rotation.w;

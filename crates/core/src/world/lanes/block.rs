@@ -1,9 +1,9 @@
-//! Contact of two boxes, and of a box with the ground: by the separating axis that is least violated, the two faces that meet
-//! along it, and where these overlap.
+//! Contact of two boxes, and of a box with the ground. The search takes the separating axis along which the boxes overlap least, then the
+//! two faces that meet along it, and then the points where these faces overlap.
 //!
-//! The test of the 15 axes is that of Gottschalk, Lin and Manocha, "OBBTree: a hierarchical structure for rapid interference
-//! detection", SIGGRAPH 1996. Which axis is chosen, and which points belong to a contact, follows parry's function for two
-//! cuboids, so that both engines see the same contacts.
+//! The test of the 15 axes is that of Gottschalk, Lin and Manocha, "OBBTree: a hierarchical structure for rapid interference detection",
+//! SIGGRAPH 1996. The choice of the axis, and of the points that belong to a contact, follows parry's function for two cuboids, so that
+//! both engines see the same contacts.
 
 use super::shared_points::{Plane, SharedPoint, SharedPoints, sign};
 use crate::world::Vector;
@@ -11,41 +11,41 @@ use crate::world::Vector;
 /// A box in the world.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
-    /// Its centre, in metres.
+    /// Centre of the box, in metres.
     pub centre: Vector,
-    /// Its axes, as unit vectors.
+    /// Axes of the box, as unit vectors.
     pub axes: [Vector; 3],
-    /// Half its sizes along them, in metres.
+    /// Half the sizes of the box along its axes, in metres.
     pub half_m: Vector,
 }
 
-/// A vector of the world along the axes of a box.
+/// Converts a vector from the world to the frame of a box with these axes.
 fn into(axes: &[Vector; 3], vector: Vector) -> Vector {
     Vector::new(axes[0].dot(vector), axes[1].dot(vector), axes[2].dot(vector))
 }
 
-/// A vector along the axes of a box, in the world.
+/// Converts a vector from the frame of a box with these axes to the world.
 pub(super) fn out_of(axes: &[Vector; 3], vector: Vector) -> Vector {
     axes[0] * vector.x + axes[1] * vector.y + axes[2] * vector.z
 }
 
 impl Block {
-    /// A direction given in the block's own frame, in the world.
+    /// Converts a direction from the block's own frame to the world.
     pub fn turned(&self, direction: Vector) -> Vector {
         out_of(&self.axes, direction)
     }
 
-    /// A point given in the block's own frame, in the world.
+    /// Converts a point from the block's own frame to the world.
     pub fn in_world(&self, point: Vector) -> Vector {
         self.centre + out_of(&self.axes, point)
     }
 
-    /// A point of the world in the block's own frame.
+    /// Converts a point from the world to the block's own frame.
     pub fn in_own_frame(&self, point: Vector) -> Vector {
         into(&self.axes, point - self.centre)
     }
 
-    /// Half the sizes of the upright box around it, in metres.
+    /// Returns half the sizes of the axis-aligned box around the block, in metres.
     pub fn reach_m(&self) -> Vector {
         self.axes[0].abs() * self.half_m.x
             + self.axes[1].abs() * self.half_m.y
@@ -53,18 +53,18 @@ impl Block {
     }
 }
 
-/// A face of a box: its corners in order around it, a number for each of them, and the number of the face. The eight corners have
-/// 0 to 7, the faces 8 to 13.
+/// A face of a box: its corners in order around it, the numbers of these corners, and the number of the face. The eight corners have
+/// numbers 0 to 7, the six faces 8 to 13.
 struct Face {
     corners: [Vector; 4],
     numbers: [u8; 4],
     number: u8,
 }
 
-/// The face of a box that looks most along a direction.
+/// Returns the face of a box whose outward normal is closest to a direction, in the box's frame.
 fn face_along(half_m: Vector, direction: Vector) -> Face {
     let size = direction.abs();
-    // The first of equal ones.
+    // If several components are equal, the first counts.
     let axis = if size.x >= size.y && size.x >= size.z {
         0
     } else if size.y >= size.z {
@@ -93,7 +93,7 @@ fn face_along(half_m: Vector, direction: Vector) -> Face {
 /// Number of the only face of the ground.
 const GROUND: u8 = 8;
 
-/// Number of the edge between two corners.
+/// Returns the number of the edge between two corners.
 fn edge(a: u8, b: u8) -> u8 {
     16 + a.min(b) * 8 + a.max(b)
 }
@@ -102,7 +102,8 @@ fn features(first: u8, second: u8) -> u16 {
     u16::from(first) << 8 | u16::from(second)
 }
 
-/// Finds the contact of the ground, z = 0, with a box. The frame of the search is the world. Returns whether there is one.
+/// Finds the contact of the ground, z = 0, with a box. Points up to `within_m` above the ground count. Points are given in the frame of
+/// the world. Returns whether there is a contact.
 pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut SharedPoints) -> bool {
     let down = into(&block.axes, Vector::new(0.0, 0.0, -1.0));
     let Face { corners, numbers, .. } = face_along(block.half_m, down);
@@ -121,26 +122,26 @@ pub(super) fn on_ground(block: &Block, within_m: f32, found: &mut SharedPoints) 
     !found.points().is_empty()
 }
 
-/// How far apart two boxes are along an axis, and that axis.
+/// Distance of two boxes along an axis, negative if they overlap, and the axis.
 #[derive(Debug, Clone, Copy)]
 struct Separation {
     distance_m: f32,
-    /// From the first box to the second, in the frame of the first.
+    /// Unit vector from the first box to the second, in the frame of the first.
     normal: Vector,
 }
 
-/// Sine of the angle to a face's plane below which its distance says nothing.
+/// Sine of the angle to a face's plane below which a distance along the normal is too inexact to use.
 const FLAT: f32 = 1.0e-6;
 
-/// Two boxes, in the frame of the first.
+/// Two boxes, given in the frame of the first.
 struct BlockPair {
-    /// Half the sizes of the first, in metres.
+    /// Half the sizes of the first box, in metres.
     first_half_m: Vector,
-    /// Half the sizes of the second, in metres.
+    /// Half the sizes of the second box, in metres.
     second_half_m: Vector,
-    /// Centre of the second, in metres.
+    /// Centre of the second box, in metres.
     place: Vector,
-    /// Axes of the second.
+    /// Axes of the second box, as unit vectors.
     axes: [Vector; 3],
 }
 
@@ -154,7 +155,7 @@ impl BlockPair {
         }
     }
 
-    /// This pair in the frame of the second box, which becomes the first.
+    /// Returns the pair in the frame of the second box, with the two boxes swapped.
     fn seen_from_second(&self) -> Self {
         let axes = &self.axes;
         Self {
@@ -165,8 +166,8 @@ impl BlockPair {
         }
     }
 
-    /// The best axis among the normals of the first box's faces. Where several of them separate the boxes, a corner or an edge is
-    /// nearest, and the axis lies between them.
+    /// Finds the normal of a face of the first box along which the boxes are furthest apart. Where several normals separate the boxes, a
+    /// corner or an edge is nearest, and the axis lies between these normals.
     fn along_faces(&self) -> Separation {
         let Self { first_half_m, second_half_m, place, axes } = self;
         let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
@@ -193,14 +194,14 @@ impl BlockPair {
         self.along(between / between.dot(between).sqrt())
     }
 
-    /// The separation along an axis that points from the first box to the second.
+    /// Computes the separation along an axis that points from the first box to the second.
     fn along(&self, normal: Vector) -> Separation {
         let reach_m = normal.abs().dot(self.first_half_m)
             + into(&self.axes, normal).abs().dot(self.second_half_m);
         Separation { distance_m: self.place.dot(normal) - reach_m, normal }
     }
 
-    /// The best axis among the products of an edge of each box.
+    /// Finds the axis along which the boxes are furthest apart among the cross products of an edge of each box.
     fn along_edges(&self) -> Separation {
         let mut best = Separation { distance_m: f32::MIN, normal: Vector::ZERO };
         for of in &self.axes {
@@ -224,7 +225,7 @@ impl BlockPair {
         best
     }
 
-    /// Finds the points that the two faces along a normal share, in the frame of the first box.
+    /// Finds the points in which the two faces along a normal overlap, in the frame of the first box.
     fn shared_points(&self, normal: Vector, found: &mut SharedPoints) {
         let Self { first_half_m, second_half_m, place, axes } = self;
         let Face { corners: first, numbers: first_numbers, number: first_face } =
@@ -238,7 +239,7 @@ impl BlockPair {
         found.begin(normal);
         let mut within = [0; 2];
 
-        // Corners of the first face within the second one, measured to its plane; and the other way round.
+        // Corners of the first face within the second face, with their distance to the plane of the second, and vice versa.
         let upright = (second[2] - second[1]).cross(second[0] - second[1]);
         let along = upright.dot(normal);
         if along.abs() > FLAT * upright.length() {
@@ -272,7 +273,7 @@ impl BlockPair {
             }
         }
         if within.contains(&4) {
-            // A face that lies within the other one crosses none of its edges.
+            // No edges cross if one face lies within the other.
             return;
         }
         for j in 0..4 {
@@ -297,8 +298,8 @@ impl BlockPair {
     }
 }
 
-/// Finds the contact of two boxes, in the frame of the first, if they are no further apart than `within_m`. Returns whether there is
-/// one.
+/// Finds the contact of two boxes, in the frame of the first, if they are no further apart than `within_m`. Returns whether there is a
+/// contact.
 pub(super) fn of_blocks(
     first: &Block,
     second: &Block,
@@ -327,12 +328,12 @@ pub(super) fn of_blocks(
     !found.points().is_empty()
 }
 
-/// Twice the signed area of the triangle between an edge and a point.
+/// Returns twice the signed area of the triangle between an edge and a point.
 fn beside([a, b]: [[f32; 2]; 2], point: [f32; 2]) -> f32 {
     (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
 }
 
-/// Whether a point lies within a convex face, seen in the plane.
+/// Returns whether a point lies within a convex face, in coordinates of the plane.
 fn is_within(face: &[[f32; 2]; 4], point: [f32; 2]) -> bool {
     let mut side = 0.0;
     for index in 0..4 {
@@ -346,14 +347,14 @@ fn is_within(face: &[[f32; 2]; 4], point: [f32; 2]) -> bool {
     true
 }
 
-/// Where two edges cross, as shares of both; none if they do not, or are parallel.
+/// Finds where two edges cross, as shares of the lengths of both; `None` if they do not cross, or are nearly parallel.
 fn crossing(first: [[f32; 2]; 2], second: [[f32; 2]; 2]) -> Option<[f32; 2]> {
     let along = |[a, b]: [[f32; 2]; 2]| [b[0] - a[0], b[1] - a[1]];
     let product = |a: [f32; 2], b: [f32; 2]| a[0] * b[1] - a[1] * b[0];
     let (u, v) = (along(first), along(second));
     let between = [second[0][0] - first[0][0], second[0][1] - first[0][1]];
     let area = product(u, v);
-    // Nearly parallel: sine below a thousandth.
+    // The edges count as parallel if the sine of the angle between them is below a thousandth.
     let lengths = (u[0] * u[0] + u[1] * u[1]) * (v[0] * v[0] + v[1] * v[1]);
     if area * area <= 1.0e-6 * lengths {
         return None;
@@ -378,7 +379,7 @@ mod tests {
         Block { centre: pose.translation, axes, half_m }
     }
 
-    /// Random boxes have the contacts that rapier sees: as many points in the same places, along the same normal.
+    /// Random boxes have the contacts that rapier finds: as many points in the same places, along the same normal.
     #[test]
     fn random_boxes_touch_as_in_parry() {
         let mut rng = stream(1, 1, 1, Purpose::Birth);
@@ -414,14 +415,14 @@ mod tests {
                 && manifold.points.iter().all(is_there);
             agreeing += i32::from(agrees);
         }
-        // Of nearly parallel edges both may take another one for crossing.
+        // If edges are nearly parallel, the two engines may disagree on which of them cross.
         assert!(
             touching > 5_000 && touching - agreeing < touching / 200,
             "{agreeing} of {touching}"
         );
     }
 
-    /// A corner that went from a riser to the tread above it kept its impulse, which then pushed along the new normal.
+    /// A corner that moved from a riser to the tread above must not keep its impulse, which would then push along the new normal.
     #[test]
     fn a_corner_on_another_face_is_another_point() {
         let step = block(&Pose::IDENTITY, Vector::new(2.0, 1.0, 0.5));

@@ -1,4 +1,4 @@
-//! One snake as the solver sees it: its boxes, joints and surroundings, and the contacts of its last step.
+//! One snake as the solver sees it: its boxes, joints and stairs, and the contacts of its last step.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use crate::world::contact::{joint_coefficients, soft_contacts};
 use crate::world::surface::ContactLaw;
 use crate::world::{BodyPlan, Vector, WorldPlan};
 
-/// Maximum number of parts that this engine simulates.
+/// Maximum number of parts that the engine *lanes* simulates.
 pub(super) const MOST_PARTS: usize = 12;
 
-/// Greatest speed with which an error of position is corrected: of a contact in m/s, of a joint beyond its limit in rad/s. Rapier's.
+/// Greatest speed with which an error of position is corrected, as in rapier: in m/s for a contact, in rad/s for a joint beyond its limit.
 pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
 
 /// A box of the snake.
@@ -20,26 +20,26 @@ pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
 pub(super) struct ChainPart {
     pub half_m: Vector,
     pub mass_kg: f32,
-    /// About its own axes, in kg·m².
+    /// Moments of inertia of the part about its own axes, in kg·m².
     pub inertia_kg_m2: Vector,
 }
 
 /// The state of a part at the beginning and at the end of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct PartState {
-    /// Its centre, in metres.
+    /// Centre of the part, in metres.
     pub at: Vector,
-    /// Its rotation as a quaternion: x, y, z and w.
+    /// Rotation of the part as a quaternion: x, y, z and w.
     pub turn: [f32; 4],
-    /// Velocity of its centre, in m/s.
+    /// Velocity of the part's centre, in m/s.
     pub linear: Vector,
-    /// In rad/s, in the world.
+    /// Angular velocity of the part in the world, in rad/s.
     pub angular: Vector,
-    /// Force on its centre besides gravity, in N.
+    /// Force on the part's centre besides gravity, in N.
     pub force_n: Vector,
-    /// Torque on it, in N·m, in the world.
+    /// Torque on the part in the world, in N·m.
     pub torque_nm: Vector,
-    /// Whether it is held where it is, and nothing moves it.
+    /// Whether the part is held in its place, so that nothing moves it.
     pub is_held: bool,
 }
 
@@ -49,7 +49,7 @@ impl PartState {
         self.linear + self.angular.cross(at - self.at)
     }
 
-    /// Its axes in the world.
+    /// Returns the axes of the part in the world.
     pub fn axes(&self) -> [Vector; 3] {
         let [x, y, z, w] = self.turn.map(|part| Wide([part]));
         WideRotation { x, y, z, w }.axes().map(|axis| axis.get(0))
@@ -61,13 +61,13 @@ impl PartState {
 pub(super) struct Joint {
     /// Indices of the parts, the front one first.
     pub parts: [usize; 2],
-    /// Sine and cosine of half of the greatest bend and twist; none where the axis turns freely.
+    /// Sine and cosine of half of the greatest bend and twist; `None` where the axis turns freely.
     pub half_limits: [Option<[f32; 2]>; 2],
-    /// Share of the damping that the solver integrates, in N·m·s/rad.
+    /// Damping that the solver integrates, in N·m·s/rad: a share of the joint's damping.
     pub damping_nms: f32,
     /// Share of a position error that is corrected, per second.
     pub correction_per_s: f32,
-    /// Compliance, as a share of a row's own inverse mass.
+    /// Compliance of the joint, as a share of a row's own inverse mass.
     pub compliance: f32,
 }
 
@@ -95,26 +95,26 @@ pub(super) struct Laws {
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub block: Block,
-    /// The upright box around it.
+    /// Least corner of the axis-aligned box around the solid, in metres; `high` is its greatest corner.
     pub low: Vector,
     pub high: Vector,
 }
 
-/// Settings and sizes that all snakes which are stepped side by side share.
+/// Settings and sizes that all snakes which are stepped side by side have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LanesCommon {
-    /// Length of a step, in s.
+    /// Length of a physics step, in s.
     pub step_s: f32,
-    /// Substeps of a step.
+    /// Number of substeps of a step.
     pub substeps: u32,
-    /// Passes over all joints and contacts in a substep.
+    /// Number of passes over all joints and contacts in a substep.
     pub iterations: u32,
     /// Number of parts of a snake.
     pub parts: usize,
-    /// Number of its joints.
+    /// Number of joints of a snake.
     pub joints: usize,
-    /// Whether a contact or a joint is a spring: then each pass solves friction, and none of them takes corrections of
-    /// positions out of the velocities again.
+    /// Whether a contact or a joint is a spring. If one is, each pass solves friction, and no pass takes the corrections of positions out
+    /// of the velocities again.
     pub has_springs: bool,
 }
 
@@ -128,18 +128,18 @@ pub(crate) struct Chain {
     pub(super) pairs: Vec<[usize; 2]>,
     pub(super) solids: Arc<[Solid]>,
     pub(super) laws: Laws,
-    /// In m/s². Like the state it is given before each step.
+    /// Gravity, in m/s². It is set before each step, together with the state.
     pub gravity: Vector,
-    /// The state that the next step begins with, and that the last one left.
+    /// State of the parts: after the last step, and before the next one.
     pub state: Vec<PartState>,
-    /// The contacts of the last step: those between parts first, then those of each part with the world.
+    /// Contacts of the last step: first the contacts between parts, then those of each part with the world.
     pub contacts: Vec<Contact>,
-    /// The contacts of the step before the last one; their memory is used again.
+    /// Contacts of the step before the last one, whose memory is used again.
     pub(super) earlier: Vec<Contact>,
 }
 
 impl BodyPlan {
-    /// Why the engine *lanes* cannot simulate this body, in words that follow "because "; none if it can.
+    /// Returns the reason why the engine *lanes* cannot simulate this body, in words that follow "because "; `None` if it can.
     pub fn obstacle_in_lanes(&self) -> Option<&'static str> {
         if !self.springs.is_empty() {
             Some("its limbs are soft")
@@ -154,7 +154,7 @@ impl BodyPlan {
 }
 
 impl Chain {
-    /// The snake of a plan whose body has no [obstacle](BodyPlan::obstacle_in_lanes).
+    /// Builds the snake of a plan whose body has no [obstacle](BodyPlan::obstacle_in_lanes).
     pub fn new(plan: &WorldPlan) -> Self {
         let WorldPlan { body, physics, skin, .. } = plan;
         let parts: Vec<ChainPart> = body
@@ -224,28 +224,28 @@ impl Chain {
         }
     }
 
-    /// Settings and sizes that the other lanes of a solver must share.
+    /// Returns the settings and sizes that all lanes of a solver must have in common.
     pub fn common(&self) -> LanesCommon {
         self.common
     }
 
-    /// Mass of a part, in kg, and its inertia about its own axes, in kg·m²; none for a part that it does not have.
+    /// Returns the mass of a part, in kg, and its inertia about its own axes, in kg·m²; `None` if the snake has no such part.
     pub fn mass_of(&self, part: usize) -> Option<(f32, Vector)> {
         self.parts.get(part).map(|part| (part.mass_kg, part.inertia_kg_m2))
     }
 
-    /// The box of a part in its present state.
+    /// Returns the box of a part in its present state.
     pub(super) fn block(&self, part: usize) -> Block {
         let state = &self.state[part];
         Block { centre: state.at, axes: state.axes(), half_m: self.parts[part].half_m }
     }
 
-    /// Takes over the contacts of a snake of the same body on the same stairs, so that it goes on with their impulses.
+    /// Copies the contacts of a snake with the same body on the same stairs, so that this snake continues with their impulses.
     pub fn take_contacts_of(&mut self, other: &Self) {
         self.contacts.clone_from(&other.contacts);
     }
 
-    /// Whether both have the same stairs.
+    /// Returns whether both snakes have the same stairs.
     pub fn has_solids_of(&self, other: &Self) -> bool {
         let places = |of: &Self| {
             of.solids
@@ -257,7 +257,7 @@ impl Chain {
     }
 }
 
-/// Sine and cosine of half a limit; none for a limit of half a turn or more, which the angle cannot pass.
+/// Returns the sine and cosine of half a limit; `None` for a limit of half a turn or more, which no angle exceeds.
 fn half_limit(limit_rad: f32) -> Option<[f32; 2]> {
     (limit_rad < std::f32::consts::PI).then(|| {
         let (sin, cos) = libm::sincosf(limit_rad / 2.0);

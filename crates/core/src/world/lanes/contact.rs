@@ -1,4 +1,4 @@
-//! Finds the contacts of a snake at the beginning of a step, and gives each the impulses with which it begins.
+//! Finds the contacts of a snake at the beginning of a step, and gives each contact its initial impulses.
 
 use super::block::{Block, of_blocks, on_ground};
 use super::chain::{Chain, Law, MOST_PARTS};
@@ -6,17 +6,17 @@ use super::shared_points::{MOST_POINTS, SharedPoints};
 use crate::world::Vector;
 use crate::world::contact::SlippingPatch;
 
-/// Distance up to which bodies that approach are seen as a contact, in metres: rapier's.
+/// Distance up to which approaching bodies count as a contact, in metres, as in rapier.
 const WITHIN_M: f32 = 0.02;
 
 /// The body that a part touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Touching {
-    /// The ground.
+    /// The part touches the ground.
     Ground,
-    /// A solid of the stairs, by its index.
+    /// The part touches the solid of the stairs with this index.
     Solid(usize),
-    /// A part further to the front, by its index.
+    /// The part touches another part, closer to the head, with this index.
     Part(usize),
 }
 
@@ -24,21 +24,21 @@ pub(crate) enum Touching {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ContactPoint {
     pub(super) features: u16,
-    /// Midway between both surfaces at the beginning of the step, in the world, in metres.
+    /// Point midway between both surfaces at the beginning of the step, in the world, in metres.
     pub(super) at: Vector,
-    /// On the part, in its own frame, in metres.
+    /// Point on the part, in the part's own frame, in metres.
     pub on_part: Vector,
-    /// On what it touches: in the frame of that part, or in the world.
+    /// Point on the other body, in metres: in the frame of the touched part, or in the world.
     pub on_other: Vector,
-    /// At the beginning of the step, in metres.
+    /// Distance between the surfaces at the beginning of the step, in metres; negative where they overlap.
     pub(super) distance_m: f32,
-    /// Impulse of the last substep, along the normal, in N·s.
+    /// Impulse along the normal in the last substep, in N·s.
     pub impulse_ns: f32,
-    /// Impulse of the whole step, along the normal, in N·s.
+    /// Impulse along the normal in the whole step, in N·s.
     pub total_ns: f32,
-    /// Whether it carried no load in the step before.
+    /// Whether the point carried no load in the step before.
     pub is_new: bool,
-    /// Speed at which the bodies approached here when the step began, in m/s; known where something bounces.
+    /// Speed at which the bodies approached each other at the point when the step began, in m/s. It is computed only if something bounces.
     pub(super) incoming_m_s: f32,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Contact {
     pub normal: Vector,
     /// Coulomb coefficient of the materials.
     pub material_friction: f32,
-    /// Coulomb coefficient of this step, which is lower where the surface lets the part slip.
+    /// Coulomb coefficient in this step. It is lower than that of the materials where the surface lets the part slip.
     pub(super) friction: f32,
     pub(super) bounce: f32,
     pub(super) correction_per_s: f32,
@@ -67,7 +67,7 @@ pub(crate) struct Contact {
 }
 
 impl Contact {
-    /// Its points.
+    /// Returns the points of the contact.
     pub fn points(&self) -> &[ContactPoint] {
         &self.points[..self.count]
     }
@@ -77,7 +77,8 @@ impl Contact {
     }
 }
 
-/// The second of two bodies whose contact is looked for, and the first one.
+/// Two bodies between which a contact is searched: `part` with the block `second`, and the body that it touches, with the block `first`;
+/// `None` for the ground.
 struct Bodies<'a> {
     part: usize,
     other: Touching,
@@ -87,7 +88,7 @@ struct Bodies<'a> {
 }
 
 impl Chain {
-    /// Finds the contacts of its present state. Those of the last step become the earlier ones.
+    /// Finds the contacts of the snake's present state. The contacts of the last step become the earlier ones.
     pub(super) fn find_contacts(&mut self) {
         std::mem::swap(&mut self.contacts, &mut self.earlier);
         let mut contacts = std::mem::take(&mut self.contacts);
@@ -144,7 +145,7 @@ impl Chain {
         self.contacts = contacts;
     }
 
-    /// Adds the contact of two bodies, with the impulses that its points had in the step before, unless no point is near enough.
+    /// Adds the contact of two bodies, with the impulses that its points had in the step before. Adds nothing if no point is near enough.
     fn add_contact(&self, bodies: &Bodies<'_>, found: &SharedPoints, contacts: &mut Vec<Contact>) {
         let Bodies { part, other, first, second, law } = bodies;
         let turned = |of: Vector| first.map_or(of, |first| first.turned(of));
@@ -171,7 +172,7 @@ impl Chain {
             let candidate = &found.points()[index];
             let [on_first, on_second] = [candidate.on_first, candidate.on_second].map(placed);
             if law.contact.softness.is_soft() {
-                // A spring pushes only once it is touched.
+                // A spring pushes only once the surfaces touch.
                 if candidate.distance_m > 0.0 {
                     continue;
                 }
@@ -211,7 +212,7 @@ impl Chain {
             return;
         }
         if let Some(earlier) = earlier {
-            // Each point had the friction of the whole contact; new points have none yet.
+            // Only the points that touched before carry friction at first; new points have none yet.
             let share = kept / contact.count as f32;
             contact.friction_ns = earlier.friction_ns * share;
             contact.twist_nms = earlier.twist_nms * share;
@@ -220,7 +221,7 @@ impl Chain {
         contacts.push(contact);
     }
 
-    /// Speed at which the bodies approach each other at a point along the normal, in m/s.
+    /// Returns the speed at which the bodies approach each other along the normal at a point, in m/s.
     pub(super) fn approach_m_s(
         &self,
         part: usize,
@@ -231,7 +232,7 @@ impl Chain {
         -self.relative_velocity(part, other, at).dot(normal)
     }
 
-    /// Velocity of the part's surface relative to what it touches, in m/s.
+    /// Returns the velocity of the part's surface relative to the body that it touches, in m/s.
     fn relative_velocity(&self, part: usize, other: Touching, at: Vector) -> Vector {
         let of_other = match other {
             Touching::Part(front) => self.state[front].velocity_at(at),
@@ -240,8 +241,8 @@ impl Chain {
         self.state[part].velocity_at(at) - of_other
     }
 
-    /// The parameters of a surface that act before the contact is solved: the least speed for a bounce, and slip, which lowers
-    /// the friction (see [`SlippingPatch`]). `friction_ns` is that of the last step, which `kept` of the points had.
+    /// Applies the parameters of a surface that act before the contact is solved: the least speed for a bounce, and slip, which lowers the
+    /// friction (see [`SlippingPatch`]). `friction_ns` is the friction in the last step; `kept` of the points had it.
     fn apply_law(&self, contact: &mut Contact, law: &Law, friction_ns: Vector, kept: f32) {
         let (part, other, normal) = (contact.part, contact.other, contact.normal);
         let law = law.contact;

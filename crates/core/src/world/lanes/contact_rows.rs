@@ -1,4 +1,4 @@
-//! The rows of the contacts: each point keeps its part from approaching, and friction holds the contact as a whole.
+//! The constraint rows of the contacts: a row for each point prevents approach, and friction holds the contact as a whole.
 
 use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
 use super::contact::Touching;
@@ -10,29 +10,29 @@ use crate::world::Vector;
 /// A point of a contact in each lane.
 #[derive(Debug, Clone, Copy)]
 struct WidePoint<const N: usize> {
-    /// Levers in the world from the centres of the part and of the one that it touches to the point, at the beginning of
-    /// the step.
+    /// Levers from the centres of the two touching bodies to the point, at the beginning of the step, in the world.
     levers: [WideVector<N>; 2],
-    /// The levers at the beginning of the step, each in the frame of its body.
+    /// The levers at the beginning of the step, each in the frame of its own body.
     own: [WideVector<N>; 2],
     axes: [WideVector<N>; 2],
     by_inertia: [WideVector<N>; 2],
-    /// 0 in lanes without this point.
+    /// Effective mass along the normal; 0 in lanes without this point.
     mass: Wide<N>,
     distance_m: Wide<N>,
-    /// From the middle of the contact, in metres.
+    /// Distance from the middle of the contact, in metres.
     from_middle_m: Wide<N>,
-    /// Added to the speed of approach: speed at which the gap closes within a substep, or at which a penetration is corrected.
+    /// Speed that is added to the speed of approach: the speed at which the gap closes within a substep, or at which a penetration is
+    /// corrected.
     bias: Wide<N>,
     softening: Wide<N>,
     impulse: Wide<N>,
     total: Wide<N>,
 }
 
-/// One contact in each lane: of the same part, with the world or with the same other part.
+/// One contact in each lane: in all lanes between the same part and the world, or between the same two parts.
 #[derive(Debug, Clone)]
 pub(super) struct WideContact<const N: usize> {
-    /// Index of the contact in the list of its snake; none in lanes without it.
+    /// Index of the contact in the list of its snake; `None` in lanes without this contact.
     contacts: [Option<usize>; N],
     part: usize,
     other: Option<usize>,
@@ -42,15 +42,15 @@ pub(super) struct WideContact<const N: usize> {
     correction_per_s: Wide<N>,
     softening: Wide<N>,
     points: [WidePoint<N>; MOST_POINTS],
-    /// The greatest number of points of any lane.
+    /// Number of points in the lane that has most.
     count: usize,
-    /// Levers of the middle of the points in the world. `own` has these levers in the frames of the bodies.
+    /// Levers of the middle of the points in the world. `own` has these levers in the frames of the two bodies.
     levers: [WideVector<N>; 2],
     own: [WideVector<N>; 2],
-    /// Axes and products with the inertias of both tangents, of the part and of the other.
+    /// Axes of both tangents for the part and for the other body. `tangents_by_inertia` has their products with the inverse inertias.
     tangent_axes: [[WideVector<N>; 2]; 2],
     tangents_by_inertia: [[WideVector<N>; 2]; 2],
-    /// Inverse of the 2 by 2 matrix of inverse masses along the tangents: xx, xy and yy.
+    /// Inverse of the 2 by 2 matrix of inverse masses along the tangents: the elements xx, xy and yy.
     tangent_masses: [Wide<N>; 3],
     tangent_bias: [Wide<N>; 2],
     tangent_impulse: [Wide<N>; 2],
@@ -75,7 +75,7 @@ impl<const N: usize> WidePoint<N> {
     };
 }
 
-/// How far a point of a part has moved since the beginning of the step.
+/// Returns how far a point of a part has moved since the beginning of the step.
 #[inline(always)]
 fn moved<const N: usize>(
     part: &WidePart<N>,
@@ -109,8 +109,8 @@ impl<const N: usize> WideContact<N> {
         twist_impulse: Wide::ZERO,
     };
 
-    /// Begins a contact of a part that no lane has yet. Everything that is loaded is cleared, so that a lane without the contact has
-    /// none of the numbers of a snake that was there before; the rest is computed from that.
+    /// Begins a contact that no lane has loaded yet. It clears all values that `load` sets, so that a lane without the contact keeps no
+    /// numbers of an earlier snake; all other values are computed from these.
     pub fn begin(&mut self, part: usize, other: Option<usize>) {
         (self.part, self.other, self.count, self.contacts) = (part, other, 0, [None; N]);
         self.normal = WideVector::ZERO;
@@ -128,7 +128,7 @@ impl<const N: usize> WideContact<N> {
         }
     }
 
-    /// Takes contact number `index` of a snake into a lane.
+    /// Loads contact number `index` of a snake into a lane.
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let contact = &chain.contacts[index];
         self.contacts[lane] = Some(index);
@@ -162,7 +162,7 @@ impl<const N: usize> WideContact<N> {
         for (impulse, tangent) in self.tangent_impulse.iter_mut().zip(tangents) {
             impulse.0[lane] = contact.friction_ns.dot(tangent);
         }
-        // A single point has no lever to resist a twist.
+        // A single point has no lever with which it could resist a twist.
         self.twist_impulse.0[lane] = if points.len() > 1 { contact.twist_nms } else { 0.0 };
     }
 
@@ -184,13 +184,13 @@ impl<const N: usize> WideContact<N> {
         }
     }
 
-    /// The part, and the other one if the contact is between parts.
+    /// Returns the part, and the other part if the contact is between two parts.
     #[inline(always)]
     fn ends<'a>(&self, parts: &'a [WidePart<N>]) -> (&'a WidePart<N>, Option<&'a WidePart<N>>) {
         (&parts[self.part], self.other.map(|other| &parts[other]))
     }
 
-    /// Builds the rows of a step.
+    /// Builds the rows for a step.
     #[inline(never)]
     pub fn build(&mut self, parts: &[WidePart<N>]) {
         let (part, other) = self.ends(parts);
@@ -210,7 +210,7 @@ impl<const N: usize> WideContact<N> {
                 inverse_mass += point.by_inertia[1].dot(axis);
             }
             point.mass = point.mass * inverse_mass.inverse();
-            // The impulse with which the step begins is that of the step before: the first substep adds it.
+            // The initial impulse comes from the step before and is not part of this step's total: the first substep adds it.
             point.total = -point.impulse;
         }
         self.own[0] = self.levers[0].into_frame(&part.axes);
@@ -247,7 +247,7 @@ impl<const N: usize> WideContact<N> {
         self.twist_mass = twist.inverse();
     }
 
-    /// Present distance of a point along the normal.
+    /// Returns the present distance of a point along the normal.
     #[inline(always)]
     fn distance_m(&self, parts: &[WidePart<N>], point: &WidePoint<N>) -> Wide<N> {
         let (part, other) = self.ends(parts);
@@ -259,7 +259,7 @@ impl<const N: usize> WideContact<N> {
         point.distance_m + by
     }
 
-    /// Prepares a substep, and begins it with the impulses of the one before.
+    /// Prepares a substep, which begins with the impulses of the substep before.
     #[inline(never)]
     pub fn begin_substep(
         &mut self,
@@ -274,7 +274,7 @@ impl<const N: usize> WideContact<N> {
             let correction = (distance_m * self.correction_per_s).min(Wide::ZERO);
             let correction = if common.has_springs { correction } else { correction.max(-most) };
             point.bias = distance_m.max(Wide::ZERO) * per_substep + correction;
-            // A point that is still apart is stopped rigidly, as soon as it arrives.
+            // A point that is still apart is stopped rigidly when it arrives, without softening.
             point.softening = Wide::where_less(Wide::ZERO, distance_m, Wide::ONE, self.softening);
             point.total += point.impulse;
             let impulse = point.impulse;
@@ -294,7 +294,7 @@ impl<const N: usize> WideContact<N> {
         self.twist(parts, twist);
     }
 
-    /// Gaps at the present poses, for the pass that corrects no positions.
+    /// Recomputes the gaps at the present poses, for the last pass, which corrects no positions.
     #[inline(never)]
     pub fn end_substep(&mut self, parts: &[WidePart<N>], per_substep: Wide<N>) {
         for index in 0..self.count {
@@ -343,7 +343,7 @@ impl<const N: usize> WideContact<N> {
         }
     }
 
-    /// One pass over the points.
+    /// Makes one pass over the rows of the points along the normal.
     #[inline(never)]
     pub fn solve_normal(&mut self, parts: &mut [WidePart<N>]) {
         for index in 0..self.count {
@@ -362,7 +362,7 @@ impl<const N: usize> WideContact<N> {
         }
     }
 
-    /// One pass over the friction: first against a twist on the spot, then along the surface.
+    /// Makes one pass over the friction: first against a twist on the spot, then along the surface.
     #[inline(never)]
     pub fn solve_friction(&mut self, parts: &mut [WidePart<N>]) {
         let (mut most, mut most_twist) = (Wide::ZERO, Wide::ZERO);
@@ -400,7 +400,7 @@ impl<const N: usize> WideContact<N> {
             self.tangent_impulse[0] - (xx * u + xy * v),
             self.tangent_impulse[1] - (xy * u + yy * v),
         ];
-        // No more than the cone of friction allows.
+        // The friction is limited to the friction cone.
         let square = wanted[0] * wanted[0] + wanted[1] * wanted[1];
         let scale = Wide::where_less(most * most, square, most / square.sqrt(), Wide::ONE);
         let impulse = wanted.map(|along| along * scale);

@@ -1,23 +1,24 @@
-//! The rows of the universal joints: a velocity that two parts may not have against each other, and the impulse that prevents it.
+//! The constraint rows of the universal joints. Each row has a relative velocity of two parts that it does not allow, and the impulse that
+//! prevents this velocity.
 
 use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
 use super::part::{WidePart, both};
 use super::wide::{Wide, WideVector};
 
-/// A row that only concerns rotations, about the same axis for both parts.
+/// A row that only concerns rotations. Its axis is the same for both parts.
 #[derive(Debug, Clone, Copy)]
 struct TurnRow<const N: usize> {
     axis: WideVector<N>,
-    /// Products of the inverse inertias with the axis.
+    /// Products of both parts' inverse inertias with the axis.
     by_inertia: [WideVector<N>; 2],
     inverse: Wide<N>,
-    /// Velocity that corrects the error of position.
+    /// Velocity that corrects an error of position.
     bias: Wide<N>,
     compliance: Wide<N>,
     impulse: Wide<N>,
 }
 
-/// A row that concerns velocities and rotations.
+/// A row that concerns linear and angular velocities.
 #[derive(Debug, Clone, Copy)]
 struct JointRow<const N: usize> {
     direction: WideVector<N>,
@@ -27,7 +28,7 @@ struct JointRow<const N: usize> {
     bias: Wide<N>,
     compliance: Wide<N>,
     impulse: Wide<N>,
-    /// Least and greatest impulse.
+    /// Least and greatest impulse of the row.
     range: [Wide<N>; 2],
 }
 
@@ -36,11 +37,12 @@ struct JointRow<const N: usize> {
 pub(super) struct WideJoint<const N: usize> {
     /// Indices of the parts, the front one first.
     pub parts: [usize; 2],
-    /// Distance of its anchors from the centres along y, in metres: behind the front part, before the rear part.
+    /// Distances along y from the parts' centres to the joint's anchors, in metres: backwards from the front part, forwards from the rear
+    /// part.
     anchors_m: [Wide<N>; 2],
     /// Compliance of the damping, `1 / (damping · substep)`.
     damping: Wide<N>,
-    /// 1, and 0 without damping.
+    /// 1 in lanes whose joint has damping, 0 in the others.
     is_damped: Wide<N>,
     half_limits: [[Wide<N>; 2]; 2],
     correction_per_s: Wide<N>,
@@ -49,7 +51,7 @@ pub(super) struct WideJoint<const N: usize> {
     lock: TurnRow<N>,
     anchors: [JointRow<N>; 3],
     limits: [JointRow<N>; 2],
-    /// Whether any lane is beyond a limit.
+    /// Whether the bend and the twist are beyond a limit in any lane.
     is_limited: [bool; 2],
 }
 
@@ -63,7 +65,7 @@ impl<const N: usize> TurnRow<N> {
         impulse: Wide::ZERO,
     };
 
-    /// A row about an axis, and its inverse mass.
+    /// Builds a row about an axis, and returns it with its inverse mass.
     #[inline(always)]
     fn about(axis: WideVector<N>, [front, rear]: [&WidePart<N>; 2]) -> (Self, Wide<N>) {
         let by_inertia = [front.inverse_inertia.of(axis), rear.inverse_inertia.of(axis)];
@@ -93,7 +95,8 @@ impl<const N: usize> JointRow<N> {
         range: [Wide::ZERO; 2],
     };
 
-    /// Product of two rows by the inverse masses of both parts; of a row with itself its inverse mass.
+    /// Returns the product of two rows, weighted by the inverse masses of both parts. The product of a row with itself is its inverse
+    /// mass.
     #[inline(always)]
     fn product(&self, other: &Self, inverse_kg: Wide<N>) -> Wide<N> {
         self.direction.dot(other.direction) * inverse_kg
@@ -101,7 +104,7 @@ impl<const N: usize> JointRow<N> {
             + self.by_inertia[1].dot(other.axes[1])
     }
 
-    /// Takes out of this row what `other` prevents already.
+    /// Makes this row independent of `other` by subtracting the share that `other` already prevents.
     #[inline(always)]
     fn take_out(&mut self, other: &Self, inverse_of_other: Wide<N>, inverse_kg: Wide<N>) {
         let share = self.product(other, inverse_kg) * inverse_of_other;
@@ -158,10 +161,10 @@ impl<const N: usize> JointRow<N> {
     }
 }
 
-/// How far a joint is beyond a limit about one axis, in radians, from the imaginary part of its rotation about that axis and the
-/// real part; 0 where it is not, and negative beyond the lower limit. None if it is beyond in no lane. The angle is
-/// `2 atan(x / w)`; turned back by half the limit with the theorem of addition, its sign says whether the limit is passed,
-/// without any trigonometry.
+/// Returns how far a joint is beyond a limit about one axis, in radians, from the imaginary part x of its rotation about the axis and the
+/// real part w; 0 within the limits, and negative beyond the lower limit. `None` if no lane is beyond a limit. The angle is `2 atan(x /
+/// w)`. The addition theorem subtracts half the limit from half the angle, and the sign of the result tells whether the limit is exceeded,
+/// without trigonometric functions.
 #[inline(always)]
 fn beyond<const N: usize>(x: Wide<N>, w: Wide<N>, [sin, cos]: [Wide<N>; 2]) -> Option<Wide<N>> {
     let (over, under) = (x * cos - w * sin, -(x * cos + w * sin));
@@ -174,8 +177,8 @@ fn beyond<const N: usize>(x: Wide<N>, w: Wide<N>, [sin, cos]: [Wide<N>; 2]) -> O
     Some(above - below)
 }
 
-/// The angle whose sine and cosine are in this ratio, if the sine is positive, else 0. A positive sine comes with a cosine that is
-/// not negative: neither a half angle nor half a limit is more than a quarter of a turn.
+/// Returns the angle whose sine and cosine have this ratio if the sine is positive, else 0. With a positive sine, the cosine is not
+/// negative, because neither a half angle nor half a limit is more than a quarter of a turn.
 #[inline(always)]
 fn arc<const N: usize>(sin: Wide<N>, cos: Wide<N>) -> Wide<N> {
     let sin = sin.max(Wide::ZERO);
@@ -183,7 +186,7 @@ fn arc<const N: usize>(sin: Wide<N>, cos: Wide<N>) -> Wide<N> {
     let greater = Wide::where_less(sin, cos, cos, sin);
     let ratio = smaller / greater.max(Wide::all(1.0e-12));
     let square = ratio * ratio;
-    // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49: within 2e-8 of the arc tangent up to 1.
+    // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49: within 2e-8 of the arc tangent for arguments up to 1.
     let mut sum = Wide::all(0.002_866_225_7);
     for coefficient in [
         -0.016_165_737,
@@ -218,11 +221,11 @@ impl<const N: usize> WideJoint<N> {
         is_limited: [false; 2],
     };
 
-    /// Takes joint number `index` of a snake into a lane.
+    /// Loads joint number `index` of a snake into a lane.
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let joint = &chain.joints[index];
         let substep_s = chain.common.step_s / chain.common.substeps as f32;
-        // The snakes of all lanes have as many parts, so this joint connects the same two parts in every lane.
+        // The snakes of all lanes have the same number of parts, so this joint connects the same two parts in every lane.
         self.parts = joint.parts;
         self.anchors_m[0].0[lane] = -chain.parts[joint.parts[0]].half_m.y;
         self.anchors_m[1].0[lane] = chain.parts[joint.parts[1]].half_m.y;
@@ -230,7 +233,7 @@ impl<const N: usize> WideJoint<N> {
         self.damping.0[lane] = if is_damped { 1.0 / (substep_s * joint.damping_nms) } else { 0.0 };
         self.is_damped.0[lane] = if is_damped { 1.0 } else { 0.0 };
         for (axis, limits) in joint.half_limits.iter().enumerate() {
-            // Without a limit a rotation that is never reached: half a turn, as sine 1 and cosine 0, is the greatest.
+            // Without a limit, the limit is set to the greatest rotation, half a turn, as sine 1 and cosine 0. It is never exceeded.
             let [sin, cos] = limits.unwrap_or([1.0, 0.0]);
             self.half_limits[axis][0].0[lane] = sin;
             self.half_limits[axis][1].0[lane] = cos;
@@ -239,7 +242,7 @@ impl<const N: usize> WideJoint<N> {
         self.compliance.0[lane] = joint.compliance;
     }
 
-    /// Builds the rows for the present poses. Impulses begin at zero: the joints hold without those of the substep before.
+    /// Builds the rows for the present poses. All impulses begin at zero, not at those of the substep before.
     #[inline(never)]
     pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &LanesCommon) {
         let ends = [front, rear];
@@ -260,7 +263,7 @@ impl<const N: usize> WideJoint<N> {
         let z = (a.w * b.z - a.x * b.y + a.y * b.x - a.z * b.w) * side;
         let w = w * side;
 
-        // The lock keeps z at zero; its axis is the derivative of z by the relative rate of turn.
+        // The lock keeps the z part of the rotation at zero. Its axis is the derivative of z by the relative angular velocity.
         let half = Wide::all(0.5) * side;
         let axis = WideVector {
             x: (a.w * b.y + a.z * b.x + a.x * b.z + a.y * b.w) * half,
@@ -284,7 +287,7 @@ impl<const N: usize> WideJoint<N> {
             *row = JointRow { direction, axes, by_inertia, bias, ..JointRow::EMPTY };
             row.take_out_turn(&self.lock, lock_inverse);
         }
-        // Modified Gram-Schmidt: each row is made independent of those before it, so that one pass solves them all.
+        // Modified Gram-Schmidt makes each row independent of those before it, so that one pass solves them all.
         let mut inverses = [Wide::ZERO; 3];
         for axis in 0..3 {
             let (done, rest) = self.anchors.split_at_mut(axis + 1);
@@ -323,7 +326,7 @@ impl<const N: usize> WideJoint<N> {
         }
     }
 
-    /// One pass over the rows, with the correction of positions or without.
+    /// Makes one pass over the rows, with or without the correction of positions.
     #[inline(never)]
     pub fn solve(&mut self, parts: &mut [WidePart<N>], is_biased: bool) {
         let [front, rear] = self.parts;

@@ -1,9 +1,9 @@
-//! A block in each lane, and how it moves.
+//! A part of the snake in each lane, and how it moves.
 
 use super::chain::Chain;
 use super::wide::{Wide, WideRotation, WideSymmetric, WideVector};
 
-/// Greatest speed of a part, in m/s, and its greatest turn within a step, in radians: rapier's.
+/// Greatest speed of a part, in m/s, as in rapier. `MOST_TURN_RAD` is its greatest turn within a step, in radians.
 const MOST_M_S: f32 = 400.0;
 pub(super) const MOST_TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
@@ -11,25 +11,25 @@ pub(super) const MOST_TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WidePart<const N: usize> {
     pub at: WideVector<N>,
-    /// Where the step began.
+    /// Position of the centre at the beginning of the step.
     pub began_at: WideVector<N>,
     pub turn: WideRotation<N>,
-    /// Its axes in the world, at the present rotation.
+    /// Axes of the part in the world, at its present rotation.
     pub axes: [WideVector<N>; 3],
     pub linear: WideVector<N>,
     pub angular: WideVector<N>,
     pub inverse_kg: Wide<N>,
-    /// 1, and 0 for a part that is held.
+    /// 1, or 0 for a part that is held.
     moves: Wide<N>,
-    /// In the world, at the beginning of the step.
+    /// Inverse inertia in the world, at the beginning of the step.
     pub inverse_inertia: WideSymmetric<N>,
     inertia: WideVector<N>,
-    /// Changes of both velocities in a substep by gravity, forces and torques.
+    /// Changes of the linear velocity, and in `adds_angular` of the angular velocity, in a substep by gravity, forces and torques.
     adds_linear: WideVector<N>,
     adds_angular: WideVector<N>,
 }
 
-/// Two different parts, for changing both.
+/// Borrows two different parts, so that both can be changed; `None` if there are no such parts.
 #[inline(always)]
 pub(super) fn both<const N: usize>(
     parts: &mut [WidePart<N>],
@@ -83,7 +83,7 @@ impl<const N: usize> WidePart<N> {
         state.angular = self.angular.get(lane);
     }
 
-    /// Prepares a step after all lanes were loaded.
+    /// Prepares a step. It is called after all lanes were loaded.
     #[inline(always)]
     pub fn begin_step(&mut self, substep_s: Wide<N>) {
         self.began_at = self.at;
@@ -98,12 +98,12 @@ impl<const N: usize> WidePart<N> {
         self.adds_angular = self.inverse_inertia.of(self.adds_angular) * substep_s;
     }
 
-    /// Forces, torques and the gyroscopic torque of a substep.
+    /// Adds the effect of forces, torques and the gyroscopic torque in a substep to the velocities.
     #[inline(always)]
     pub fn accelerate(&mut self, substep_s: Wide<N>) {
         self.linear += self.adds_linear;
         self.angular += self.adds_angular;
-        // The explicit step of Euler's equations, with the length of the angular momentum before it, as in rapier.
+        // The explicit step of Euler's equations, rescaled to the length of the angular momentum before it, as in rapier.
         let rate = self.angular.into_frame(&self.axes);
         let momentum = self.inertia.times(rate);
         let turned = momentum - rate.cross(momentum) * substep_s;
@@ -122,7 +122,7 @@ impl<const N: usize> WidePart<N> {
         self.angular = rate.out_of_frame(&self.axes);
     }
 
-    /// Moves the part for a substep.
+    /// Moves the part by its velocities for the length of a substep.
     #[inline(always)]
     pub fn advance(&mut self, substep_s: Wide<N>, most_rad_s: f32) {
         self.linear = within(self.linear, MOST_M_S);
@@ -141,7 +141,7 @@ impl<const N: usize> WidePart<N> {
     }
 }
 
-/// A vector no longer than `most`.
+/// Shortens a vector to at most the length `most`.
 #[inline(always)]
 fn within<const N: usize>(vector: WideVector<N>, most: f32) -> WideVector<N> {
     let square = vector.dot(vector);

@@ -1,43 +1,43 @@
-//! Bounces, at the end of a step, because they are rare: for one snake at a time.
+//! Bounces at the end of a step. They are rare, so they are computed for one snake at a time.
 //!
-//! A point that arrived in this step and was pressed leaves with the share of its speed that the materials give back. Each point
-//! disturbs those before it, so a block that lands on a whole face needs several rounds over its corners until all agree.
+//! A point that arrived in this step under pressure leaves with the share of its speed that the restitution gives. Each point disturbs the
+//! points before it, so a block that lands on a whole face needs several rounds over its corners until all agree.
 
 use super::block::out_of;
 use super::chain::{Chain, PartState};
 use super::contact::{Contact, Touching};
 use crate::world::Vector;
 
-/// Rounds over the points of a step. The four corners of a block agree to a thousandth after ten.
+/// Number of rounds over the points of a step. After ten, the speeds of a block's four corners agree to a thousandth.
 const ROUNDS: u32 = 16;
 
-/// A point that bounces.
+/// A point of a contact that bounces.
 struct Bounce {
     part: usize,
     front: Option<usize>,
-    /// From the centres of both to the point, in metres.
+    /// Vectors from the centres of the two touching bodies to the point, in metres.
     levers: [Vector; 2],
     normal: Vector,
     leaving_m_s: f32,
-    /// Impulse on the point in the whole step, in N·s: a surface does not pull, so it stays positive.
+    /// Impulse on the point in the whole step, in N·s. It never becomes negative, because a surface does not pull.
     total_ns: f32,
     contact: usize,
     point: usize,
 }
 
 impl Chain {
-    /// Whether a contact bounces in this step.
+    /// Returns whether a contact bounces in this step.
     pub fn bounces(contact: &Contact) -> bool {
         let mut points = contact.points().iter();
         contact.bounce > 0.0 && points.any(|point| Self::bounces_at(contact, point))
     }
 
     fn bounces_at(contact: &Contact, point: &super::contact::ContactPoint) -> bool {
-        // A contact that was there before rests, unless nothing is ever lost.
+        // A point that already carried load in the step before does not bounce, unless the restitution is 1.
         (point.is_new || contact.bounce >= 1.0) && point.incoming_m_s > 0.0 && point.total_ns > 0.0
     }
 
-    /// The rate of turn by an impulse in a point: the product of the inverse inertia with `lever × normal`.
+    /// Returns the change of angular velocity by a unit impulse at a point: the product of the inverse inertia with `lever × normal`.
     fn turning(&self, part: usize, lever: Vector, normal: Vector) -> Vector {
         let axes = self.state[part].axes();
         let around = lever.cross(normal);
@@ -47,7 +47,7 @@ impl Chain {
             + axes[2] * (axes[2].dot(around) / inertia.z)
     }
 
-    /// Lets points bounce. To be called after the step. Returns whether any did.
+    /// Lets points bounce, and returns whether any did. It must be called after the step.
     pub fn bounce(&mut self) -> bool {
         if !self.contacts.iter().any(Self::bounces) {
             return false;
@@ -102,7 +102,7 @@ impl Chain {
         bounces
     }
 
-    /// Changes the impulse in a point so that it leaves with its speed, or without an impulse.
+    /// Changes the impulse at a point so that the point leaves with its required speed, or carries no impulse.
     fn solve(&mut self, bounce: &mut Bounce) {
         let Bounce { part, front, levers, normal, leaving_m_s, .. } = *bounce;
         let speed = |state: &PartState, lever: Vector| {

@@ -1,25 +1,25 @@
-//! The points in which two bodies touch, and which of them are solved.
+//! The points in which two bodies touch, and the choice of the points that are solved.
 
 use crate::world::Vector;
 
 /// A point in which two bodies touch, or nearly do.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SharedPoint {
-    /// Corners, edges or faces that meet there. Equal numbers in two steps are the same point of the same bodies.
+    /// Numbers of the corners, edges or faces that meet at the point. Equal numbers in two steps mean the same point of the same bodies.
     pub features: u16,
-    /// On the first body, in the frame of the search, in metres.
+    /// Point on the first body, in the frame of the search, in metres.
     pub on_first: Vector,
-    /// On the second body, in the same frame.
+    /// Point on the second body, in the frame of the search, in metres.
     pub on_second: Vector,
-    /// Distance along the normal, in metres; negative where they overlap.
+    /// Distance of the two surfaces along the normal, in metres; negative where they overlap.
     pub distance_m: f32,
 }
 
-/// More than two faces with four corners each can share: each corner of both, and each crossing of edges.
+/// Upper bound of the points that two faces with four corners each can share: the corners of both faces, and the crossings of their edges.
 const MOST_SHARED: usize = 16;
 
-/// All points in which two bodies touch, in the frame of the first box, or of the world for the ground. Its memory is used again for
-/// each pair of bodies.
+/// All points in which two bodies touch, in the frame of the first box, or in the world if the first body is the ground. The memory is
+/// reused for each pair of bodies.
 #[derive(Debug, Clone, Default)]
 pub(super) struct SharedPoints {
     /// Unit vector from the first body to the second.
@@ -29,12 +29,12 @@ pub(super) struct SharedPoints {
 }
 
 impl SharedPoints {
-    /// Begins to find the points along a normal.
+    /// Clears the list, to find the points along a normal.
     pub fn begin(&mut self, normal: Vector) {
         (self.normal, self.count) = (normal, 0);
     }
 
-    /// Adds a point.
+    /// Adds a point, unless the list is full.
     pub fn push(&mut self, point: SharedPoint) {
         if let Some(slot) = self.points.get_mut(self.count) {
             *slot = point;
@@ -42,33 +42,33 @@ impl SharedPoints {
         }
     }
 
-    /// The points.
+    /// Returns the points found.
     pub fn points(&self) -> &[SharedPoint] {
         &self.points[..self.count]
     }
 }
 
-/// -1 for a negative number, else 1.
+/// Returns -1 for a negative number, else 1.
 pub(super) fn sign(value: f32) -> f32 {
     if value < 0.0 { -1.0 } else { 1.0 }
 }
 
-/// A plane across the normal, on which both faces are seen.
+/// A plane at right angles to the contact's normal, on which both faces are projected.
 pub(super) struct Plane([Vector; 2]);
 
 impl Plane {
-    /// The basis of Duff and others, "Building an orthonormal basis, revisited", JCGT 6, 2017.
+    /// Builds the basis of Duff and others, "Building an orthonormal basis, revisited", JCGT 6, 2017.
     pub fn across(normal: Vector) -> Self {
         Self(basis(normal))
     }
 
-    /// Place of a point on the plane.
+    /// Projects a point onto the plane.
     pub fn seen(&self, point: Vector) -> [f32; 2] {
         [point.dot(self.0[0]), point.dot(self.0[1])]
     }
 }
 
-/// Two unit vectors at right angles to a unit vector and to each other.
+/// Returns two unit vectors at right angles to a unit vector and to each other.
 pub(super) fn basis(normal: Vector) -> [Vector; 2] {
     let side = sign(normal.z);
     let a = -1.0 / (side + normal.z);
@@ -79,15 +79,16 @@ pub(super) fn basis(normal: Vector) -> [Vector; 2] {
     ]
 }
 
-/// Points of a contact that are solved.
+/// Greatest number of points of a contact that are solved.
 pub(super) const MOST_POINTS: usize = 4;
 
 impl SharedPoints {
-    /// Up to four points that span the contact, ordered by place: the deepest one, the one furthest from it, and the outermost
-    /// ones on both sides of the line through these. Returns their indices and number.
+    /// Chooses up to four points that span the contact, ordered by place: the deepest point, the point furthest from it, and the outermost
+    /// point on each side of the line through these two. Returns their indices and their number.
     pub fn chosen(&self, within_m: f32) -> ([usize; MOST_POINTS], usize) {
         let (mut chosen, count) = self.spanning(within_m);
-        // In a fixed order on the plane of the contact, whatever the order in which they were found.
+        // The points are sorted by their place on the plane of the contact, so that their order does not depend on the order in which they
+        // were found.
         let plane = Plane::across(self.normal);
         let before = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|index| plane.seen(self.points[index].on_first));

@@ -1,4 +1,4 @@
-//! Steps of several snakes side by side: see the module's page for the method.
+//! Steps of several snakes side by side. The documentation of the module `lanes` explains the method.
 
 use super::chain::{Chain, LanesCommon};
 use super::contact::Touching;
@@ -7,17 +7,18 @@ use super::joint_rows::WideJoint;
 use super::part::{MOST_TURN_RAD, WidePart};
 use super::wide::Wide;
 
-/// The order in which the joints are solved, rapier's: every other one, whose parts are different, and then those between.
+/// Returns the order in which the joints are solved, as in rapier: first every second joint, which share no parts, and then the joints
+/// between them.
 fn alternating(joints: usize) -> impl Iterator<Item = usize> {
     (0..joints).step_by(2).chain((1..joints).step_by(2))
 }
 
-/// Solves up to `N` snakes side by side. It holds working memory only.
+/// Solver that steps up to `N` snakes side by side. It holds working memory only.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneSolver<const N: usize> {
     parts: Vec<WidePart<N>>,
     joints: Vec<WideJoint<N>>,
-    /// The first `contacts_used` of them are those of this step.
+    /// Contacts of all lanes. The first `contacts_used` belong to this step.
     contacts: Vec<WideContact<N>>,
     contacts_used: usize,
 }
@@ -29,8 +30,8 @@ impl<const N: usize> Default for LaneSolver<N> {
 }
 
 impl<const N: usize> LaneSolver<N> {
-    /// Advances up to `N` snakes by one step, without their bounces; all of them have the same [`LanesCommon`], and those beyond `N`
-    /// are not advanced.
+    /// Advances up to `N` snakes by one step, without their bounces. All of them have the same [`LanesCommon`]. Snakes beyond `N` are not
+    /// advanced.
     pub fn advance(&mut self, chains: &mut [&mut Chain]) {
         let used = chains.len().min(N);
         let chains = &mut chains[..used];
@@ -64,7 +65,7 @@ impl<const N: usize> LaneSolver<N> {
         }
     }
 
-    /// Takes the snakes into the lanes. A lane without a snake is another copy of the first.
+    /// Loads the snakes into the lanes. A lane without a snake gets a copy of the first one.
     fn load(&mut self, common: &LanesCommon, chains: &[&mut Chain]) {
         self.parts.resize(common.parts, WidePart::EMPTY);
         self.joints.resize(common.joints, WideJoint::EMPTY);
@@ -80,8 +81,8 @@ impl<const N: usize> LaneSolver<N> {
         }
         self.contacts_used = 0;
         let mut next = [0; N];
-        // Contacts between parts come in the order of the pairs. The contacts of each part with the world follow, so that
-        // the world's constraints are solved last.
+        // The contacts between parts come in the order of the pairs. The contacts of each part with the world follow, so that they are
+        // solved last.
         for front in 0..common.parts {
             for rear in front + 1..common.parts {
                 self.load_contact(chains, &mut next, rear, Some(front));
@@ -92,7 +93,7 @@ impl<const N: usize> LaneSolver<N> {
         }
     }
 
-    /// Takes the next contact of each snake that is between these bodies. Returns whether there was any.
+    /// Loads the next contact of each snake, if it is between these bodies. Returns whether any snake has such a contact.
     fn load_contact(
         &mut self,
         chains: &[&mut Chain],
@@ -160,7 +161,7 @@ impl<const N: usize> LaneSolver<N> {
         if common.has_springs {
             return;
         }
-        // A last pass without corrections of positions, which must not become velocities.
+        // The last pass is without corrections of positions, because these must not become velocities.
         for index in alternating(joints.len()) {
             joints[index].solve(parts, false);
         }

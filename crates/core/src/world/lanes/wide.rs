@@ -1,20 +1,20 @@
 //! Numbers, vectors and rotations of several snakes side by side, one snake per lane.
 //!
-//! Each operation is a loop over plain arrays, which the compiler turns into the vector instructions that a processor has, or
-//! into none. It adds, multiplies, divides and takes square roots only, each rounded on its own as IEEE 754 says, and never
-//! fuses two of them. So a lane has the same bits on every processor, for every number of lanes, and whatever the other lanes
-//! hold. There is one exception, which [`Wide::without_signed_zeros`] ends: where a lane takes part in an operation only because
-//! another one needs it, it adds a product with zero, which may turn -0 into 0.
+//! Each operation is a loop over plain arrays, which the compiler turns into the vector instructions of a processor, if it has any. The
+//! operations only add, multiply, divide and take square roots. Each is rounded on its own as IEEE 754 says, and no two are fused. So a
+//! lane has the same bits on every processor, for every number of lanes, and whatever the other lanes hold. The only exception is the sign
+//! of zero, which [`Wide::without_signed_zeros`] removes: a lane that takes part in an operation only because another lane needs it adds a
+//! product with zero, which may turn -0 into 0.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 use crate::world::Vector;
 
-/// One number of each lane.
+/// One number per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wide<const N: usize>(pub [f32; N]);
 
-/// One vector of each lane.
+/// One vector per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideVector<const N: usize> {
     pub x: Wide<N>,
@@ -22,7 +22,7 @@ pub(super) struct WideVector<const N: usize> {
     pub z: Wide<N>,
 }
 
-/// One rotation of each lane, as a unit quaternion.
+/// One rotation per lane, as a unit quaternion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideRotation<const N: usize> {
     pub x: Wide<N>,
@@ -31,7 +31,7 @@ pub(super) struct WideRotation<const N: usize> {
     pub w: Wide<N>,
 }
 
-/// One symmetric matrix of each lane: an inverse inertia in the world.
+/// One symmetric matrix per lane: an inverse inertia in the world.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideSymmetric<const N: usize> {
     xx: Wide<N>,
@@ -59,7 +59,7 @@ macro_rules! lane_by_lane {
     };
 }
 
-/// Addition or subtraction in place.
+/// Implements addition or subtraction in place.
 macro_rules! in_place {
     ($of:ident, $operation:ident, $function:ident, $sign:tt) => {
         impl<const N: usize> $operation for $of<N> {
@@ -94,7 +94,7 @@ impl<const N: usize> Wide<N> {
     pub const ZERO: Self = Self([0.0; N]);
     pub const ONE: Self = Self([1.0; N]);
 
-    /// One number for all lanes.
+    /// Sets all lanes to one number.
     #[inline(always)]
     pub fn all(value: f32) -> Self {
         Self([value; N])
@@ -110,25 +110,25 @@ impl<const N: usize> Wide<N> {
         Self(result)
     }
 
-    /// The smaller one of each lane; of two that compare equal, or with a NaN, `other`.
+    /// Returns the smaller number in each lane. If they compare equal or one is NaN, it is the number of `other`.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
         Self::where_less(self, other, self, other)
     }
 
-    /// The greater one of each lane; of two that compare equal, or with a NaN, `other`.
+    /// Returns the greater number in each lane. If they compare equal or one is NaN, it is the number of `other`.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self::where_less(other, self, self, other)
     }
 
-    /// Square roots.
+    /// Returns the square root in each lane.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         self.each(f32::sqrt)
     }
 
-    /// `then` in the lanes where `a` is less than `b`, else `otherwise`.
+    /// Returns `then` in the lanes where `a` is less than `b`, and `otherwise` in the others.
     #[expect(clippy::needless_range_loop, reason = "such a loop becomes vector instructions")]
     #[inline(always)]
     pub fn where_less(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
@@ -139,13 +139,13 @@ impl<const N: usize> Wide<N> {
         Self(result)
     }
 
-    /// 1 / x for a positive number, else 0: what has no mass, or is held, takes no impulse.
+    /// Returns 1 / x in lanes with a positive number, and 0 in the others: a part that is held, or has no mass, takes no impulse.
     #[inline(always)]
     pub fn inverse(self) -> Self {
         Self::where_less(Self::ZERO, self, Self::ONE / self, Self::ZERO)
     }
 
-    /// Whether a lane has a number greater than that of `other`.
+    /// Returns whether any lane has a number greater than that of `other`.
     #[inline(always)]
     pub fn any_greater(self, other: Self) -> bool {
         let mut any = false;
@@ -155,8 +155,8 @@ impl<const N: usize> Wide<N> {
         any
     }
 
-    /// The number in each lane, with 0 in place of -0. Two computations that differ in signs of zeros alone agree after it: sums,
-    /// products, quotients by numbers other than zero, roots and comparisons let nothing else come of such a difference.
+    /// Replaces -0 by 0 in each lane. After it, two computations that differ only in signs of zeros agree, because sums, products,
+    /// quotients by numbers other than zero, roots and comparisons turn such a difference into no other one.
     #[inline(always)]
     pub fn without_signed_zeros(self) -> Self {
         self + Self::ZERO
@@ -207,19 +207,19 @@ impl<const N: usize> WideVector<N> {
         }
     }
 
-    /// The products of the components.
+    /// Multiplies the vectors component by component.
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
     }
 
-    /// The vector along axes, given one of the world.
+    /// Converts a vector of the world to a frame with these axes.
     #[inline(always)]
     pub fn into_frame(self, axes: &[Self; 3]) -> Self {
         Self { x: axes[0].dot(self), y: axes[1].dot(self), z: axes[2].dot(self) }
     }
 
-    /// The vector of the world, given one along axes.
+    /// Converts a vector of a frame with these axes to the world.
     #[inline(always)]
     pub fn out_of_frame(self, axes: &[Self; 3]) -> Self {
         axes[0] * self.x + axes[1] * self.y + axes[2] * self.z
@@ -233,13 +233,13 @@ impl<const N: usize> WideVector<N> {
         self.z.0[lane] = to.z;
     }
 
-    /// The vector of one lane.
+    /// Returns the vector of one lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Vector {
         Vector::new(self.x.0[lane], self.y.0[lane], self.z.0[lane])
     }
 
-    /// See [`Wide::without_signed_zeros`].
+    /// Replaces -0 by 0 in each component: see [`Wide::without_signed_zeros`].
     #[inline(always)]
     pub fn without_signed_zeros(self) -> Self {
         Self {
@@ -253,7 +253,7 @@ impl<const N: usize> WideVector<N> {
 impl<const N: usize> WideRotation<N> {
     pub const IDENTITY: Self = Self { x: Wide::ZERO, y: Wide::ZERO, z: Wide::ZERO, w: Wide::ONE };
 
-    /// The rotated axes x, y and z.
+    /// Returns the axes x, y and z after the rotation.
     #[inline(always)]
     pub fn axes(self) -> [WideVector<N>; 3] {
         let Self { x, y, z, w } = self;
@@ -277,7 +277,7 @@ impl<const N: usize> WideRotation<N> {
         ]
     }
 
-    /// The rotation after a small rotation at this angular velocity for `step_s`, linearised and normalised.
+    /// Applies a small rotation at this angular velocity for `step_s` after the present rotation. The result is linearised and normalised.
     #[inline(always)]
     pub fn turned(self, angular: WideVector<N>, step_s: Wide<N>) -> Self {
         let by = angular * (step_s * Wide::all(0.5));
@@ -295,7 +295,7 @@ impl<const N: usize> WideRotation<N> {
         Self { x: turned.x * scale, y: turned.y * scale, z: turned.z * scale, w: turned.w * scale }
     }
 
-    /// See [`Wide::without_signed_zeros`].
+    /// Replaces -0 by 0 in each component: see [`Wide::without_signed_zeros`].
     #[inline(always)]
     pub fn without_signed_zeros(self) -> Self {
         Self {
@@ -317,7 +317,7 @@ impl<const N: usize> WideSymmetric<N> {
         zz: Wide::ZERO,
     };
 
-    /// The matrix with these values along these axes.
+    /// Builds the matrix with these values along these axes.
     #[inline(always)]
     pub fn along(axes: &[WideVector<N>; 3], values: WideVector<N>) -> Self {
         let [a, b, c] = *axes;
@@ -332,7 +332,7 @@ impl<const N: usize> WideSymmetric<N> {
         }
     }
 
-    /// The product with a vector.
+    /// Returns the product of the matrix with a vector.
     #[inline(always)]
     pub fn of(&self, vector: WideVector<N>) -> WideVector<N> {
         WideVector {

@@ -1,4 +1,4 @@
-//! Keeps the energy balance of a world, step by step, and reads it.
+//! Updates the energy balance of a world after each step, and reports its result.
 
 use rapier3d::prelude::*;
 
@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::world::energy::{EnergyBalance, EnergyLost, LimbTurn};
 
 impl Simulation {
-    /// The energy lost since the start.
+    /// Returns the energy lost since the start.
     pub fn energy_lost(&self) -> EnergyLost {
         let balance = &self.balance;
         let total_j = balance.start_j + balance.joint_work_j - self.mechanical_energy_j();
@@ -17,20 +17,20 @@ impl Simulation {
         }
     }
 
-    /// Begins the balance with the present state.
+    /// Restarts the balance with the present state.
     pub(super) fn begin_balance(&mut self) {
         let start_j = self.mechanical_energy_j();
         self.balance = EnergyBalance { start_j, ..EnergyBalance::default() };
     }
 
-    /// Goes on with the balance of a world whose state this one has taken. Energy that only the other parameters bring,
-    /// such as another gravity, counts neither as lost nor as gained.
+    /// Continues the balance of an earlier world whose state this world has taken. A difference in energy that comes only from other
+    /// parameters, such as another gravity, counts neither as lost nor as gained.
     pub(super) fn take_balance_of(&mut self, earlier: &Self) {
         self.balance = earlier.balance;
         self.balance.start_j += self.mechanical_energy_j() - earlier.mechanical_energy_j();
     }
 
-    /// Reads the rotations and rates of the limbs before a step.
+    /// Stores the rotations and angular velocities of the limbs before a step.
     pub(super) fn read_turns(&mut self) {
         self.turns_before.clear();
         for &limb in &self.parts {
@@ -39,11 +39,11 @@ impl Simulation {
         }
     }
 
-    /// Adds a step to the balance, given the limbs' rotations before it ([`Self::read_turns`]). To be called right after the engine's step:
-    /// bounces, air and damping surfaces change the rates afterwards.
+    /// Adds a step to the balance, given the limbs' rotations before it ([`Self::read_turns`]). It must be called right after the engine's
+    /// step, because bounces, air and damping surfaces change the angular velocities afterwards.
     ///
-    /// Rates change a lot within one step where a joint reaches its stop, so the integrals are not taken from the rates
-    /// at both ends alone, but also from the angle through which each limb has turned.
+    /// Angular velocities change a lot within one step where a joint reaches its stop. The integrals therefore use the angular velocities
+    /// at both ends of the step and the angle through which each limb has turned.
     pub(super) fn add_to_balance(&mut self) {
         let step_s = self.physics.integration_parameters.dt;
         let substep_s = self.substep_s();
@@ -56,8 +56,8 @@ impl Simulation {
             let after = body.angvel();
             let turned_rad =
                 rotation_vector(self.product(*body.rotation(), before.rotation.inverse()));
-            // The engine turns a limb by its rate at the end of each substep. The work of a torque counts with the mean
-            // of the rates at both ends.
+            // The engine turns a limb by its angular velocity at the end of each substep, but the work of a torque depends on the mean of
+            // the angular velocities at both ends.
             let mean = turned_rad / step_s - (after - before.rate) * (substep_s / (2.0 * step_s));
             work_j += torque.dot(mean) * step_s;
             turns.push([before.rate, mean, after]);
@@ -76,8 +76,8 @@ impl Simulation {
         self.balance.joint_damping_j += f64::from(joints_j);
     }
 
-    /// Kinetic and potential energy of all parts, with that of the springs of soft limbs, in J. The potential energy is 0 at
-    /// z = 0.
+    /// Returns the kinetic and potential energy of all parts, including the springs of soft limbs, in J. The potential energy is 0 at z =
+    /// 0.
     pub(super) fn mechanical_energy_j(&self) -> f64 {
         let substep_s = self.substep_s();
         if self.lanes.is_some() {
@@ -93,7 +93,7 @@ impl Simulation {
         energies_j.sum::<f64>() + self.springs_j()
     }
 
-    /// Energy in the springs of soft limbs, in J: `k θ² / 2` about each axis.
+    /// Returns the energy in the springs of soft limbs, in J: the sum of `k θ² / 2` about each axis.
     fn springs_j(&self) -> f64 {
         let turn = |part: usize| *self.physics.bodies[self.parts[part]].rotation();
         let energies_j = self.body.springs.iter().map(|spring| {
@@ -109,7 +109,7 @@ impl Simulation {
     }
 }
 
-/// Axis of a rotation times its angle, in rad.
+/// Returns the axis of a rotation times its angle, in rad.
 fn rotation_vector(rotation: Rotation) -> Vector {
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     let axis = Vector::new(rotation.x, rotation.y, rotation.z) * sign;
@@ -119,7 +119,7 @@ fn rotation_vector(rotation: Rotation) -> Vector {
     axis * scale
 }
 
-/// Mean square of a rate over a step: of the parabola with these values at both ends and this mean.
+/// Returns the mean square of a rate over a step: that of the parabola with these values at both ends and this mean.
 fn square_over_step(first: f32, mean: f32, last: f32) -> f32 {
     let slope = (last - first) / 2.0;
     let curve = (first + last) / 2.0 - mean;

@@ -1,4 +1,4 @@
-//! Bodies, colliders and joints of a new world, each inserted in a fixed order.
+//! Inserts the bodies, colliders and joints of a new world in a fixed order.
 
 use rapier3d::prelude::*;
 
@@ -17,14 +17,14 @@ fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> C
     with_hook(collider, law)
 }
 
-/// Lets the collider's contacts pass the hooks, if the law needs them.
+/// Lets the collider's contacts pass the contact hooks, if the law needs the hooks.
 fn with_hook(collider: ColliderBuilder, law: &ContactLaw) -> ColliderBuilder {
     let hooks =
         if law.needs_hook() { ActiveHooks::MODIFY_SOLVER_CONTACTS } else { ActiveHooks::empty() };
     collider.active_hooks(hooks)
 }
 
-/// Inserts the ground, an endless plane at z = 0: see [`ContactLaws::ground_is_apart`].
+/// Inserts the ground, an infinite plane at z = 0. It can be a body of its own: see [`ContactLaws::ground_is_apart`].
 pub(super) fn insert_ground(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
@@ -44,7 +44,7 @@ pub(super) fn insert_ground(
     }
 }
 
-/// Inserts the steps, the lowest first, and then their slopes.
+/// Inserts the steps, the lowest first, and then the slopes.
 pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &ContactLaw) {
     for StairSolid { pose, half_m, .. } in plan.stairs.solids() {
         let shape = ColliderBuilder::cuboid(half_m.x, half_m.y, half_m.z).position(pose);
@@ -53,8 +53,8 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
 }
 
 impl WorldPlan {
-    /// The poses of the parts before the first step: a straight row that lies on the ground, head first, or the tree that a
-    /// branching body is.
+    /// Returns the poses of the parts before the first step: a straight row that lies on the ground, head first, or the tree of a
+    /// branching body.
     pub fn start_poses(&self) -> Vec<Pose> {
         let body = &self.body;
         let middle = Vector::new(self.start_x_m, self.start_y_m, 0.0);
@@ -75,7 +75,7 @@ impl WorldPlan {
             let straight_y_m = front_y_m - part.length_m / 2.0;
             front_y_m -= part.length_m;
             let centre = if self.start_turn_rad == 0.0 {
-                // Without the detour over the middle of the snake, whose rounding would change the bits.
+                // Computed directly, because the detour over the middle of the snake would change the bits by rounding.
                 Vector::new(self.start_x_m, straight_y_m, axis_z_m)
             } else {
                 let along_m = straight_y_m - self.start_y_m;
@@ -87,7 +87,7 @@ impl WorldPlan {
     }
 }
 
-/// Inserts the parts in the order of the plan, in their poses at the start.
+/// Inserts the parts in the order of the plan, with their poses at the start.
 pub(super) fn insert_parts(
     physics: &mut PhysicsWorld,
     plan: &WorldPlan,
@@ -113,8 +113,8 @@ pub(super) fn insert_parts(
         .collect()
 }
 
-/// The groups of the colliders of a limb's parts: a limb of a contact-free pair is a group of its own, which its partner
-/// ignores, and so is a limb of several parts, which ignore each other.
+/// Returns the collision groups of the colliders of a limb's parts. A limb of a contact-free pair has a group of its own, which its
+/// partner ignores. A limb of several parts also has a group of its own, so that its parts ignore each other.
 fn collision_groups(body: &BodyPlan, limb: usize) -> InteractionGroups {
     let is_free = body.contact_free_pairs.iter().any(|pair| pair.contains(&limb));
     let is_soft = body.parts_of(limb).len() > 1;
@@ -136,8 +136,8 @@ fn collision_groups(body: &BodyPlan, limb: usize) -> InteractionGroups {
     InteractionGroups::new(group(limb), touched, InteractionTestMode::And)
 }
 
-/// Inserts the joints and springs in the order of their places from the head, so that the solver's sweeps follow the body:
-/// see [`universal_joint`] and [`spring_joint`].
+/// Inserts the joints and springs in the order of their places from the head, so that the solver's sweeps follow the body: see
+/// [`universal_joint`] and [`spring_joint`].
 pub(super) fn insert_joints(
     physics: &mut PhysicsWorld,
     parts: &[RigidBodyHandle],
@@ -165,10 +165,10 @@ pub(super) fn insert_joints(
     }
 }
 
-/// The faces of two parts of a soft limb, which stay together, with an elastic motor about each axis.
+/// Builds a spring: it holds the facing ends of two parts of a soft limb together, and has an elastic motor about each axis.
 ///
-/// The solver integrates these motors implicitly, so that no stiffness makes them unstable, and they never supply energy.
-/// The angle of each axis is twice the arc sine of that part of the relative quaternion.
+/// The solver integrates these motors implicitly, so that no stiffness makes them unstable, and they never supply energy. The angle about
+/// each axis is twice the arc sine of the relative quaternion's part for that axis.
 pub(super) fn spring_joint(
     plan: &SpringPlan,
     parent_half_m: f32,
@@ -188,13 +188,12 @@ pub(super) fn spring_joint(
     joint
 }
 
-/// A universal joint between a place of the parent, in a chain its rear face, and the front face of the child.
+/// Builds a universal joint between its place on the parent, in a chain the parent's rear face, and the front face of the child.
 ///
-/// Rapier has no such multibody joint, so it is an impulse joint with all axes locked but
-/// the rotations about x (bend) and y (twist). Its lock keeps the z part of the relative quaternion at
-/// zero, which makes it a constant-velocity universal joint. With `q` that quaternion the bend is
-/// `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`; both limits are symmetric (asymmetric ones would
-/// make rapier call the C library's sine, whose bits differ between machines).
+/// Rapier has no such multibody joint, so an impulse joint is used, with all axes locked except the rotations about x (bend) and y
+/// (twist). Its lock keeps the z part of the relative quaternion q at zero, which makes it a constant-velocity universal joint. The bend
+/// is `2 atan(q.x / q.w)`, the twist `2 atan(q.y / q.w)`. Both limits are symmetric, because asymmetric ones would make rapier call the C
+/// library's sine, whose bits differ between machines.
 ///
 /// The share `solved` of the damping is a motor with a target rate of zero, which the solver integrates implicitly: see
 /// [`PhysicsSettings::joint_damping_in_solver`](crate::world::PhysicsSettings::joint_damping_in_solver). Rapier treats
@@ -213,7 +212,7 @@ fn universal_joint(
         .local_anchor2(Vector::new(0.0, child_half_m, 0.0))
         .limits(JointAxis::AngX, [-plan.bend_limit_rad, plan.bend_limit_rad])
         .limits(JointAxis::AngY, [-plan.twist_limit_rad, plan.twist_limit_rad])
-        // Joined limbs touch with a whole face; their contact would block the bend.
+        // Joined limbs touch with a whole face. With contacts, the bend would be blocked.
         .contacts_enabled(false)
         .build();
     for axis in [JointAxis::AngX, JointAxis::AngY] {

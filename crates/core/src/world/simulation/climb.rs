@@ -1,10 +1,10 @@
-//! How far the snake has climbed, for rewards during an episode.
+//! How far the snake has climbed. Rewards during an episode depend on it.
 
 use super::Simulation;
 use crate::world::stair_profile::ClimbProgress;
 
 impl Simulation {
-    /// The progress at this moment.
+    /// Returns the present progress of the middle part up the stairs.
     pub fn climb(&self) -> ClimbProgress {
         let middle = self.physics.bodies[self.parts[self.body.middle_part]].translation();
         self.profile.climb(middle.to_array())

@@ -1,4 +1,4 @@
-//! A running world, continued under another plan.
+//! Continues a running world under another plan.
 
 use rapier3d::prelude::*;
 
@@ -6,10 +6,10 @@ use super::Simulation;
 use crate::world::{Discontinuity, PhysicsWorld, WorldPlan};
 
 impl Simulation {
-    /// Whether this world, which was built from `plan`, can continue under `next` in its present state.
+    /// Checks whether this world, which was built from `plan`, can continue under `next` in its present state.
     ///
     /// # Errors
-    /// The reason, if it cannot.
+    /// Returns the reason if the world cannot continue.
     pub fn can_continue(&self, plan: &WorldPlan, next: &WorldPlan) -> Result<(), Discontinuity> {
         plan.can_continue(next)?;
         let first_riser_y_m = plan.stairs.first_riser_y_m.min(next.stairs.first_riser_y_m);
@@ -19,16 +19,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// Largest y of any limb, in metres.
+    /// Returns the largest y of any part, in metres.
     fn front_y_m(&self) -> f32 {
         let parts = self.body.parts.iter().zip(self.poses());
         let fronts = parts.map(|(part, pose)| pose.translation.y + part.reach_m(pose.rotation).y);
         fronts.fold(f32::MIN, f32::max)
     }
 
-    /// This world in its present state under another plan, for which [`Self::can_continue`] holds. Where only
-    /// materials, masses, limits or the solver differ, the engine's contacts go on, too, so that under an unchanged
-    /// plan the world continues with the bits of this one. A pull by the user ends.
+    /// Returns a world with the present state of this one under another plan, for which [`Self::can_continue`] holds. If only materials,
+    /// masses, limits or the solver differ, the engine's contacts continue, too, so that under an unchanged plan the world continues with
+    /// the bits of this one. A user's pull ends.
     pub fn continued_in(&self, plan: &WorldPlan) -> Self {
         let fresh = Self::new(plan);
         let both_rapier = self.lanes.is_none() && fresh.lanes.is_none();
@@ -62,11 +62,11 @@ impl Simulation {
         continued
     }
 
-    /// Whether both worlds have the same bodies and colliders, except for their parameters.
+    /// Returns whether both worlds have the same bodies and colliders, except for their parameters.
     fn is_built_like(&self, other: &Self) -> bool {
         let are_bodies_equal =
             self.contacts.laws.ground_is_apart() == other.contacts.laws.ground_is_apart();
-        // Steps have no body. Sizes of the limbs are equal already.
+        // Steps have no body. The sizes of the limbs are already known to be equal.
         let steps = |simulation: &Self| {
             let colliders = simulation.physics.colliders.iter();
             let fixed = colliders.filter(|(_, collider)| collider.parent().is_none());
@@ -81,8 +81,8 @@ impl Simulation {
     }
 }
 
-/// Gives a world the parameters of another one that is built like it. What is equal is not touched: the engine
-/// computes everything anew that was touched.
+/// Copies the parameters of another world that is built like this one. Equal parameters are not written, because the engine recomputes
+/// everything that was written.
 fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
     physics.gravity = from.gravity;
     physics.integration_parameters = from.integration_parameters;
@@ -90,7 +90,7 @@ fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
         let present = &physics.colliders[handle];
         if present.density() != wanted.density() {
             physics.colliders[handle].set_density(wanted.density());
-            // The energy of the new mass is read before the next step, which would compute it.
+            // The balance reads the energy with the new mass before the next step, which would otherwise compute the mass.
             if let Some(limb) = wanted.parent() {
                 physics.bodies[limb].recompute_mass_properties_from_colliders(&physics.colliders);
             }
@@ -101,7 +101,7 @@ fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
             collider.set_friction(wanted.friction());
             collider.set_restitution(wanted.restitution());
             collider.set_active_hooks(wanted.active_hooks());
-            // A recycled contact would keep the old material. After a change of groups the engine recomputes it.
+            // A recycled contact would keep the old material. A change of groups makes the engine recompute the contact.
             let groups = collider.collision_groups();
             collider.set_collision_groups(InteractionGroups::none());
             collider.set_collision_groups(groups);
@@ -109,7 +109,7 @@ fn take_parameters(physics: &mut PhysicsWorld, from: &PhysicsWorld) {
     }
     for (handle, wanted) in from.impulse_joints.iter() {
         let Some(present) = physics.impulse_joints.get(handle) else { continue };
-        // Impulses of the last step are state and stay.
+        // The impulses of the last step belong to the state and are kept.
         let mut data = wanted.data;
         for axis in 0..data.limits.len() {
             data.limits[axis].impulse = present.data.limits[axis].impulse;

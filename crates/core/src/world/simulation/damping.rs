@@ -6,7 +6,7 @@ use super::Simulation;
 use crate::world::TouchedSurface;
 
 impl Simulation {
-    /// Lets air and surfaces slow the limbs for half a step.
+    /// Slows the limbs by the damping of air and surfaces for half a step.
     pub fn dampen_half_step(&mut self) {
         let damping = self.damping;
         let surfaces_damp = damping.stairs < 1.0 || damping.ground < 1.0;
@@ -27,13 +27,13 @@ impl Simulation {
         }
     }
 
-    /// Factors on the linear and the angular velocity of a limb in the second half of the last step.
+    /// Returns the factors by which damping changed a limb's linear and angular velocity in the second half of the last step.
     pub(super) fn last_damping(&self, limb: RigidBodyHandle) -> [f32; 2] {
         let surface = self.surface_factor(limb);
         [surface, surface * self.damping.air]
     }
 
-    /// Factor of the surface that damps a limb most in half a step; 1 if it touches none that damps.
+    /// Returns the factor for half a step of the surface that damps a limb most; 1 if the limb touches no surface that damps.
     pub(super) fn surface_factor(&self, limb: RigidBodyHandle) -> f32 {
         match self.strongest_damping(limb) {
             Some((TouchedSurface::Ground, _)) => self.damping.ground,
@@ -42,11 +42,11 @@ impl Simulation {
         }
     }
 
-    /// Energy of a part's rotation, in J.
+    /// Returns the energy of a part's rotation, in J.
     fn rotation_energy_j(&self, part: usize) -> f32 {
         let body = &self.physics.bodies[self.parts[part]];
         let rate = self.turned(body.rotation().inverse(), body.angvel());
-        // The axes of a box are its principal axes.
+        // The axes of a box are its principal axes of inertia.
         let inertia = match self.inertia_in_lanes_kg_m2(part) {
             Some(inertia) => inertia,
             None => body.mass_properties().local_mprops.principal_inertia(),

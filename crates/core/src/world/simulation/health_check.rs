@@ -3,17 +3,17 @@
 use super::Simulation;
 use crate::world::{Disqualification, Effort, Mount, Vector};
 
-/// Height below which a snake has fallen through the ground, in metres; only a broken contact allows that.
+/// Height below which a part has fallen through the ground, in metres, because a contact failed.
 const LOWEST_Z_M: f32 = -2.0;
 
 impl Simulation {
-    /// Half the length of a part, as a vector in the world from its centre to its front face, in metres.
+    /// Returns half the length of a part, as a vector in the world from its centre to its front face, in metres.
     fn centre_to_front(&self, part: usize) -> Vector {
         let half_length = Vector::new(0.0, self.body.parts[part].length_m / 2.0, 0.0);
         self.turned(*self.physics.bodies[self.parts[part]].rotation(), half_length)
     }
 
-    /// Squared distance between the two anchors of a joint or a spring, in m².
+    /// Returns the squared distance between the two anchors of a joint or a spring, in m².
     fn drift_squared(&self, [parent, child]: [usize; 2], mount: Option<Mount>) -> f32 {
         let centre = |part: usize| self.physics.bodies[self.parts[part]].translation();
         let on_parent = match mount {
@@ -30,7 +30,7 @@ impl Simulation {
     /// Checks the state after a step against the [`HealthLimits`] and returns its speeds and distances.
     pub(super) fn check_health(&self) -> Result<Effort, Disqualification> {
         let mut seen = Effort::default();
-        // Rapier rolls a body with a non-finite state back and reports it here.
+        // Rapier rolls back a body with a non-finite state, and reports the body in its quarantine.
         if !self.physics.quarantine().is_empty() {
             return Err(Disqualification::NotFinite);
         }
@@ -38,7 +38,7 @@ impl Simulation {
         for (index, &part) in self.parts.iter().enumerate() {
             let body = &self.physics.bodies[part];
             let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
-            // Rapier checks the rest itself.
+            // In worlds of rapier, rapier itself checks rotations and angular velocities.
             let turns =
                 self.lanes.is_none() || (body.rotation().is_finite() && body.angvel().is_finite());
             if !(centre.is_finite() && speed_squared.is_finite() && turns) {
@@ -54,7 +54,7 @@ impl Simulation {
             {
                 return Err(Disqualification::LeftArena);
             }
-            // The order of these checks is part of the bits of a run: it decides which reason is reported.
+            // The order of these checks decides which reason is reported, so it is part of the result of a run.
             let joints = self.body.joints.iter();
             let joints = joints.map(|of| ([of.parent, of.child], of.mount, of.gap_scale));
             let springs = self.body.springs.iter();

@@ -7,20 +7,20 @@ use crate::world::lanes::{Chain, Contact, LaneSolver, LanesCommon, PartState, To
 use crate::world::turning::{product, turned};
 use crate::world::{Disqualification, JointTorque, PhysicsEngine, WorldPlan};
 
-/// Snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On pages, where
-/// the size of the code counts, as many as WebAssembly has lanes.
+/// Number of snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On web pages, where
+/// the size of the code counts, it is the number of lanes of WebAssembly.
 pub const LANES: usize = if cfg!(target_arch = "wasm32") { 4 } else { 8 };
 
 /// A point of a contact, for drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenPoint {
-    /// On what is touched, and on the part, in metres.
+    /// Points on the touched body and on the part, in the world, in metres.
     pub on_m: [Vector; 2],
     /// Unit vector along which the part is pushed.
     pub normal: Vector,
 }
 
-/// A snake of the engine *lanes*, and its own solver for steps that it takes alone.
+/// A snake in the engine *lanes*, with a solver of its own for steps that it takes alone.
 #[derive(Clone)]
 pub(super) struct LanesWorld {
     chain: Chain,
@@ -28,8 +28,8 @@ pub(super) struct LanesWorld {
 }
 
 impl LanesWorld {
-    /// The world of a plan that asks for the engine *lanes*. A plan that it cannot run is refused before it is built; if
-    /// one came here, rapier would run it.
+    /// Builds the world of a plan that selects the engine *lanes*; `None` if it selects rapier. Plans that *lanes* cannot simulate are
+    /// rejected earlier. If one still arrived, rapier would simulate it.
     pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
         let is_possible = plan.body.obstacle_in_lanes().is_none();
         let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;
@@ -38,19 +38,19 @@ impl LanesWorld {
         is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: LaneSolver::default() }))
     }
 
-    /// The contacts of the last step.
+    /// Returns the contacts of the last step.
     pub fn contacts(&self) -> &[Contact] {
         &self.chain.contacts
     }
 }
 
 impl Simulation {
-    /// Settings and sizes that all worlds of a lock step must share; none for those of rapier.
+    /// Returns the settings and sizes that all worlds of a lock step must have in common; `None` for worlds of rapier.
     pub(crate) fn common(&self) -> Option<LanesCommon> {
         self.lanes.as_ref().map(|lanes| lanes.chain.common())
     }
 
-    /// One step of the engine *lanes*, for this snake alone.
+    /// Advances this snake alone by one step of the engine *lanes*.
     pub(super) fn advance_alone(&mut self) {
         self.state_to_lanes();
         if let Some(lanes) = &mut self.lanes {
@@ -60,7 +60,7 @@ impl Simulation {
         self.state_from_lanes();
     }
 
-    /// Copies the state of the bodies, forces and torques included, to the lanes' engine.
+    /// Copies the state of the bodies, including forces and torques, to the engine *lanes*.
     fn state_to_lanes(&mut self) {
         let Some(lanes) = &mut self.lanes else { return };
         lanes.chain.gravity = self.physics.gravity;
@@ -78,7 +78,7 @@ impl Simulation {
         }
     }
 
-    /// Takes over what the lanes' engine has computed, and lets limbs bounce.
+    /// Copies the state that the engine *lanes* has computed to the bodies, and lets limbs bounce.
     fn state_from_lanes(&mut self) {
         let Some(mut lanes) = self.lanes.take() else { return };
         for (state, &part) in lanes.chain.state.iter().zip(&self.parts) {
@@ -98,7 +98,7 @@ impl Simulation {
         self.lanes = Some(lanes);
     }
 
-    /// Goes on with the contacts of another world of the lanes' engine, if both have the same stairs.
+    /// Continues with the contacts of another world, if both are simulated by *lanes* and have the same stairs.
     pub(super) fn take_contacts_of(&mut self, other: &Self) {
         if let (Some(lanes), Some(other)) = (&mut self.lanes, &other.lanes)
             && lanes.chain.has_solids_of(&other.chain)
@@ -107,22 +107,23 @@ impl Simulation {
         }
     }
 
-    /// A rotated vector, with the same bits on every processor in the lanes' engine.
+    /// Rotates a vector. With the engine *lanes*, the result has the same bits on every processor.
     pub(super) fn turned(&self, rotation: Rotation, vector: Vector) -> Vector {
         if self.lanes.is_some() { turned(rotation, vector) } else { rotation * vector }
     }
 
-    /// The rotation `second`, followed by `first`, likewise.
+    /// Returns the product of two rotations: `second` acts first, and `first` after it. With the engine *lanes*, the result has the same
+    /// bits on every processor.
     pub(super) fn product(&self, first: Rotation, second: Rotation) -> Rotation {
         if self.lanes.is_some() { product(first, second) } else { first * second }
     }
 
-    /// Inertia of a part about its own axes in the lanes' engine, in kg·m²; none in rapier's worlds.
+    /// Returns the inertia of a part about its own axes in the engine *lanes*, in kg·m²; `None` in worlds of rapier.
     pub(super) fn inertia_in_lanes_kg_m2(&self, part: usize) -> Option<Vector> {
         Some(self.lanes.as_ref()?.chain.mass_of(part)?.1)
     }
 
-    /// Kinetic and potential energy of a part in the lanes' engine, in J. Its positions are half a substep ahead of its velocities.
+    /// Returns the kinetic and potential energy of a part in the engine *lanes*, in J. Positions are half a substep ahead of velocities.
     pub(super) fn energy_in_lanes_j(&self, part: usize, substep_s: f32) -> f64 {
         let mass = self.lanes.as_ref().and_then(|lanes| lanes.chain.mass_of(part));
         let Some((mass_kg, inertia)) = mass else { return 0.0 };
@@ -134,7 +135,8 @@ impl Simulation {
         f64::from(kinetic_j) + f64::from(-mass_kg * self.physics.gravity.dot(at))
     }
 
-    /// The points of the contacts of the lanes' engine; none in rapier's worlds, whose contacts its narrow phase has.
+    /// Returns the points of the contacts in the engine *lanes*. The list is empty in worlds of rapier, whose narrow phase holds the
+    /// contacts.
     pub fn contacts_in_lanes(&self) -> Vec<SeenPoint> {
         let place = |part: usize| *self.physics.bodies[self.parts[part]].position();
         let contacts = self.lanes_contacts().iter();
@@ -151,20 +153,20 @@ impl Simulation {
         points.collect()
     }
 
-    /// The contacts of the lanes' engine; none in rapier's worlds.
+    /// Returns the contacts of the engine *lanes*; empty in worlds of rapier.
     pub(super) fn lanes_contacts(&self) -> &[Contact] {
         self.lanes.as_ref().map_or(&[], |lanes| lanes.contacts())
     }
 }
 
-/// Steps several worlds of the lanes' engine side by side.
+/// Steps several worlds of the engine *lanes* side by side.
 #[derive(Default)]
 pub struct LockStep {
     solver: LaneSolver<LANES>,
 }
 
 impl LockStep {
-    /// Advances up to [`LANES`] worlds by one step each, as [`Simulation::step`] does one, with the same bits. All have the same
+    /// Advances up to [`LANES`] worlds by one step each, with the same bits as [`Simulation::step`]. All worlds must have the same
     /// [`Simulation::common`].
     pub fn step(
         &mut self,

@@ -7,7 +7,7 @@ use super::patches::{ContactPatch, TouchedSurface, share};
 use crate::world::lanes::{Chain, Contact, ContactPoint, Touching};
 
 impl Simulation {
-    /// The surface that a contact of the lanes' engine touches; of two parts the rear one is the contact's own.
+    /// Returns the surface that a contact of the engine *lanes* touches. For a contact of two parts, it is the limb of the rear part.
     pub(super) fn touched_in_lanes(&self, contact: &Contact) -> TouchedSurface {
         match contact.other {
             Touching::Ground => TouchedSurface::Ground,
@@ -16,7 +16,7 @@ impl Simulation {
         }
     }
 
-    /// The patch of a contact of the lanes' engine; none if nothing presses there.
+    /// Returns the patch of a contact of the engine *lanes*; `None` if nothing presses there.
     pub(super) fn patch_in_lanes(&self, contact: &Contact) -> Option<ContactPatch> {
         let place = |part: usize| *self.physics.bodies[self.parts[part]].position();
         let (own_place, own) =
@@ -66,7 +66,7 @@ impl Simulation {
         })
     }
 
-    /// Whether a part has bounced in the last step.
+    /// Returns whether a part has bounced in the last step.
     fn has_bounced_in_lanes(&self, part: usize) -> bool {
         let of_part =
             |contact: &&Contact| contact.part == part || contact.other == Touching::Part(part);

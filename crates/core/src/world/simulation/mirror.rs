@@ -1,4 +1,4 @@
-//! A world that shows what another engine computes.
+//! A world that displays what another engine computes.
 
 use rapier3d::prelude::*;
 
@@ -7,19 +7,19 @@ use super::Simulation;
 /// The state of a part in another engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimbState {
-    /// Pose of its centre in the world, in metres.
+    /// Pose of the part's centre in the world, in metres.
     pub pose: Pose,
-    /// Velocity of its centre, in m/s.
+    /// Velocity of the part's centre in the world, in m/s.
     pub velocity_m_s: Vector,
-    /// Its angular velocity in the world, in rad/s.
+    /// Angular velocity of the part in the world, in rad/s.
     pub angular_velocity_rad_s: Vector,
-    /// Force of ground and stairs on it, in N; none if it touches neither.
+    /// Force of ground and stairs on the part, in N; `None` if the part touches neither.
     pub contact_n: Option<Vector>,
 }
 
 impl Simulation {
-    /// Takes over the state of the parts from another engine, head first. From then on poses, joints and senses are those of
-    /// that engine; this world must not be stepped any more.
+    /// Copies the state of the parts from another engine, head first. From then on poses, joints and senses are those of the other engine,
+    /// and this world must not be stepped any more.
     pub fn mirror(&mut self, limbs: &[LimbState]) {
         for (&limb, state) in self.parts.iter().zip(limbs) {
             let body = &mut self.physics.bodies[limb];
@@ -30,7 +30,7 @@ impl Simulation {
         self.mirrored = limbs.iter().map(|state| state.contact_n).collect();
     }
 
-    /// Whether a part touches the ground or the stairs, and their force on it, in N.
+    /// Returns whether a part touches the ground or the stairs, and their force on the part, in N.
     pub(super) fn sensed_contact(&self, part: usize) -> (bool, Vector) {
         match self.mirrored.get(part) {
             Some(force_n) => (force_n.is_some(), force_n.unwrap_or(Vector::ZERO)),

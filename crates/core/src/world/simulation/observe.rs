@@ -8,42 +8,42 @@ use crate::world::contact::other_collider;
 use crate::world::lanes::Touching;
 use crate::world::{JointTorque, TouchedSurface};
 
-/// Angles and rates of a joint, as the snake senses them: those of the child relative to the parent.
+/// Angles and angular velocities of a joint, as the snake senses them: of the child relative to the parent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointState {
     /// Bend about the parent's x axis, in radians.
     pub bend_rad: f32,
     /// Twist about the parent's y axis, in radians.
     pub twist_rad: f32,
-    /// Rate of turn about the parent's x axis, in rad/s.
+    /// Angular velocity about the parent's x axis, in rad/s.
     pub bend_rad_s: f32,
-    /// Rate of turn about the parent's y axis, in rad/s.
+    /// Angular velocity about the parent's y axis, in rad/s.
     pub twist_rad_s: f32,
 }
 
-/// Force of the ground or the stairs on a limb in one point of contact.
+/// Force of the ground or the stairs on a limb at one point of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactForce {
     /// Index of the limb; the head is 0.
     pub limb: usize,
     /// Point of contact in the world, in metres.
     pub at_m: Vector,
-    /// The force on the limb, in N: normal force and friction.
+    /// Force on the limb, in N: the sum of normal force and friction.
     pub force_n: Vector,
 }
 
 impl Simulation {
-    /// The pose of each part's centre, head first.
+    /// Returns the pose of each part's centre, head first, in metres.
     pub fn poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
         self.parts.iter().map(|&limb| *self.physics.bodies[limb].position())
     }
 
-    /// Speed of each part's centre, head first, in m/s.
+    /// Returns the speed of each part's centre, head first, in m/s.
     pub fn speeds_m_s(&self) -> impl ExactSizeIterator<Item = f32> + '_ {
         self.parts.iter().map(|&limb| self.physics.bodies[limb].linvel().length())
     }
 
-    /// Velocity of each part's centre in m/s, and its angular velocity in rad/s, both in the world, head first.
+    /// Returns the velocity of each part's centre in m/s, and the part's angular velocity in rad/s, both in the world, head first.
     pub fn velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
         self.parts.iter().map(|&limb| {
             let body = &self.physics.bodies[limb];
@@ -51,8 +51,8 @@ impl Simulation {
         })
     }
 
-    /// Velocity of each limb's centre in m/s, and its angular velocity in rad/s, both in the world, head first: of a soft
-    /// limb the mean of its parts.
+    /// Returns the velocity of each limb's centre in m/s, and the limb's angular velocity in rad/s, both in the world, head first. For a
+    /// soft limb, both are means over its parts.
     pub fn limb_velocities(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> + '_ {
         let parts: Vec<_> = self.velocities().collect();
         (0..self.body.limbs()).map(move |limb| {
@@ -62,7 +62,7 @@ impl Simulation {
         })
     }
 
-    /// Angles and rates of the joints, in the order of the plan. [`universal_joint`] defines the angles.
+    /// Returns the angles and rates of the joints, in the order of the plan's joints. [`universal_joint`] defines the angles.
     pub fn joint_states(&self) -> impl ExactSizeIterator<Item = JointState> + '_ {
         self.body.joints.iter().map(|joint| {
             let [parent, child] =
@@ -70,7 +70,7 @@ impl Simulation {
             let into_joint = joint.axes(*parent.rotation()).inverse();
             let turn = self.product(into_joint, *child.rotation());
             let rate = self.turned(into_joint, child.angvel() - parent.angvel());
-            // A quaternion and its negative are the same rotation; w ≥ 0 gives the smaller angle.
+            // A quaternion and its negative are the same rotation. The one with w ≥ 0 has the smaller angle.
             let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
             let angle_rad = |part: f32| 2.0 * libm::atan2f(sign * part, sign * turn.w);
             JointState {
@@ -82,7 +82,7 @@ impl Simulation {
         })
     }
 
-    /// Number of limbs that touch the ground or the stairs.
+    /// Counts the limbs that touch the ground or the stairs.
     pub fn limbs_in_contact(&self) -> usize {
         let touches = |&&part: &&RigidBodyHandle| self.world_touched_by(part).next().is_some();
         if self.body.springs.is_empty() {
@@ -93,7 +93,7 @@ impl Simulation {
         limbs.filter(|limb| parts.by_ref().take(limb.len()).filter(touches).count() > 0).count()
     }
 
-    /// Indices of the parts that touch the stairs.
+    /// Returns the indices of the parts that touch the stairs.
     pub fn parts_on_stairs(&self) -> impl Iterator<Item = usize> + '_ {
         let touches = |part: &RigidBodyHandle| {
             self.world_touched_by(*part).any(|touched| touched == TouchedSurface::Stairs)
@@ -102,16 +102,15 @@ impl Simulation {
         all.filter(move |(_, part)| touches(part)).map(|(index, _)| index)
     }
 
-    /// The torques that acted in the last step, clamped to the joints' limits, one per joint.
+    /// Returns the torques that acted in the last step, one per joint, clamped to the joints' limits.
     pub fn applied_torques(&self) -> impl ExactSizeIterator<Item = JointTorque> + '_ {
         self.applied.iter().map(|applied| applied.torque)
     }
 
-    /// Forces of the ground and the stairs on the limbs in the last substep of the last step, the head's
-    /// contacts first.
+    /// Returns the forces of the ground and the stairs on the limbs in the last substep of the last step. The head's contacts come first.
     ///
-    /// The engine's warm-start impulses are those of the last substep; the sums that it also keeps begin with
-    /// the step before. It has one friction impulse for all points of a manifold.
+    /// The engine's warm-start impulses are those of the last substep. The engine also keeps sums, but these begin with the step before.
+    /// All points of a manifold share one friction impulse.
     pub fn contact_forces(&self) -> Vec<ContactForce> {
         let substep_s = self.substep_s();
         if self.lanes.is_some() {
@@ -163,12 +162,12 @@ impl Simulation {
         forces
     }
 
-    /// Length of a solver's substep, in s.
+    /// Returns the length of a solver's substep, in s.
     pub(super) fn substep_s(&self) -> f32 {
         self.physics.integration_parameters.dt / self.contacts.substeps.max(1) as f32
     }
 
-    /// Whether a collider is the ground or the stairs.
+    /// Returns whether a collider is the ground or the stairs.
     pub(super) fn is_world(&self, collider: ColliderHandle) -> bool {
         collider == self.contacts.ground || self.physics.colliders[collider].parent().is_none()
     }

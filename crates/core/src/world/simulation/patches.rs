@@ -1,7 +1,7 @@
-//! Contact patches: how fast a limb slips on a surface, how much of the friction it uses, how deep it dents the surface,
-//! and the power that friction and surface damping take from it.
+//! Contact patches: how fast a limb slips on a surface, how much of the friction it uses, how deep it dents the surface, and how much
+//! power friction and surface damping take from the limb.
 //!
-//! Everything is computed from the state after a step. Reading changes nothing.
+//! All readings are computed from the state after a step, and do not change it.
 
 use rapier3d::geometry::NEW_CONTACT_BIT;
 use rapier3d::prelude::*;
@@ -16,47 +16,46 @@ pub enum TouchedSurface {
     Stairs,
     /// The ground.
     Ground,
-    /// Another limb, by its index.
+    /// Another limb, with this index.
     Limb(usize),
 }
 
-/// Contact of a limb with one surface: up to four points, which share one friction force. It presses.
+/// Contact of a limb with one surface, on which the limb presses: up to four points, which share one friction force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactPatch {
-    /// Index of the limb; the head is 0. Where two limbs touch, the one nearer to the head.
+    /// Index of the limb; the head is 0. Where two limbs touch, it is the limb nearer to the head.
     pub limb: usize,
-    /// The surface.
+    /// The surface that the limb touches.
     pub touched: TouchedSurface,
-    /// Normal force N in the last substep, in N: the sum over the points.
+    /// Normal force N in the last substep, in newtons: the sum over the points.
     pub normal_n: f32,
     /// Greatest tangential force that friction could give, in N: friction coefficient μ times N.
     pub friction_limit_n: f32,
-    /// Share of the friction that is used, from 0 to 1; at 1 the patch slides. By Coulomb's law `|F| / (μ N)` for the
-    /// tangential force F. The engine also limits the torque T with which a patch resists being turned on the spot, to
-    /// `μ Σ N_i d_i`, where `d_i` is the distance of a point from the patch's centre; the larger of both shares counts.
-    /// 0 where there is no friction.
+    /// Share of the friction that is used, from 0 to 1; at 1 the patch slides. By Coulomb's law it is `|F| / (μ N)` for the tangential
+    /// force F. The engine also limits the torque T with which a patch resists being turned on the spot, to `μ Σ N_i d_i`, where `d_i` is
+    /// the distance of a point from the patch's centre. The larger of both shares counts. 0 where there is no friction.
     pub grip_share: f32,
     /// Largest speed of a loaded point along the surface, relative to the surface, in m/s.
     pub slip_m_s: f32,
-    /// Depth to which the deepest loaded point has sunk in, in metres. Negative while the engine stops a hard contact
-    /// just before it touches.
+    /// Depth to which the deepest loaded point has sunk in, in metres. It is negative while the engine stops a hard contact just before
+    /// the surfaces touch.
     pub depth_m: f32,
-    /// Power that friction turns into heat in the last substep, in W: `-(F · v + T ω)` for the force F and the torque
-    /// T of the last substep, the velocity v of the patch along the surface and the rate ω at which it turns on it. 0 where
-    /// a limb has bounced in this step, because a bounce changes the velocities after friction has acted.
+    /// Power that friction turns into heat in the last substep, in W: `-(F · v + T ω)` for the force F and the torque T of the last
+    /// substep, the velocity v of the patch along the surface, and the rate ω at which the patch turns on the surface. 0 where a limb has
+    /// bounced in this step, because a bounce changes the velocities after friction has acted.
     pub friction_w: f32,
 }
 
-/// Power that a damping surface takes from a limb.
+/// Power that the damping of a surface takes from a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceDamping {
     /// The surface that damps the limb.
     pub touched: TouchedSurface,
-    /// Kinetic energy that the limb lost through damping in the last step, divided by the step, in W.
+    /// Kinetic energy that the limb lost by damping in the second half of the last step, divided by half the step, in W.
     pub power_w: f32,
 }
 
-/// Velocity of a limb as the solver left it; of the fixed world, 0.
+/// Velocity of a limb as the solver left it; 0 for the fixed world.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SolvedVelocity {
     centre_m: Vector,
@@ -67,18 +66,18 @@ pub(super) struct SolvedVelocity {
 }
 
 impl SolvedVelocity {
-    /// Angular velocity, in rad/s.
+    /// Returns the angular velocity, in rad/s.
     pub(super) fn angular_rad_s(&self) -> Vector {
         self.angular
     }
 
-    /// Velocity of the point of the limb at a place in the world, in m/s.
+    /// Returns the velocity of the limb's material point at a place in the world, in m/s.
     pub(super) fn at(&self, at_m: Vector) -> Vector {
         self.linear + self.angular.cross(at_m - self.centre_m)
     }
 }
 
-/// The points of a manifold that the solver has just solved. A manifold also holds points that are only near, with the
+/// Returns the points of a manifold that the solver has just solved. A manifold also holds points that are near but do not touch, with the
 /// impulses of their last touch.
 pub(super) fn solved_points(
     manifold: &ContactManifold,
@@ -88,7 +87,7 @@ pub(super) fn solved_points(
     })
 }
 
-/// Whether a point of a manifold touches for the first time and presses: the engine lets only these bounce.
+/// Returns whether a point of a manifold touches for the first time and presses. The engine lets only such points bounce.
 fn has_new_impulse(manifold: &ContactManifold) -> bool {
     manifold.data.solver_contacts.iter().any(|contact| {
         let id = contact.contact_id[0];
@@ -97,16 +96,16 @@ fn has_new_impulse(manifold: &ContactManifold) -> bool {
     })
 }
 
-/// Part of `whole` that `part` is, at most 1; 0 if there is no whole.
+/// Returns the share of `part` in `whole`, at most 1; 0 if `whole` is not positive.
 pub(super) fn share(part: f32, whole: f32) -> f32 {
     if whole > 0.0 { (part / whole).min(1.0) } else { 0.0 }
 }
 
 impl Simulation {
-    /// The contact patches after the last step, the head's first. Patches between limbs are listed once.
+    /// Returns the contact patches after the last step, the head's first. Patches between limbs are listed once.
     ///
-    /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those with which the
-    /// solver ended that substep, before damping.
+    /// Forces are those of the last substep: see [`Self::contact_forces`]. Speeds are those with which the solver ended this substep,
+    /// before damping.
     pub fn contact_patches(&self) -> Vec<ContactPatch> {
         if self.lanes.is_some() {
             let contacts = self.lanes_contacts().iter();
@@ -130,10 +129,10 @@ impl Simulation {
         patches
     }
 
-    /// Power that damping surfaces took from the limbs in the last step.
+    /// Returns the power that damping surfaces took from the limbs in the last step, in W.
     ///
-    /// It is that of the second half of the step, in which damping has multiplied a limb's velocities by a factor f, so
-    /// that with the kinetic energy E after the step the loss is `E (1/f² - 1)`.
+    /// The power is computed for the second half of the step, in which damping has multiplied a limb's velocities by a factor f. With the
+    /// kinetic energy E after the step, the loss is `E (1/f² - 1)`.
     pub fn surface_damping(&self) -> impl Iterator<Item = SurfaceDamping> + '_ {
         let half_step_s = self.physics.integration_parameters.dt / 2.0;
         self.parts.iter().filter_map(move |&limb| {
@@ -145,7 +144,7 @@ impl Simulation {
         })
     }
 
-    /// The strongest damping of the surfaces that a limb touches, in 1/s; `None` if none of them damps.
+    /// Returns the surface with the strongest damping of those that a limb touches, and its damping, in 1/s; `None` if none of them damps.
     pub(super) fn strongest_damping(&self, limb: RigidBodyHandle) -> Option<(TouchedSurface, f32)> {
         let laws = &self.contacts.laws;
         self.world_touched_by(limb)
@@ -157,7 +156,7 @@ impl Simulation {
             .max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Ground and stairs, as often as a part touches them.
+    /// Returns the ground and the stairs, once for each of a part's contacts with them.
     pub(super) fn world_touched_by(
         &self,
         limb: RigidBodyHandle,
@@ -174,10 +173,10 @@ impl Simulation {
         in_rapier.chain(in_lanes).filter(|touched| !matches!(touched, TouchedSurface::Limb(_)))
     }
 
-    /// Velocity of a limb as the solver left it in the last substep, with which its friction agrees.
+    /// Returns the velocity of a limb as the solver left it in the last substep. The solver's friction belongs to this velocity.
     ///
-    /// At the end of a step air and surfaces slow the limbs. With these velocities a contact that holds would seem to
-    /// slip, and friction to drive it. The bounces that are corrected after the solver stay in it.
+    /// At the end of a step air and surfaces slow the limbs. With the slowed velocities a contact that holds would seem to slip, and
+    /// friction to drive it. Bounces, which are corrected after the solver, remain in the result.
     pub(super) fn solved_velocity(&self, limb: RigidBodyHandle) -> SolvedVelocity {
         let body = &self.physics.bodies[limb];
         let [linear, angular] = self.last_damping(limb);
@@ -188,7 +187,7 @@ impl Simulation {
         }
     }
 
-    /// Whether a limb has bounced in the last step.
+    /// Returns whether a limb has bounced in the last step; false for `None`.
     fn has_bounced(&self, limb: Option<RigidBodyHandle>) -> bool {
         let Some(limb) = limb.filter(|_| self.contacts.bounces) else { return false };
         let collider = self.physics.bodies[limb].colliders()[0];
@@ -197,7 +196,7 @@ impl Simulation {
         manifolds.any(|manifold| manifold.data.restitution > 0.0 && has_new_impulse(manifold))
     }
 
-    /// The surface that a collider belongs to.
+    /// Returns the surface to which a collider belongs.
     fn touched(&self, collider: ColliderHandle) -> TouchedSurface {
         if collider == self.contacts.ground {
             return TouchedSurface::Ground;
@@ -207,7 +206,7 @@ impl Simulation {
         part.map_or(TouchedSurface::Stairs, |part| TouchedSurface::Limb(self.body.parts[part].limb))
     }
 
-    /// The patch of a manifold; `None` if nothing presses there.
+    /// Returns the patch of a manifold; `None` if nothing presses there.
     fn patch(
         &self,
         pair: &ContactPair,
@@ -238,7 +237,7 @@ impl Simulation {
             return None;
         }
         centre_m /= count;
-        // It points from the first body to the second.
+        // The manifold's normal points from the first body to the second.
         let normal = manifold.data.normal;
         let sliding = |at: Vector| {
             let relative = first.1.at(at) - second.1.at(at);
@@ -251,7 +250,7 @@ impl Simulation {
             depth_m = depth_m.max((at - *second.0 * point.local_p2).dot(normal));
             lever_nms += point.data.warmstart_impulse * at.distance(centre_m);
         }
-        // The engine's factor may be lower for this step, where a surface creeps; the share is one of the material's.
+        // The engine's own factor may be lower in this step where a surface creeps, but the share is relative to the materials' friction.
         let friction = colliders[0].friction() * colliders[1].friction();
         let substep_s = self.substep_s();
         let spin_rad_s = (first.1.angular - second.1.angular).dot(normal);

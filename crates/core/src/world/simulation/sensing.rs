@@ -1,4 +1,4 @@
-//! The senses of the limbs: touch and load, attitude, and the way to the next step.
+//! The senses of the limbs: touch and load, attitude, and the distance to the next step.
 
 use std::ops::Range;
 
@@ -12,36 +12,36 @@ use crate::world::lanes::Touching;
 /// The senses of one limb, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LimbReading {
-    /// Whether it touches the ground or the stairs.
+    /// Whether the limb touches the ground or the stairs.
     pub is_touching: bool,
-    /// Force of the contacts upwards, in N; at least 0.
+    /// Upward force of the contacts on the limb, in N; at least 0.
     pub load_n: f32,
-    /// Force of the contacts against the limb's forward axis, in N; at least 0.
+    /// Force of the contacts on the limb against its forward axis, in N; at least 0.
     pub blocked_n: f32,
-    /// Sine of the pitch: upward part of the forward axis.
+    /// Sine of the pitch: upward component of the limb's forward axis.
     pub pitch: f32,
-    /// Sine of the roll: upward part of the axis to the right.
+    /// Sine of the roll: upward component of the limb's axis to the right.
     pub roll: f32,
-    /// Way along y from the centre of the front face to the next riser, in metres, and the height of the tread behind it
-    /// over the limb's lowest corner, in metres. None without a riser ahead.
+    /// Distance along y from the centre of the front face to the next riser, in metres, and the height of the tread behind the riser over
+    /// the limb's lowest corner, in metres. `None` without a riser ahead.
     pub next_step: Option<[f32; 2]>,
-    /// Height of the lowest corner over the surface below the limb's centre, in metres.
+    /// Height of the limb's lowest corner over the surface below the limb's centre, in metres.
     pub clearance_m: f32,
 }
 
 /// The senses of the snake as a whole, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SnakeReading {
-    /// Sine of the yaw: sideways part of the head's forward axis.
+    /// Sine of the yaw: sideways component of the head's forward axis, positive towards +x.
     pub yaw: f32,
     /// Velocity of the middle limb along y and z, in m/s.
     pub velocity_m_s: [f32; 2],
-    /// Distance of the middle limb from the middle of the stairs, as a share of half their width.
+    /// Offset of the middle limb from the middle of the stairs along x, as a share of half the width of the stairs.
     pub aside: f32,
 }
 
 impl Simulation {
-    /// Weight of the snake, in N.
+    /// Returns the weight of the snake, in N.
     pub fn weight_n(&self) -> f32 {
         self.contacts.snake_kg * self.physics.gravity.z.abs()
     }
@@ -61,8 +61,8 @@ impl Simulation {
         }
     }
 
-    /// The senses of a soft limb: it touches where one of its parts does, loads add up, pitch and roll are means, the way to
-    /// the next step is that of the front part, and the lowest corner is that of all parts.
+    /// Returns the senses of a soft limb. It touches where one of its parts does, loads add up, pitch and roll are means, the distance to
+    /// the next step is that of the front part, and the lowest corner is the lowest of all parts.
     fn read_soft_limb(&self, parts: Range<usize>) -> LimbReading {
         let lowest_z_m =
             parts.clone().map(|part| self.lowest_z_m(part)).fold(f32::INFINITY, f32::min);
@@ -86,26 +86,26 @@ impl Simulation {
         limb
     }
 
-    /// Height of the lowest corner of a part, in metres.
+    /// Returns the height of the lowest corner of a part, in metres.
     fn lowest_z_m(&self, part: usize) -> f32 {
         let body = &self.physics.bodies[self.parts[part]];
         let axes = self.axes(*body.rotation());
         self.lowest_z_of_m(part, body.translation(), axes)
     }
 
-    /// Height of the lowest corner of a part with this centre and these axes, in metres.
+    /// Returns the height of the lowest corner of a part with this centre and these axes, in metres.
     fn lowest_z_of_m(&self, part: usize, centre: Vector, axes: [Vector; 3]) -> f32 {
         let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
         let reach_m = axes.into_iter().zip(half_m);
         centre.z - reach_m.map(|(axis, half)| axis.z.abs() * half).sum::<f32>()
     }
 
-    /// The axes of a body with this rotation, as unit vectors in the world: right, forward, up.
+    /// Returns the axes of a body with this rotation, as unit vectors in the world: right, forward, up.
     fn axes(&self, turn: Rotation) -> [Vector; 3] {
         [Vector::X, Vector::Y, Vector::Z].map(|axis| self.turned(turn, axis))
     }
 
-    /// The senses of the snake as a whole.
+    /// Returns the senses of the snake as a whole.
     pub fn read_snake(&self) -> SnakeReading {
         let head = &self.physics.bodies[self.parts[0]];
         let middle = &self.physics.bodies[self.parts[self.body.middle_part]];
@@ -136,8 +136,8 @@ impl Simulation {
         }
     }
 
-    /// Whether a part touches ground or stairs, and the force of these contacts on it in the last substep, in
-    /// N: the sum of [`Self::contact_forces`], without their list.
+    /// Returns whether a part touches ground or stairs, and the force of these contacts on the part in the last substep, in N: the sum of
+    /// [`Self::contact_forces`], without a list of them.
     pub(super) fn contact_force(&self, part: usize) -> (bool, Vector) {
         if self.lanes.is_some() {
             self.contact_force_in_lanes(part)
@@ -169,7 +169,7 @@ impl Simulation {
             is_touching |= pair.has_any_active_contact();
             let side = if pair.collider1 == collider { -1.0 } else { 1.0 };
             for manifold in pair.solver_manifolds() {
-                // The engine has one friction impulse for all points of a manifold.
+                // All points of a manifold share one friction impulse.
                 let mut friction = None;
                 for point in solved_points(manifold) {
                     if point.data.warmstart_impulse > 0.0 {
@@ -226,7 +226,7 @@ mod tests {
         soft.agent.youngs_modulus_pa = Some(60_000.0.into());
         let [rigid, soft] = [&champion.trial, &soft].map(|trial| {
             let mut plan = trial.world_plan(&champion.genome);
-            // Turned upwards about the x axis as a whole, and away from the ground.
+            // The limb is turned upwards about the x axis as a whole, and is away from the ground.
             plan.physics.gravity_m_s2 = 0.0;
             let mut world = Simulation::new(&plan);
             let turn = Rotation::from_xyzw(libm::sinf(0.2), 0.0, 0.0, libm::cosf(0.2));

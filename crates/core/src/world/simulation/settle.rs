@@ -1,25 +1,24 @@
-//! Coming to rest before a trial, so that no body gains from falling over at its start.
+//! Lets a body come to rest before a trial, so that no body gains by falling over at its start.
 
 use super::Simulation;
 use crate::world::{Disqualification, Effort, JointTorque, Vector};
 
-/// Longest time to come to rest, in s.
+/// Longest time in which a body may come to rest, in s.
 const LONGEST_S: f32 = 2.0;
-/// Time for which the body has to rest, in s.
+/// Time for which the body has to stay at rest, in s.
 const REST_S: f32 = 0.25;
-/// Greatest speed of the centre of mass at rest, in m/s.
+/// Greatest speed of the centre of mass that counts as rest, in m/s.
 const REST_SPEED_M_S: f32 = 0.02;
-/// Greatest displacement of a limb at rest, in m.
+/// Greatest displacement of a limb's centre that counts as rest, in m.
 const REST_WAY_M: f32 = 0.001;
-/// Greatest displacement of the centre of mass along the stairs while it settles, in m.
+/// Greatest displacement of the centre of mass along y while the body settles, in m.
 const LARGEST_SHIFT_M: f32 = 0.5;
 
 impl Simulation {
-    /// Steps the world without commanded torques, but with all damping, until the body rests; its energy and effort count
-    /// from then on. After Sims (1994), whose creatures begin when their centre of mass is at rest.
+    /// Steps the world without commanded torques, but with all damping, until the body rests. Its energy and effort count from then on.
+    /// The method follows Sims (1994), whose creatures begin when their centre of mass is at rest.
     ///
-    /// # Errors
-    /// The body breaks a limit, shifts along the stairs, or does not come to rest in time.
+    /// Returns an error if the body breaks a limit, shifts along the stairs, or does not come to rest in time.
     pub fn settle(&mut self) -> Result<(), Disqualification> {
         let step_s = self.physics.integration_parameters.dt;
         let [longest, rest] =
@@ -55,7 +54,7 @@ impl Simulation {
         self.poses().map(|pose| pose.translation).collect()
     }
 
-    /// Position of the centre of mass in metres, and its velocity in m/s.
+    /// Returns the position of the centre of mass in metres, and its velocity in m/s.
     fn centre_of_mass(&self) -> (Vector, Vector) {
         let (mut place, mut velocity, mut mass_kg) = (Vector::ZERO, Vector::ZERO, 0.0);
         let limbs = self.body.parts.iter().zip(self.poses().zip(self.velocities()));

@@ -1,4 +1,4 @@
-//! Shoves a limb of a running world.
+//! Applies a shove to a limb of a running world.
 
 use rapier3d::prelude::RigidBody;
 
@@ -6,13 +6,13 @@ use super::Simulation;
 use crate::world::Shove;
 
 impl Simulation {
-    /// Shoves a limb now. A limb that does not exist is not shoved. The energy that the shove brings or takes is no gain
-    /// and no loss in the energy balance.
+    /// Shoves a limb now. If there is no such limb, nothing happens. The energy that the shove adds or takes counts neither as gained nor
+    /// as lost in the energy balance.
     pub fn shove(&mut self, shove: &Shove) {
         for &part in &self.parts[self.body.parts_of(shove.limb)] {
             let is_in_lanes = self.lanes.is_some();
             let body = &mut self.physics.bodies[part];
-            // Rapier's own energy of a body is not the same on every processor.
+            // The energy that rapier computes for a body is not the same on every processor.
             let energy_j = |of: &RigidBody| {
                 let velocity = of.linvel();
                 if is_in_lanes {

@@ -1,4 +1,4 @@
-//! The world compared with the report and with closed forms.
+//! The world compared with the report and with closed formulas.
 
 use std::cell::Cell;
 
@@ -9,13 +9,13 @@ thread_local! {
     static ENGINE: Cell<PhysicsEngine> = const { Cell::new(PhysicsEngine::Rapier) };
 }
 
-/// Runs a test in an engine.
+/// Runs a test with the plans' engine set to `engine`.
 fn run_in(engine: PhysicsEngine, test: fn()) {
     ENGINE.set(engine);
     test();
 }
 
-/// Makes two tests of a function, which has the same bounds in both engines.
+/// Makes two tests of a function, one per engine, with the same bounds.
 macro_rules! in_both_engines {
     ($test:ident) => {
         mod $test {
@@ -47,7 +47,7 @@ mod surface;
 use super::super::{JointPlan, PartPlan, PhysicsSettings, Skin, Stairs, Surface};
 use super::*;
 
-/// A snake of `limbs` blocks without damping, in the world of the report.
+/// Returns a snake of `limbs` blocks without damping, in the world of the report.
 fn plan(limbs: usize) -> WorldPlan {
     let limb =
         |limb| PartPlan { limb, width_m: 1.0, length_m: 2.0, height_m: 1.0, density_kg_m3: 2.5 };
@@ -86,7 +86,7 @@ fn plan(limbs: usize) -> WorldPlan {
     }
 }
 
-/// A snake of [`plan`] without gravity, far above the ground.
+/// Returns a snake of [`plan`] without gravity, far above the ground.
 fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     let mut plan = plan(limbs);
     plan.physics.gravity_m_s2 = 0.0;
@@ -99,7 +99,7 @@ fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     (plan, simulation)
 }
 
-/// Bend and twist of a joint, in radians, by the formulas of [`universal_joint`].
+/// Returns the bend, the twist and the locked angle of a joint, in radians, by the formulas of [`universal_joint`].
 fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
     let rotation = |limb: usize| *simulation.physics.bodies[simulation.parts[limb]].rotation();
     let relative = rotation(joint).inverse() * rotation(joint + 1);
@@ -212,8 +212,8 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
         }
         simulation.physics.bodies[front].angvel().y
     };
-    // Twist: the joint rate is 2 w, the torque on each limb c * 2 w, so w decays with
-    // exp(-2 c t / I), where I = m (width² + height²) / 12 = 5/6 kg m².
+    // For twist, the joint rate is 2 w and the torque on each limb c * 2 w, so w decays with exp(-2 c t / I), where I = m (width² +
+    // height²) / 12 = 5/6 kg m².
     let expected = |c: f32| libm::expf(-2.0 * c * 0.1 / (5.0 / 6.0));
     for c in [0.5, 1.0, 2.0] {
         let (found, expected) = (decay(c), expected(c));
@@ -265,7 +265,7 @@ fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
         }
         let (spent, gained) = (simulation.effort().energy_j, gained(&simulation));
         assert!(gained > 0.01 && (spent / gained - 1.0).abs() < 0.01, "{spent} J for {gained} J");
-        // Held back by the opposite torque, they spend as much again.
+        // Held back by the opposite torque, the joints spend as much energy again.
         let back = JointTorque { bend_nm: -torque.bend_nm, twist_nm: -torque.twist_nm };
         for _ in 0..40 {
             simulation.step(&[back]).expect("healthy");
@@ -286,7 +286,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
     assert!((along - expected).length() < 1e-5, "{along}");
     let heading = simulation.poses().next().expect("a head").rotation * Vector::Y;
     assert!((heading - expected).length() < 1e-5, "{heading}");
-    // Its joints fit: no constraint moves it.
+    // The joints of the turned snake fit together: no constraint moves it.
     for _ in 0..60 {
         simulation.step(&[JointTorque::default(); 4]).expect("healthy");
     }
@@ -337,8 +337,8 @@ fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     assert!((found_s / expected_s - 1.0).abs() < 0.01, "{found_s} s for {expected_s} s");
 }
 
-/// Drift over 10 s of a weightless snake of `limbs` that waves and turns without any contact: of its momentum
-/// in kg m/s, and of its energy relative to the initial energy.
+/// Returns the drift over 10 s of a weightless snake of `limbs` that waves and turns without any contact: of its momentum in kg m/s, and
+/// of its energy relative to the initial energy.
 fn drift(limbs: usize) -> (f32, f32) {
     let (mut plan, _) = weightless(limbs);
     for joint in &mut plan.body.joints {
@@ -429,7 +429,7 @@ fn each_exceeded_health_limit_disqualifies() {
     let tear = |body: &mut RigidBody| {
         body.set_translation(body.translation() + Vector::new(0.0, 30.0, 10.0), true);
     };
-    // Rapier pulls a torn joint together at once, at up to 400 m/s: the speed limit would be the reason.
+    // Rapier pulls a torn joint together at once, at up to 400 m/s. With the default limit, the reason would be the speed.
     assert_eq!(broken_by(1000.0, tear), Some(Disqualification::JointBroke));
     assert_eq!(broken_by(25.0, |_| ()), None, "a snake that lies still is healthy");
 

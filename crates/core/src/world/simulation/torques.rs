@@ -1,4 +1,4 @@
-//! The torques of a step: what the controller commands, what the joints' damping adds, and the energy that they cost.
+//! The torques of a step: the controller's commands, the damping of the joints, and the energy that both cost.
 
 use rapier3d::prelude::*;
 
@@ -7,8 +7,8 @@ use crate::world::JointPlan;
 use crate::world::torque::{AppliedTorque, JointTorque};
 
 impl Simulation {
-    /// Prepares a step: air and surfaces slow the limbs for its first half, and each limb gets its torque, the sum
-    /// of the couples of its joints.
+    /// Prepares a step: air and surfaces slow the limbs for its first half, and each limb gets as its torque the sum of the couples of its
+    /// joints.
     pub fn apply(&mut self, torques: &[JointTorque]) {
         self.dampen_half_step();
         self.torques_in_world.fill(Vector::ZERO);
@@ -41,8 +41,8 @@ impl Simulation {
         }
     }
 
-    /// Energy that the joints spent on motion in the last step, in J, by the trapezoidal rule. A torque acts through the
-    /// whole step about the axes at its start.
+    /// Returns the energy that the joints spent on motion in the last step, in J, by the trapezoidal rule. A torque acts through the whole
+    /// step about its axes at the beginning of the step.
     pub(super) fn motion_energy_j(&self) -> f32 {
         let joints = self.body.joints.iter().zip(&self.applied);
         let power_w = joints.map(|(joint, AppliedTorque { axes, torque, rates_rad_s })| {
@@ -53,8 +53,8 @@ impl Simulation {
         power_w.sum::<f32>() * self.physics.integration_parameters.dt
     }
 
-    /// Energy that the torques of the last step took by themselves, moving or not, in J: heat of a motor, which grows with the
-    /// square of its current.
+    /// Returns the energy that the torques of the last step took by themselves, whether the joints moved or not, in J. It models the heat
+    /// of a motor, which grows with the square of its current.
     pub(super) fn holding_energy_j(&self) -> f32 {
         let holding_w_per_n2m2 = self.body.holding_w_per_n2m2;
         if holding_w_per_n2m2 == 0.0 {
@@ -66,7 +66,7 @@ impl Simulation {
         squares.sum::<f32>() * holding_w_per_n2m2 * self.physics.integration_parameters.dt
     }
 
-    /// Rates of a joint about the x and y axes of a rotation, in rad/s.
+    /// Returns the rates of a joint about the x and y axes of a rotation, in rad/s.
     fn joint_rates(&self, joint: &JointPlan, axes: Rotation) -> [f32; 2] {
         let turn = |limb: usize| self.physics.bodies[self.parts[limb]].angvel();
         let rate = self.turned(axes.inverse(), turn(joint.child) - turn(joint.parent));

@@ -1,22 +1,22 @@
-//! Changes of single steps, for an editor. Slopes become as deep as still fits. The results may not be allowed:
-//! [`crate::schema::check`] says so.
+//! Changes of single steps, for an editor. Slopes become shallower where they would not fit. The resulting stairs may not be allowed:
+//! [`crate::schema::check`] checks them.
 
 use super::Stairs;
 use crate::schema::PerPart;
 
-/// Lengths that an editor sets are whole numbers of these, in metres: rises and treads then add up to short numbers.
+/// Lengths that an editor sets are multiples of this length, in metres, so that sums of rises and treads are short numbers.
 const GRAIN_M: f32 = 0.001;
 
 impl Stairs {
-    /// The front edge of a step's tread, by which an editor moves it: y and z, in metres. Of a step down it is the corner
-    /// where its tread begins.
+    /// Returns the front edge of a step's tread, by which an editor moves the step: y and z, in metres. For a step down, it is the corner
+    /// where the step's tread begins.
     pub fn handle_m(&self, step: u32) -> [f32; 2] {
         let y_m = self.tread_y_m(step) - self.step_nosing_m(step);
         [y_m, self.height_m(step + 1)]
     }
 
-    /// The stairs with the handle of a step at another place. All other steps stay where they are, except that everything
-    /// behind the last step moves with it.
+    /// Returns the stairs with the handle of a step at another place, y and z in metres. All other steps stay where they are. If the last
+    /// step moves, everything behind it moves with it.
     #[must_use]
     pub fn with_handle_at(&self, step: u32, [y_m, z_m]: [f32; 2]) -> Self {
         let index = step as usize;
@@ -44,7 +44,7 @@ impl Stairs {
         Self { first_riser_y_m, ..self.with_steps(rises_m, treads_m, self.slopes_m()) }
     }
 
-    /// The stairs with another rise of one step. The steps above it are lifted or lowered.
+    /// Returns the stairs with another rise of one step, in metres. The steps above it are lifted or lowered.
     #[must_use]
     pub fn with_step_rise(&self, step: u32, rise_m: f32) -> Self {
         let mut rises_m = self.rises_m();
@@ -54,7 +54,7 @@ impl Stairs {
         self.with_steps(rises_m, self.each_tread_m(), self.slopes_m())
     }
 
-    /// The stairs with another tread of one step. The steps behind it are moved.
+    /// Returns the stairs with another tread of one step, in metres. The steps behind it are moved.
     #[must_use]
     pub fn with_step_tread(&self, step: u32, tread_m: f32) -> Self {
         let mut treads_m = self.each_tread_m();
@@ -64,7 +64,7 @@ impl Stairs {
         self.with_steps(self.rises_m(), treads_m, self.slopes_m())
     }
 
-    /// The stairs with a copy of a step behind it.
+    /// Returns the stairs with a copy of a step inserted behind it.
     #[must_use]
     pub fn with_step_copied(&self, step: u32) -> Self {
         let copied = |mut each: Vec<f32>| {
@@ -80,7 +80,7 @@ impl Stairs {
         )
     }
 
-    /// The stairs without a step. Those behind it move up to its place.
+    /// Returns the stairs without this step. The steps behind it move into its place.
     #[must_use]
     pub fn without_step(&self, step: u32) -> Self {
         let rest = |mut each: Vec<f32>| {
@@ -117,12 +117,12 @@ impl Stairs {
     }
 }
 
-/// One value for all steps if they are equal, so that equal steps stay plain stairs.
+/// Returns one value for all steps if they are equal, so that equal steps stay plain stairs.
 fn shortest(each: Vec<f32>, before: &PerPart) -> PerPart {
     match each.first() {
         Some(first) if each.iter().all(|value| value == first) => PerPart::All(*first),
         Some(_) => PerPart::Each(each),
-        // Without steps the value of the next ones is kept.
+        // Without steps, the value for later steps is kept.
         None => PerPart::All(before.at(0)),
     }
 }

@@ -1,15 +1,14 @@
-//! Limits between the settings of a staircase: what can be built.
+//! Limits between the settings of a staircase: which stairs can be built.
 
 use super::{GROUND_M, Stairs, no_slope};
 use crate::check::Invalid;
 use crate::schema::PerPart;
 
-/// Least height of a step over the one below it, or below it, in metres. Below a centimetre the engine's tolerances are
-/// as high as the step.
+/// Least height difference between two steps, up or down, in metres. Below a centimetre, the engine's tolerances are as large as the step.
 const LEAST_RISE_M: f32 = 0.01;
 /// Least depth of the flat part of a tread, in metres.
 const LEAST_FLAT_M: f32 = 0.1;
-/// Least depth of a slope, in metres: a shallower one would be a board without depth.
+/// Least depth of a slope, in metres: a shallower slope would be a board without depth.
 const LEAST_SLOPE_M: f32 = 0.01;
 
 impl Stairs {
@@ -43,7 +42,7 @@ impl Stairs {
         Ok(())
     }
 
-    /// A slope needs a flat part of the tread above it, deep enough to hide the end of the board of which it is made.
+    /// Checks that the tread above a slope has a flat part that is deep enough to hide the end of the slope's board.
     fn check_slope(&self, step: u32) -> Result<(), Invalid> {
         let slope_m = self.step_slope_m(step);
         if slope_m == 0.0 {
@@ -66,7 +65,7 @@ impl Stairs {
         Ok(())
     }
 
-    /// These stairs with each slope as deep as is allowed at most, after rises have grown.
+    /// Returns the stairs with each slope limited to the greatest allowed depth, for use after rises have grown.
     #[must_use]
     pub fn with_room_for_slopes(mut self) -> Self {
         if self.slope_m != no_slope() {
@@ -79,7 +78,7 @@ impl Stairs {
         self
     }
 
-    /// The greatest depth of the slope of a step, in metres: a flat part of its tread has to remain.
+    /// Returns the greatest depth of the slope of a step, in metres: a flat part of the step's tread has to remain.
     fn deepest_slope_m(&self, step: u32) -> f32 {
         let rise_m = self.step_rise_m(step);
         let flat_m = if rise_m > 0.0 { LEAST_FLAT_M.max(rise_m / 2.0) } else { LEAST_FLAT_M };

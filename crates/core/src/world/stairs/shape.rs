@@ -3,37 +3,36 @@
 use super::Stairs;
 use crate::world::{Pose, Rotation, Vector};
 
-/// One box of the staircase, in core axes.
+/// One box of the staircase, in the axes of the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StairBox {
-    /// Number of the step to which it belongs; the lowest is 0.
+    /// Number of the step to which the box belongs; the lowest is 0.
     pub step: u32,
-    /// The lower corner: least x, y and z, in metres.
+    /// Lower corner: least x, y and z, in metres.
     pub min_m: [f32; 3],
-    /// The upper corner: greatest x, y and z, in metres.
+    /// Upper corner: greatest x, y and z, in metres.
     pub max_m: [f32; 3],
 }
 
-/// One solid of the staircase: a box, or the tilted board of a sloping rise, whose lower edges lie within boxes.
+/// One solid of the staircase: a box, or the tilted board of a sloping rise. The board's lower edges lie within boxes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StairSolid {
-    /// Number of the step to which it belongs; the lowest is 0.
+    /// Number of the step to which the solid belongs; the lowest is 0.
     pub step: u32,
-    /// Its middle, and its turn about the x axis.
+    /// Position of the solid's centre, and its rotation about the x axis.
     pub pose: Pose,
-    /// Half its width across, its depth along the tread or the slope, and its height, in metres.
+    /// Half the width of the solid, half its depth along the tread or the slope, and half its height, in metres.
     pub half_m: Vector,
 }
 
-/// Thickness of a nosing, in metres; on low steps half the rise.
+/// Greatest thickness of a nosing, in metres; on low steps, a nosing is half the rise thick.
 const NOSING_THICK_M: f32 = 0.1;
 
 impl Stairs {
-    /// The steps as solid boxes that stand on the ground, lowest first; treads with a nosing are boxes of their own. A
-    /// tread at the level of the ground has none.
+    /// Returns the steps as solid boxes that stand on the ground, lowest first. A tread with a nosing has a box of its own; a tread at the
+    /// level of the ground has no box.
     ///
-    /// The landing belongs to the box of the last step: at a seam between two level boxes a sliding
-    /// block would trip over an edge that does not exist.
+    /// The landing belongs to the box of the last step, because a sliding block would be caught at a seam between two level boxes.
     pub fn boxes(&self) -> Vec<StairBox> {
         let mut boxes = Vec::new();
         for step in 0..self.steps {
@@ -50,7 +49,7 @@ impl Stairs {
             };
             let nosing_m = self.step_nosing_m(step);
             if self.step_slope_m(step) > 0.0 {
-                // The board rests on the lower of the two levels.
+                // The board of a slope rests on the lower of the two levels.
                 let [riser_m, tread_m] = [self.riser_y_m(step), self.tread_y_m(step)];
                 push([riser_m, 0.0], [tread_m, below_m.min(top_m)]);
                 push([tread_m, 0.0], [back_y_m, top_m]);
@@ -65,7 +64,7 @@ impl Stairs {
         boxes
     }
 
-    /// All solids: the boxes, lowest first, and then the boards of sloping rises.
+    /// Returns all solids: the boxes, lowest first, and then the boards of sloping rises.
     pub fn solids(&self) -> Vec<StairSolid> {
         let solid = |of: StairBox| {
             let min = Vector::from(of.min_m);
@@ -77,17 +76,18 @@ impl Stairs {
         self.boxes().into_iter().map(solid).chain(boards).collect()
     }
 
-    /// The board of a sloping rise.
+    /// Returns the board of a sloping rise.
     fn board(&self, step: u32) -> StairSolid {
         let from = Vector::new(0.0, self.riser_y_m(step), self.height_m(step));
         let to = Vector::new(0.0, self.tread_y_m(step), self.height_m(step + 1));
         let along = to - from;
         let length_m = along.length();
         let (sin, cos) = (along.z / length_m, along.y / length_m);
-        // Just as thick as the triangle between the two levels is high over its longest side.
+        // The board is as thick as the triangle between the two levels is high over its longest side.
         let thick_m = along.z.abs() * cos;
         let normal = Vector::new(0.0, -sin, cos);
-        // The half angle by square roots, whose results are the same everywhere; a slope lies between -90 and 90 degrees.
+        // Square roots give the half angle, because their results are the same on every processor. A slope lies between -90 and 90
+        // degrees.
         let half_cos = ((1.0 + cos) / 2.0).sqrt();
         let half_sin = sin / (2.0 * half_cos);
         let rotation = Rotation::from_xyzw(half_sin, 0.0, 0.0, half_cos);
@@ -99,9 +99,8 @@ impl Stairs {
         }
     }
 
-    /// The outline of the stairs from the side, from the foot of the first riser to the end of the landing: y and z of
-    /// its corners, in metres. Of each step first the foot and the top of its riser, with the nosing between, and
-    /// then the end of its tread.
+    /// Returns the outline of the stairs from the side, from the foot of the first riser to the end of the landing: y and z of its
+    /// corners, in metres. Each step has the foot and the top of its riser, with the nosing between, and then the end of its tread.
     pub fn outline_m(&self) -> Vec<[f32; 2]> {
         let mut outline = vec![[self.first_riser_y_m, 0.0]];
         for step in 0..self.steps {
@@ -117,7 +116,7 @@ impl Stairs {
         outline
     }
 
-    /// The front edge of a step's tread, or the edge from which a step leads down: y and z, in metres.
+    /// Returns the front edge of a step's tread, or the edge from which a step leads down: y and z, in metres.
     pub fn edge_m(&self, step: u32) -> [f32; 2] {
         if self.step_rise_m(step) < 0.0 {
             [self.riser_y_m(step), self.height_m(step)]
@@ -126,12 +125,12 @@ impl Stairs {
         }
     }
 
-    /// Position at which a step ends on the y axis, in metres: at the next riser, or the last one with the landing.
+    /// Returns the position on the y axis at which a step ends, in metres: the next riser, or for the last step the end of the landing.
     fn back_y_m(&self, step: u32) -> f32 {
         if step + 1 == self.steps { self.end_y_m() } else { self.riser_y_m(step + 1) }
     }
 
-    /// Height of the underside of a step's nosing over the ground, in metres.
+    /// Returns the height of the underside of a step's nosing over the ground, in metres.
     fn nosing_under_m(&self, step: u32) -> f32 {
         self.height_m(step + 1) - NOSING_THICK_M.min(self.step_rise_m(step) / 2.0)
     }

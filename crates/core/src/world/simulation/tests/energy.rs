@@ -1,4 +1,4 @@
-//! The energy balance compared with closed forms.
+//! The energy balance compared with closed formulas.
 
 use super::surface::{block, body, run};
 use super::*;
@@ -28,7 +28,7 @@ fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_le
         assert!(falling_j.abs() < 0.1, "{falling_j} J in the air");
         run(&mut simulation, 0.1);
         let lost_j = simulation.energy_lost().total_j - before_j;
-        // (1 - bounce²) m g h
+        // The loss is (1 - bounce²) m g h.
         let expected_j = (1.0 - bounce * bounce) * 5.0 * 9.81;
         assert!((lost_j - expected_j).abs() < 1.5, "{lost_j} J for {expected_j} J");
     }
@@ -77,7 +77,7 @@ fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
     for _ in 0..240 {
         simulation.step(&[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]).expect("healthy");
     }
-    // To the limit of 1 rad, where it rests.
+    // The torque drives the joint to its limit of 1 rad, where it rests.
     let lost = simulation.energy_lost();
     assert!((lost.total_j - 4.0).abs() < 0.2 && lost.elsewhere_j() == lost.total_j, "{lost:?}");
 }
@@ -126,7 +126,7 @@ fn a_snake_that_gains_energy_without_its_joints_is_disqualified() {
     simulation.begin_balance();
     simulation.step(&still).expect("nothing moves");
     let limb = simulation.parts[0];
-    // 5 kg at 1 m/s have 2.5 J, more than the limit of 1 J; at 0.5 m/s they have 0.6 J.
+    // A mass of 5 kg at 1 m/s has 2.5 J, more than the limit of 1 J; at 0.5 m/s it has 0.6 J.
     for (speed_m_s, expected) in [(0.5, Ok(())), (1.0, Err(Disqualification::EnergyFromNothing))] {
         let mut pushed = simulation.clone();
         let body = &mut pushed.physics.bodies[limb];

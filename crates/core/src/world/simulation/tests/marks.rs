@@ -1,12 +1,12 @@
-//! The engine may skip work where no body is marked as changed: that changes no bit.
+//! If no body is marked as changed, the engine may skip work. Skipping changes no bit.
 
 use super::*;
 
 /// Steps before and after the middle of the test.
 const STEPS: usize = 200;
 
-/// Poses after each step of a snake that bends and twists at the stairs, under another plan from the middle on. Where
-/// `marked`, the engine processes all bodies as changed in each step.
+/// Returns the poses after each step of a snake that bends and twists at the stairs, under another plan from the middle on. If `marked`,
+/// the engine processes all bodies as changed in each step.
 fn poses(plan: &WorldPlan, then: &WorldPlan, marked: bool) -> Vec<Pose> {
     let mut simulation = Simulation::new(plan);
     let mut poses = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Sum of the forces of all contacts, in N.
+/// Returns the sum of the forces of all contacts, in N.
 fn sum(simulation: &Simulation) -> Vector {
     simulation.contact_forces().iter().map(|contact| contact.force_n).sum()
 }

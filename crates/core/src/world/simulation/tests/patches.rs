@@ -1,4 +1,4 @@
-//! Readings of contact patches compared with closed forms of a single block.
+//! Readings of contact patches compared with closed formulas for a single block.
 
 use super::surface::{block, body, run};
 use super::*;
@@ -6,14 +6,14 @@ use crate::world::{ContactPatch, TouchedSurface};
 
 const WEIGHT_N: f32 = 5.0 * 9.81;
 
-/// The only patch of a world.
+/// Returns the only patch of a world.
 fn patch(simulation: &Simulation) -> ContactPatch {
     let patches = simulation.contact_patches();
     let [patch] = patches[..] else { panic!("one patch: {patches:?}") };
     patch
 }
 
-/// A block that is pushed along y for this time with a steady force.
+/// Returns the world of a block that a steady force pushes along y for this time, in seconds.
 fn pushed(surface: Surface, push_n: f32, seconds: f32) -> Simulation {
     let mut simulation = Simulation::new(&block(surface));
     run(&mut simulation, 1.0);
@@ -80,7 +80,7 @@ fn a_block_on_soft_ground_dents_it_by_its_weight_over_the_stiffness() {
     let mut simulation = Simulation::new(&block(surface));
     run(&mut simulation, 20.0);
     let patch = patch(&simulation);
-    // Springs of kp = ERP / (h CFM) at four corners.
+    // Each of the four corners is a spring of kp = ERP / (h CFM).
     let expected_m = WEIGHT_N / (0.2 * 60.0 / 0.01 * 4.0);
     assert!((patch.depth_m / expected_m - 1.0).abs() < 0.05, "{patch:?} for {expected_m} m");
 }
@@ -141,7 +141,7 @@ fn patches_tell_stairs_ground_and_limbs_apart_and_air_has_none() {
     run(&mut simulation, 0.5);
     assert_eq!(patch(&simulation).touched, TouchedSurface::Stairs);
 
-    // Without its joints the tail can fall on the head.
+    // Without its joints the tail can fall onto the head.
     let (mut plan, _) = weightless(3);
     plan.body.joints.clear();
     let mut simulation = Simulation::new(&plan);
@@ -155,7 +155,7 @@ fn patches_tell_stairs_ground_and_limbs_apart_and_air_has_none() {
     let body = &mut simulation.physics_mut().bodies[tail];
     body.set_translation(over + Vector::new(0.0, 0.0, 1.1), true);
     body.set_linvel(Vector::new(0.0, 0.5, -2.0), true);
-    // It presses, because an impact is over before the last substep.
+    // A force presses the tail on, because an impact is over before the last substep.
     simulation.physics_mut().bodies[tail].add_force(Vector::new(0.0, 0.0, -50.0), true);
     for _ in 0..8 {
         simulation.step(&[]).expect("healthy");

@@ -1,4 +1,4 @@
-//! Random chains on random surfaces under random torques: no number that is not finite goes unnoticed.
+//! Random chains on random surfaces under random torques: every number that is not finite must be detected.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -6,12 +6,12 @@ use rand_chacha::ChaCha8Rng;
 use super::*;
 use crate::rng::{Purpose, stream};
 
-/// A number between two positive ones, with the same chance of each order of magnitude.
+/// Draws a number between two positive ones, with the same chance for each order of magnitude.
 fn between(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
     libm::expf(rng.random_range(libm::logf(least)..=libm::logf(most)))
 }
 
-/// 0 in half of the cases.
+/// Draws a number between two positive ones, or returns 0, each with a chance of one half.
 fn or_none(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
     if rng.random_bool(0.5) { 0.0 } else { between(rng, least, most) }
 }
@@ -28,7 +28,7 @@ fn surface(rng: &mut ChaCha8Rng) -> Surface {
     }
 }
 
-/// A world whose numbers are drawn from nearly all that settings and genomes allow.
+/// Draws a world from nearly all numbers that settings and genomes allow.
 fn random_plan(rng: &mut ChaCha8Rng) -> WorldPlan {
     let limbs = rng.random_range(1..=12);
     let mut plan = plan(limbs);
@@ -56,7 +56,7 @@ fn random_plan(rng: &mut ChaCha8Rng) -> WorldPlan {
     plan.skin.bounce = or_none(rng, 0.01, 1.0);
     plan.skin.soft_cfm_m_s_per_n = or_none(rng, 1.0e-6, 1.0);
     plan.stairs.nosing_m = if rng.random_bool(0.5) { 0.0 } else { 0.3 };
-    // Many begin among the stairs, inside of them.
+    // Many snakes begin inside of the stairs.
     plan.start_y_m = rng.random_range(-20.0..=20.0);
     plan.start_turn_rad = rng.random_range(-3.2..=3.2);
     plan
@@ -108,7 +108,7 @@ fn random_chains_end_or_stay_finite() {
     assert!(healthy > 4_000, "{healthy} healthy steps");
 }
 
-/// A million of them: `cargo test --release -p snakes-core a_million_random_chains -- --ignored`.
+/// Runs the test with a million chains: `cargo test --release -p snakes-core a_million_random_chains -- --ignored`.
 #[test]
 #[ignore = "takes half a minute"]
 fn a_million_random_chains_end_or_stay_finite() {
@@ -128,7 +128,7 @@ fn a_million_random_chains_end_or_stay_finite() {
     });
 }
 
-/// A state in bits, with one kind of number that is none.
+/// Returns a state as bits, with the same bits for every NaN.
 fn bits(simulation: &Simulation) -> Vec<u32> {
     let mut bits = Vec::new();
     for (pose, [linear, angular]) in simulation.poses().zip(simulation.velocities()) {
@@ -139,7 +139,7 @@ fn bits(simulation: &Simulation) -> Vec<u32> {
     bits
 }
 
-/// Healthy and broken snakes of all kinds of surfaces, each alone and in lock step with others. A broken one stays in its lane.
+/// Steps healthy and broken snakes on all kinds of surfaces, each alone and in lock step with others. A broken snake stays in its lane.
 #[test]
 fn random_snakes_have_the_same_bits_in_lock_step() {
     ENGINE.set(PhysicsEngine::Lanes);

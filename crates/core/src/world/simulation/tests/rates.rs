@@ -1,4 +1,4 @@
-//! Parameters with time in their unit have the same effect at every step rate and with every number of substeps.
+//! Parameters whose unit contains time have the same effect at every step rate and with every number of substeps.
 
 use super::surface::{block, body, run};
 use super::*;
@@ -39,7 +39,7 @@ fn air_takes_a_spin_at_its_rate() {
 in_both_engines!(in_air_a_torque_turns_a_limb_at_torque_over_damping);
 fn in_air_a_torque_turns_a_limb_at_torque_over_damping() {
     at_every_rate(|physics, case| {
-        // At 88 1/s, in thick air, the bound is (d h)² / 24 = 9 % at 60 steps a second.
+        // In thick air, at 88 1/s, the bound is (d h)² / 24 = 9 % at 60 steps per second.
         for (damping_per_s, tolerance) in [(2.0, 0.02), (20.0, 0.02), (88.0, 0.1)] {
             let mut simulation = floating_pair(physics, damping_per_s, 0.0);
             let torque = JointTorque { bend_nm: 0.0, twist_nm: 0.2 };
@@ -83,7 +83,7 @@ fn on_a_damping_slope_a_limb_slides_at_gravity_over_damping() {
     });
 }
 
-/// Two limbs that float without weight in air of this damping, and whose joint has this one.
+/// Returns the world of two limbs that float without weight in air with this damping, connected by a joint with this damping.
 fn floating_pair(
     physics: &PhysicsSettings,
     angular_damping_per_s: f32,
@@ -108,7 +108,7 @@ fn run_with(simulation: &mut Simulation, torque: JointTorque, seconds: f32) {
     (0..steps).for_each(|_| simulation.step(&[torque]).expect("healthy"));
 }
 
-/// Sets the limbs of a pair to spin against each other about the long axis, in rad/s.
+/// Makes the limbs of a pair spin in opposite directions about the long axis, at this rate in rad/s.
 fn twist(simulation: &mut Simulation, rate_rad_s: f32) {
     for (limb, sign) in simulation.parts.clone().into_iter().zip([1.0, -1.0]) {
         let spin = Vector::new(0.0, sign * rate_rad_s, 0.0);
@@ -142,7 +142,7 @@ fn a_torque_turns_a_damped_joint_at_torque_over_damping() {
     });
 }
 
-/// Heights of a block's centre above the ground after each step, from its drop with the underside at height 0.
+/// Returns the heights of a block's centre above the ground after each step, from a drop with its underside at height 0.
 fn on_springs(physics: &PhysicsSettings, surface: Surface, seconds: f32) -> Vec<f32> {
     let mut simulation = Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
     let steps = (seconds * physics.steps_per_s as f32).round() as u32;
@@ -185,13 +185,13 @@ fn a_block_swings_on_soft_ground_with_the_period_and_the_decay_of_its_spring_and
             for (index, three) in heights.windows(3).enumerate() {
                 let [a, b, c] = [three[0] - rest_m, three[1] - rest_m, three[2] - rest_m];
                 if (b - a) * (c - b) < 0.0 {
-                    // The vertex of the parabola through three points.
+                    // The vertex of the parabola through three heights is the turning point.
                     let shift = (a - c) / (2.0 * (a - 2.0 * b + c));
                     let height = b - (a - c) * shift / 4.0;
                     turns.push(((index as f32 + 2.0 + shift) * physics.step_s(), height));
                 }
             }
-            // A half period lies between turns, in which the swing loses exp(-decay half).
+            // Half a period lies between two turning points. In it, the swing loses the factor exp(-decay half).
             let half_s = (turns[2].0 - turns[0].0) / 2.0;
             assert_close(half_s, std::f32::consts::PI / angular, 0.02, case);
             let kept = (turns[2].1 / turns[0].1).abs();
@@ -208,7 +208,7 @@ fn a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second(
             let surface = Surface { soft_erp, ..Default::default() };
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
-            // Rapier corrects at 3 m/s at most.
+            // Rapier corrects a penetration at 3 m/s at most.
             let sunk_m = 0.035;
             let place = body(&mut simulation).translation() - Vector::new(0.0, 0.0, sunk_m);
             body(&mut simulation).set_translation(place, true);

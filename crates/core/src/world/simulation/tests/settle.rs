@@ -3,7 +3,7 @@
 use super::*;
 use crate::world::TouchedSurface;
 
-/// A snake of three limbs whose head is lower, so that it begins in the air.
+/// Returns a snake of three limbs whose head is lower than the others, so that the head begins in the air.
 fn uneven() -> WorldPlan {
     let mut plan = plan(3);
     plan.body.parts[0].height_m = 0.4;
@@ -26,7 +26,7 @@ fn a_lower_limb_comes_to_rest_before_the_trial_and_costs_nothing() {
 }
 
 in_both_engines!(all_damping_of_the_joints_acts_while_a_body_settles);
-/// A part of the joints' damping acts as a torque. Settling once left it out.
+/// The part of the joints' damping that acts as a torque must act during settling, too.
 fn all_damping_of_the_joints_acts_while_a_body_settles() {
     let places = |simulation: &Simulation| {
         simulation.poses().map(|pose| pose.translation).collect::<Vec<_>>()
@@ -53,7 +53,7 @@ fn a_tower_that_falls_over_is_disqualified() {
 }
 
 in_both_engines!(limbs_of_a_contact_free_pair_do_not_touch);
-/// The neighbours of a short block touch each other when both joints bend, unless they are a contact-free pair.
+/// The neighbours of a short block touch each other when both of its joints bend, unless they are a contact-free pair.
 fn limbs_of_a_contact_free_pair_do_not_touch() {
     let touches = |pairs: Vec<[usize; 2]>| {
         let (mut plan, _) = weightless(3);

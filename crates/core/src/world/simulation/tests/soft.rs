@@ -6,7 +6,7 @@ use super::super::build::spring_joint;
 use super::*;
 use crate::world::{Elasticity, STIFFEST_M4_S2, SpringPlan, modulus_at_pa};
 
-/// Length of the limb, in m; its cross-section is 1 m by 1 m.
+/// Length of the limb, in m. Its cross-section is 1 m by 1 m.
 const LENGTH_M: f32 = 2.0;
 const LENGTH_CUBED: f32 = LENGTH_M * LENGTH_M * LENGTH_M;
 /// Second moment of area of the cross-section, in m⁴.
@@ -14,7 +14,7 @@ const AREA_MOMENT_M4: f32 = 1.0 / 12.0;
 /// Mass per length, in kg/m.
 const LINE_KG_M: f32 = 2.5;
 
-/// A snake of one limb of this bending stiffness, in N·m², far above the ground and without gravity.
+/// Returns a snake of one limb of this bending stiffness, in N·m², without gravity.
 fn beam(bending_nm2: f32, parts: u32, damping_ratio: f32) -> WorldPlan {
     let mut plan = plan(1);
     plan.physics.gravity_m_s2 = 0.0;
@@ -28,7 +28,7 @@ fn beam(bending_nm2: f32, parts: u32, damping_ratio: f32) -> WorldPlan {
     plan
 }
 
-/// The world of a beam, lifted to a height of 30 m.
+/// Returns the world of a beam, lifted to a height of 30 m.
 fn lifted(plan: &WorldPlan) -> Simulation {
     let mut simulation = Simulation::new(plan);
     for part in simulation.parts.clone() {
@@ -39,7 +39,7 @@ fn lifted(plan: &WorldPlan) -> Simulation {
     simulation
 }
 
-/// Clamps the front face of a beam, with half a piece of it as the spring of the root.
+/// Clamps the front face of a beam. The spring of the root is as stiff as half a piece of the beam.
 fn clamp(simulation: &mut Simulation) {
     let spring = simulation.body.springs[0].clone();
     let root = SpringPlan {
@@ -55,7 +55,7 @@ fn clamp(simulation: &mut Simulation) {
     physics.insert_impulse_joint(wall, first, spring_joint(&root, 0.0, half_m));
 }
 
-/// Place of the middle of a beam's rear face, in m.
+/// Returns the place of the middle of a beam's rear face, in m.
 fn tip(simulation: &Simulation) -> Vector {
     let last = simulation.parts.len() - 1;
     let half_m = simulation.body.parts[last].length_m / 2.0;
@@ -67,7 +67,8 @@ fn rest(simulation: &mut Simulation) {
     (0..(20.0 / step_s) as u32).for_each(|_| simulation.advance());
 }
 
-/// Deflection of the tip of a clamped beam under a load there, in N, along an axis, relative to the chain of hinges.
+/// Returns the deflection of the tip of a clamped beam under a load at the tip along an axis, relative to the formula for the chain of
+/// hinges.
 fn under_a_load(plan: &WorldPlan, bending_nm2: f32, axis: Vector) -> f32 {
     let mut simulation = lifted(plan);
     clamp(&mut simulation);
@@ -81,7 +82,7 @@ fn under_a_load(plan: &WorldPlan, bending_nm2: f32, axis: Vector) -> f32 {
     (before - tip(&simulation)).dot(axis) / chain_m
 }
 
-/// Deflection of the tip of a clamped beam under its own weight, relative to the chain of hinges.
+/// Returns the deflection of the tip of a clamped beam under its own weight, relative to the formula for the chain of hinges.
 fn under_its_weight(plan: &WorldPlan, bending_nm2: f32) -> f32 {
     let of_gravity = LINE_KG_M * LENGTH_M * LENGTH_CUBED / (8.0 * bending_nm2);
     let mut plan = plan.clone();
@@ -95,7 +96,8 @@ fn under_its_weight(plan: &WorldPlan, bending_nm2: f32) -> f32 {
     (before - tip(&simulation)).z / chain_m
 }
 
-/// The hinge chain's formulas, over the allowed band of stiffness, with four iterations for 2 and 3 parts and eight for 4.
+/// Compares the deflections with the formulas for a chain of hinges, over the allowed range of stiffness, with four iterations for 2 and 3
+/// parts and eight for 4.
 #[test]
 fn a_clamped_limb_bends_like_a_beam() {
     let rates = [(60, 4), (240, 1)];
@@ -123,8 +125,8 @@ fn a_clamped_limb_bends_like_a_beam() {
     }
 }
 
-/// Greatest mechanical energy of a free beam within 3 s after a kick, and the energy that is left then, as shares of that at
-/// the start. Both ends are turned in opposite directions: about the x axis for bending, about the y axis for torsion.
+/// Returns the greatest mechanical energy of a free beam within 3 s after a kick, and the energy that is left after 3 s, as shares of the
+/// energy at the start. The kick turns both ends in opposite directions: about the x axis for bending, about the y axis for torsion.
 fn after_a_kick(plan: &WorldPlan, is_torsion: bool) -> [f64; 2] {
     let mut simulation = lifted(plan);
     let [front, rear] = [simulation.parts[0], simulation.parts[simulation.parts.len() - 1]];
@@ -142,7 +144,7 @@ fn after_a_kick(plan: &WorldPlan, is_torsion: bool) -> [f64; 2] {
     [most_j / start_j, simulation.mechanical_energy_j() / start_j]
 }
 
-/// Springs never supply energy, with and without damping of their own.
+/// Springs never supply energy, whether their own damping is 0 or not.
 #[test]
 fn a_kicked_limb_gains_no_energy() {
     for parts in [2, 3, 4] {
@@ -160,7 +162,7 @@ fn a_kicked_limb_gains_no_energy() {
     }
 }
 
-/// The implicit springs take energy from vibrations even without damping, the more the longer a substep is.
+/// The implicit springs take energy from vibrations even without damping, and the more, the longer a substep is.
 #[test]
 fn shorter_substeps_lose_less_of_a_vibration() {
     let left = [2, 4, 8, 16].map(|substeps| {
@@ -172,8 +174,8 @@ fn shorter_substeps_lose_less_of_a_vibration() {
     assert!(left.is_sorted_by(|longer, shorter| longer < shorter), "{left:?}");
 }
 
-/// Limbs of the stiffest material that still bends move like rigid ones, until small differences have grown. Full torque
-/// bends even these by a fifth of a radian at each spring, so gaits that strain against their joints part earlier.
+/// Limbs of the stiffest material that still bends move like rigid ones, until small differences have grown. Full torque bends even these
+/// limbs by a fifth of a radian at each spring, so gaits that strain against their joints diverge earlier.
 #[test]
 fn the_stiffest_snake_moves_like_a_rigid_one_at_first() {
     let champions = crate::save::library::shipped_champions();

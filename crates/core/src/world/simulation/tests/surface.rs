@@ -1,8 +1,8 @@
-//! The seven surface parameters compared with closed forms.
+//! The seven surface parameters compared with closed formulas.
 
 use super::*;
 
-/// One block, 1 by 2 by 1 m and 5 kg, lying on the ground far from the stairs.
+/// Returns the world of one block, 1 by 2 by 1 m and 5 kg, that lies on the ground far from the stairs.
 pub(super) fn block(surface: Surface) -> WorldPlan {
     WorldPlan { ground: surface.clone(), surface, start_y_m: -20.0, ..plan(1) }
 }
@@ -17,8 +17,7 @@ pub(super) fn run(simulation: &mut Simulation, seconds: f32) {
     (0..steps).for_each(|_| simulation.step(&[]).expect("healthy"));
 }
 
-/// Height that the underside of a block reaches after its first impact, in metres, when it falls flat from
-/// `height_m`.
+/// Returns the height that the underside of a block reaches after its first impact, in metres, when the block falls flat from `height_m`.
 fn rebound_m(surface: Surface, height_m: f32) -> f32 {
     let mut plan = block(surface);
     plan.physics.steps_per_s = 240;
@@ -41,7 +40,7 @@ fn a_block_slides_only_past_the_friction_angle() {
         let slid_m = |tangent: f32| {
             let mut simulation =
                 Simulation::new(&block(Surface { friction, ..Default::default() }));
-            // A slope of this angle, seen from the slope.
+            // Tilted gravity stands for a slope of this angle, in the frame of the slope.
             let angle = libm::atanf(tangent);
             simulation.physics.gravity =
                 Vector::new(0.0, -libm::sinf(angle), -libm::cosf(angle)) * 9.81;
@@ -139,7 +138,7 @@ fn a_soft_skin_on_hard_ground_sinks_as_soft_ground_does() {
     assert!((sunk_m / expected_m - 1.0).abs() < 0.03, "{sunk_m} m for {expected_m} m");
 }
 
-/// The speed at which a block creeps under a steady push, in m/s.
+/// Returns the speed at which a block creeps under a steady push, in m/s.
 fn creep_m_s(surface: Surface, push_n: f32) -> f32 {
     let mut simulation = Simulation::new(&block(surface));
     for _ in 0..420 {
@@ -152,7 +151,7 @@ fn creep_m_s(surface: Surface, push_n: f32) -> f32 {
 
 in_both_engines!(creep_is_proportional_to_slip_and_to_force);
 fn creep_is_proportional_to_slip_and_to_force() {
-    // The cone ends at 49 N.
+    // The friction cone ends at 49 N.
     for slip_m_s_per_n in [0.001, 0.01, 0.05] {
         for push_n in [-10.0, 20.0, 40.0] {
             let surface = Surface { slip_m_s_per_n, ..Default::default() };
@@ -182,7 +181,7 @@ fn dampen_halves_a_sliding_blocks_speed_in_the_computed_time() {
         run(&mut simulation, half_life_s);
         let speed_m_s = body(&mut simulation).linvel().y;
         assert!((speed_m_s - 1.0).abs() < 0.02, "{speed_m_s} m/s after {half_life_s} s");
-        // In the air nothing slows it, from the first whole step on.
+        // In the air nothing slows the block, from the first whole step on.
         let above = body(&mut simulation).translation() + Vector::new(0.0, 0.0, 20.0);
         body(&mut simulation).set_translation(above, true);
         run(&mut simulation, 0.1);
@@ -235,7 +234,7 @@ fn contacts_pass_the_hooks_only_where_a_parameter_needs_them() {
     assert_eq!(hooked(slip), 11, "ten steps and the ground, and no limb");
 }
 
-/// Largest rise of the mechanical energy of a thrown, limp snake above any earlier value, in J, and its initial
+/// Returns the largest rise of the mechanical energy of a thrown, limp snake above any earlier value, in J, and the snake's initial
 /// energy, in J.
 fn energy_gained_j(surface: Surface) -> (f32, f32) {
     let mut plan = WorldPlan { ground: surface.clone(), surface, start_y_m: -20.0, ..plan(5) };
