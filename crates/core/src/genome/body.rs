@@ -1,4 +1,4 @@
-//! The genes of the body, which every genome has.
+//! The genes of the body. Every genome has them.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
@@ -10,7 +10,8 @@ use super::limits::{DENSITY, LIMIT};
 use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
 
-/// The limits of the joints and the material, or a body of its own. Champion files store it as it stands here.
+/// Genes of the body: either the limits of the joints and the density, or a whole body from the genome. Champion files store these fields
+/// as they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyGenes {
@@ -20,17 +21,17 @@ pub struct BodyGenes {
     pub twist_limit_rad: f32,
     /// Density of the material, in kg/m³.
     pub density_kg_m3: f32,
-    /// The blocks of a body of its own, from the head; empty if the trial determines the blocks. With blocks of its own,
-    /// the three genes above have no effect and are 0.
+    /// Blocks of the body, from the head; empty if the trial determines the blocks. With blocks in the genome, the three genes above have
+    /// no effect and are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub segments: Vec<Segment>,
-    /// The graph of a branching body of its own; empty for any other.
+    /// Graph of a branching body; empty for all other bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nodes: Vec<BodyNode>,
 }
 
 impl BodyGenes {
-    /// Genes of zeros.
+    /// Genes that are all 0, for a body whose blocks the trial determines.
     pub(super) const ZEROED: Self = Self {
         bend_limit_rad: 0.0,
         twist_limit_rad: 0.0,
@@ -44,28 +45,28 @@ impl BodyGenes {
         !self.segments.is_empty() || self.is_branching()
     }
 
-    /// Whether the body grows from a graph.
+    /// Returns whether the body grows from a graph and can branch.
     pub fn is_branching(&self) -> bool {
         !self.nodes.is_empty()
     }
 
-    /// Whether these genes make blocks soft.
+    /// Returns whether these genes contain a modulus of elasticity, which can make blocks soft.
     pub fn is_soft(&self) -> bool {
         self.segments.iter().any(|segment| segment.youngs_modulus_pa.is_some())
     }
 
-    /// Number of blocks of a body of its own; 0 without.
+    /// Returns the number of blocks or parts that the genes determine; 0 if the trial determines the blocks.
     pub fn block_count(&self) -> usize {
         if self.is_branching() { grow(&self.nodes).len() } else { self.segments.len() }
     }
 
-    /// Length of its chain of blocks, in metres; 0 without one.
+    /// Returns the length of the chain of blocks in the genome, in metres; 0 without such a chain.
     pub fn chain_length_m(&self) -> f64 {
         self.segments.iter().map(|segment| f64::from(segment.length_m)).sum()
     }
 
-    /// Ids which tell bodies of different structures apart: of each block, or one for the tree of a creature; empty without a
-    /// body of its own.
+    /// Returns ids which tell bodies of different structures apart: one id per block, or a single one for the tree of a branching body;
+    /// empty if the trial determines the blocks.
     pub fn block_ids(&self) -> Vec<u64> {
         if self.is_branching() {
             return vec![xxhash_rust::xxh3::xxh3_64(joint_tree(&self.nodes).as_bytes())];
@@ -73,8 +74,8 @@ impl BodyGenes {
         self.segments.iter().map(|segment| segment.id).collect()
     }
 
-    /// Hashes what belongs to a body of its own besides the values of its genes: the descent of its blocks, and the joint
-    /// of its head, which has no effect yet.
+    /// Hashes the parts of a body in the genome that its genes do not contain: the ids and the graph, which show its descent, and the
+    /// joint of its head, which has no effect as long as no block is in front of the head.
     pub(super) fn hash_descent(&self, hash: &mut Xxh3Default) {
         hash_structure(&self.nodes, hash);
         for segment in &self.segments {
@@ -88,20 +89,20 @@ impl BodyGenes {
         );
     }
 
-    /// Genes of a body with these blocks of its own.
+    /// Returns the genes of a body with these blocks.
     pub fn of_blocks(segments: Vec<Segment>) -> Self {
         Self { segments, ..Self::ZEROED }
     }
 
-    /// Genes of a branching body of this graph.
+    /// Returns the genes of a branching body with this graph.
     pub fn of_nodes(nodes: Vec<BodyNode>) -> Self {
         Self { nodes, ..Self::ZEROED }
     }
 
-    /// Checks every value.
+    /// Checks every gene against its limits.
     ///
     /// # Errors
-    /// The first value out of range.
+    /// Returns the first value out of range.
     pub fn check(&self) -> Result<(), Invalid> {
         if self.has_own_blocks() {
             let unused = [
@@ -142,12 +143,12 @@ impl BodyGenes {
         }
     }
 
-    /// Visits the genes that have no effect yet: those of the joint of the head.
+    /// Visits the genes that have no effect as long as no block is in front of the head: those of the joint of the head.
     pub(super) fn waiting_genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
         waiting_genes(&mut self.segments, space, genes);
     }
 
-    /// Gives every block the gene of its softness, as bodies have it whose softness evolves. A rigid block stays rigid.
+    /// Gives every block the gene of its softness, as bodies need it whose softness evolves. A rigid block stays rigid.
     pub(super) fn with_softness(mut self) -> Self {
         for segment in &mut self.segments {
             segment.youngs_modulus_pa = Some(segment.modulus_or_rigid_pa());

@@ -1,4 +1,4 @@
-//! Genomes as points of the unit cube, which lets any strategy search in any space.
+//! Genomes as points of the unit cube. With them, any strategy can search in any space.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -9,24 +9,25 @@ use super::gene::{GeneRange, Genes, GenomeShape};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
-/// A coordinate of a point: the gene that it stands for.
+/// Description of the gene that a coordinate of a point stands for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Coordinate {
-    /// The gene's dotted path in saves: `joints[0].bend.offset`.
+    /// Dotted path of the gene in saves, such as `joints[0].bend.offset`.
     pub field: String,
-    /// Its name, for people.
+    /// Name of the gene, for display.
     pub name: String,
-    /// Its unit; empty for a pure number.
+    /// Unit of the gene; empty for a pure number.
     pub unit: &'static str,
-    /// The values that it may have, in words.
+    /// Values that the gene may have, in words.
     pub allowed: String,
 }
 
-/// Share of random bodies whose blocks are nearly alike. Bodies drawn anywhere in their ranges hardly ever move at first.
+/// Share of random bodies whose blocks are nearly alike. Without them, hardly any snake would move at first, because a body drawn anywhere
+/// in its ranges hardly ever does.
 const PLAIN_SHARE: f64 = 0.5;
 
 impl GenomeSpace {
-    /// Genes of zeros, in the layout of this space.
+    /// Returns a genome whose genes are zero, with the layout of this space.
     pub(super) fn zeroed(&self, shape: GenomeShape) -> Genome {
         let mut body = BodyGenes::ZEROED;
         if self.bodies.vary && !self.has_creatures() {
@@ -35,7 +36,7 @@ impl GenomeSpace {
         Genome { body, controller: self.controller.zeroed(self, shape) }
     }
 
-    /// Visits the genes of a genome that have a choice: one for each coordinate.
+    /// Visits the genes of a genome whose range has more than one value: one for each coordinate.
     fn search_genes(&self, mut genome: Genome, mut visit: impl FnMut(GeneRange<'_>, f32)) {
         genome.visit(self, |gene, value| {
             if !gene.range.is_point() {
@@ -44,14 +45,14 @@ impl GenomeSpace {
         });
     }
 
-    /// Number of coordinates of a genome: one per gene that has a choice.
+    /// Counts the coordinates of a genome: one per gene whose range has more than one value.
     pub fn dimension(&self, shape: GenomeShape) -> usize {
         let mut count = 0;
         self.search_genes(self.zeroed(shape), |_, _| count += 1);
         count
     }
 
-    /// Number of coordinates that belong to the body. They come before those of the controller.
+    /// Counts the coordinates that belong to the body. They come before those of the controller.
     pub fn body_dimension(&self, shape: GenomeShape) -> usize {
         let mut count = 0;
         self.zeroed(shape).body.genes(
@@ -63,7 +64,7 @@ impl GenomeSpace {
         count
     }
 
-    /// The genes with a coordinate, in the order of the coordinates.
+    /// Describes the genes with a coordinate, in the order of the coordinates.
     pub fn coordinates(&self, shape: GenomeShape) -> Vec<Coordinate> {
         let mut coordinates = Vec::new();
         self.zeroed(shape).visit(self, |gene, _| {
@@ -79,13 +80,13 @@ impl GenomeSpace {
         coordinates
     }
 
-    /// The genome at a point of the unit cube: a coordinate from 0 to 1 per gene that has a choice.
-    /// Every point outside the cube has a genome too: see `GeneRange::at`.
+    /// Returns the genome at a point of the unit cube, which has a coordinate from 0 to 1 for each gene whose range has more than one
+    /// value. A point outside the cube has a genome, too: see `GeneRange::at`.
     pub fn genome_at(&self, point: &[f64], shape: GenomeShape) -> Genome {
         self.genome_by(|range, coordinate| range.at(coordinate), point, shape)
     }
 
-    /// The genome at a point whose coordinates count with all of their 64 bits: see `GeneRange::fine_at`. Strategies use
+    /// Returns the genome at a point, computed from all 64 bits of its coordinates: see `GeneRange::fine_at`. Strategies use
     /// [`Self::genome_at`].
     pub fn genome_at_fine(&self, point: &[f64], shape: GenomeShape) -> Genome {
         self.genome_by(|range, coordinate| range.fine_at(coordinate), point, shape)
@@ -107,7 +108,7 @@ impl GenomeSpace {
         genome
     }
 
-    /// The point of the unit cube that has the same genome as a point outside it.
+    /// Returns the point within the unit cube that has the same genome as a point outside it.
     pub fn wrapped(&self, point: &[f64], shape: GenomeShape) -> Vec<f64> {
         let mut coordinates = point.iter();
         let mut wrapped = Vec::with_capacity(point.len());
@@ -117,19 +118,19 @@ impl GenomeSpace {
         wrapped
     }
 
-    /// The coordinates of a genome in the unit cube: [`Self::genome_at`] returns the genome, except for rounding.
+    /// Returns the coordinates of a genome in the unit cube. From them, [`Self::genome_at`] returns the genome, except for rounding.
     pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
         self.point_by(|range, value| range.coordinate(value), genome)
     }
 
-    /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at`] returns the genome to the
-    /// last bit if it came from a point itself, otherwise except for rounding.
+    /// Returns the point of a genome that passes [`Self::check_genome`]. From it, [`Self::genome_at`] returns the genome to the last bit
+    /// if the genome came from a point itself, otherwise except for rounding.
     pub fn exact_point_of(&self, genome: &Genome) -> Vec<f64> {
         self.point_by(|range, value| range.exact_coordinate(value), genome)
     }
 
-    /// The point of a genome that passes [`Self::check_genome`]: [`Self::genome_at_fine`] returns the genome to the last bit,
-    /// except for the rare values that `GeneRange::fine_coordinate` names.
+    /// Returns the point of a genome that passes [`Self::check_genome`]. From it, [`Self::genome_at_fine`] returns the genome to the last
+    /// bit, except for the rare values that `GeneRange::fine_coordinate` names.
     pub fn fine_point_of(&self, genome: &Genome) -> Vec<f64> {
         self.point_by(|range, value| range.fine_coordinate(value), genome)
     }
@@ -140,8 +141,9 @@ impl GenomeSpace {
         point
     }
 
-    /// Lets the kind of controller complete a mutation from one point to another: see `ControllerEncoding::after_mutation`.
-    /// Genes that it leaves alone keep their coordinates to the last bit, and so do those that it returns to where they started.
+    /// Lets the kind of controller complete a mutation from one point to another: see `ControllerEncoding::after_mutation`. Genes that the
+    /// controller does not change further keep their coordinates to the last bit, and so do genes that it resets to their values before
+    /// the mutation.
     pub fn after_mutation(
         &self,
         start: &[f64],
@@ -166,8 +168,8 @@ impl GenomeSpace {
         }
     }
 
-    /// Draws a genome at random: signals by the report's random walk, other genes anywhere in their ranges. Where bodies
-    /// evolve, their number of blocks is random, too, and creatures are drawn until one can be built.
+    /// Draws a genome at random: signals by the random walk of the report, other genes anywhere in their ranges. Where bodies evolve, the
+    /// number of blocks is random, too. Branching bodies are drawn until one can be built.
     pub fn random_genome(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
         if self.has_creatures() {
             return self.random_creature(rng);
@@ -180,7 +182,7 @@ impl GenomeSpace {
         self.drawn(GenomeShape { joints, ..shape }, is_plain, rng)
     }
 
-    /// Draws a genome at random whose body has blocks that are nearly alike, one more than the joints of a shape.
+    /// Draws a genome at random whose body has nearly equal blocks, one more than the joints of the shape.
     pub fn random_genome_of_plain_body(&self, shape: GenomeShape, rng: &mut ChaCha8Rng) -> Genome {
         self.drawn(shape, true, rng)
     }
@@ -195,8 +197,8 @@ impl GenomeSpace {
         Genome { body, controller }
     }
 
-    /// A child: the parent with every torque of its signals shifted at random within ±`shift_nm`, and the other
-    /// genes by the same share of their own ranges. The joint limits are inherited.
+    /// Returns a child of the parent. Every torque of its signals is shifted at random within ±`shift_nm`, and every other gene by the
+    /// same share of its own range. The joint limits are inherited.
     pub fn mutate(&self, parent: &Genome, shift_nm: f32, rng: &mut ChaCha8Rng) -> Genome {
         let Genome { mut body, mut controller } = parent.clone();
         controller.encoding_mut().mutate(&mut body, self, shift_nm, rng);
@@ -204,7 +206,7 @@ impl GenomeSpace {
         Genome { body, controller }
     }
 
-    /// The share of the range of torques that a shift is, at most 1.
+    /// Returns a shift of torque as a share of the range of torques, at most 1.
     pub(super) fn shift_share(&self, shift_nm: f32) -> f32 {
         (shift_nm / self.torque_range_nm).min(1.0)
     }
@@ -320,7 +322,7 @@ mod tests {
                 returned += point.iter().zip(&start).filter(|(a, b)| a == b).count();
             }
             if kind == ControllerKind::LimbNeurons {
-                // Six genes belong to body, servo and beat; some neurons are new.
+                // Six genes belong to body, servo and beat, and some neurons are new.
                 let share = returned as f64 / (50 * (dimension - 6)) as f64;
                 assert!((0.8..0.95).contains(&share) && kept >= 50 * 6, "{share}, {kept}");
             } else {

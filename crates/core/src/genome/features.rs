@@ -1,12 +1,12 @@
-//! The features of a genome: its genes by name, or a summary where these are hundreds of torques.
+//! The features of a genome: its genes by name, or a summary where the genes are hundreds of torques.
 
 use super::gene::{Feature, Gene, Genes};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
 impl GenomeSpace {
-    /// The features of a genome of this space, in a fixed order: those of the body, then those of the controller.
-    /// Genes without a choice are left out.
+    /// Returns the features of a genome of this space, in a fixed order: first those of the body, then those of the controller. Genes
+    /// whose range has only one value are left out.
     pub fn features(&self, genome: &Genome) -> Vec<Feature> {
         let mut features = Vec::new();
         let mut add = |gene: Gene<'_>, value: &mut f32| {

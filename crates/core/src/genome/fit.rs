@@ -1,4 +1,4 @@
-//! Whether a genome fits into a space, and the space into which it fits.
+//! Checks whether a genome fits into a space, and widens a space so that a genome fits.
 
 use super::chain::{BodySpace, Segment};
 use super::creature::{CreatureSpace, grow};
@@ -17,13 +17,14 @@ fn volume_m3(segments: &[Segment]) -> f64 {
 }
 
 impl GenomeSpace {
-    /// Checks that this space could have produced a genome: its kind, its layout, and every gene.
+    /// Checks that this space could have produced a genome: its kind of controller, its layout, and every gene.
     ///
     /// # Errors
-    /// The first thing about it that does not fit, by its name in saves.
+    /// Returns the first value that does not fit, with its name in saves.
     pub fn check_genome(&self, genome: &Genome, shape: GenomeShape) -> Result<(), Invalid> {
         same("controller", genome.controller.kind(), self.controller)?;
-        // A setting that differs says more than the lengths that follow from it.
+        // Fixed genes, which are settings, are checked first: a differing setting explains more than the differing lengths that follow
+        // from it.
         let is_setting = |range: &GeneRange<'_>| matches!(range, GeneRange::Fixed(_));
         check_genes(
             |gene| Some(gene.range).filter(is_setting),
@@ -40,16 +41,16 @@ impl GenomeSpace {
         )
     }
 
-    /// Checks that a genome has the kind, the joints and the lengths of lists that this space prescribes.
+    /// Checks that a genome has the kind of controller, the joints and the lengths of lists that this space prescribes.
     ///
     /// # Errors
-    /// The first difference.
+    /// Returns the first difference.
     pub fn check_layout(&self, genome: &Genome, shape: GenomeShape) -> Result<(), Invalid> {
         same("controller", genome.controller.kind(), self.controller)?;
         let shape = self.shape_of(genome, shape)?;
         same("controller joints", genome.controller.joints(), shape.joints)?;
         if self.has_creatures() {
-            // Each creature has a layout of its own.
+            // The layout of a creature's genome follows from its own graph.
             let mut found = Vec::new();
             genome.controller.encoding().lengths(&mut |_, length, _| found.push(length));
             return same(
@@ -72,7 +73,7 @@ impl GenomeSpace {
         same("genes", genome.gene_count(), zeroed.gene_count())
     }
 
-    /// The shape that a genome must have: its own number of joints where bodies evolve.
+    /// Returns the shape that a genome must have. Where bodies evolve, it has the genome's own number of joints.
     fn shape_of(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
         let segments = &genome.body.segments;
         if !self.has_creatures() {
@@ -98,7 +99,7 @@ impl GenomeSpace {
         Ok(GenomeShape { joints: segments.len() - 1, ..shape })
     }
 
-    /// The shape that a creature must have: as many joints as grow.
+    /// Returns the shape that the genome of a creature must have: with as many joints as grow from its graph.
     fn creature_shape(&self, genome: &Genome, shape: GenomeShape) -> Result<GenomeShape, Invalid> {
         let nodes = &genome.body.nodes;
         let grown = grow(nodes);
@@ -117,7 +118,7 @@ impl GenomeSpace {
         Ok(GenomeShape { joints: grown.len() - 1, ..shape })
     }
 
-    /// A genome with all genes that bodies of this space have: a founder may lack that of softness.
+    /// Returns a genome with all genes that bodies of this space have. The genome of a founder may lack the gene of softness.
     pub fn with_all_genes(&self, mut genome: Genome) -> Genome {
         if self.bodies.vary && self.bodies.soft {
             genome.body = genome.body.with_softness();
@@ -125,8 +126,7 @@ impl GenomeSpace {
         genome
     }
 
-    /// This space, widened as far as necessary to contain a genome. Settings that the genome says nothing about
-    /// stay.
+    /// Returns this space, widened as far as necessary to contain a genome. Settings that do not follow from the genome stay.
     #[must_use]
     pub fn widened_for(&self, genome: &Genome) -> Self {
         let mut space = Self { controller: genome.controller.kind(), ..self.clone() };
@@ -164,7 +164,7 @@ mod tests {
                 space.check_genome(&genome, SHAPE).expect("its own");
                 let again = space.genome_at(&space.exact_point_of(&genome), SHAPE);
                 let phases_aside = |mut genome: Genome| {
-                    // A turn restarts where it ends: values that differ in the last bit are the same angle.
+                    // A full turn is the angle 0, so values that differ in the last bit can be the same angle.
                     if let ControllerGenes::Wave(waves)
                     | ControllerGenes::Gait(Gait { waves, .. }) = &mut genome.controller
                     {

@@ -8,71 +8,71 @@ use std::ops::RangeInclusive;
 
 use crate::check::Invalid;
 
-/// The shape of a genome: the number of joints that it drives, and how long it has to last.
+/// What determines the layout of a genome: the number of joints that it drives, and the length of the trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GenomeShape {
-    /// Joints of the snake.
+    /// Number of joints of the snake.
     pub joints: usize,
     /// Length of the trial, in seconds.
     pub duration_s: f32,
 }
 
-/// A gene as a visitor sees it, beside its value. Names are formatted only where they are needed.
+/// A gene as a visitor receives it, beside its value. Its names are formatted only where they are needed.
 #[derive(Debug, Clone, Copy)]
 pub struct Gene<'a> {
-    /// Its dotted path, for messages: `joints[0].bend.offset`.
+    /// Dotted path of the gene, for messages, such as `joints[0].bend.offset`.
     pub field: Arguments<'a>,
-    /// Its name, for charts: "joint 1 bend, offset".
+    /// Name of the gene, for charts, such as "joint 1 bend, offset".
     pub name: Arguments<'a>,
-    /// Its unit, and its limits in every space.
+    /// Unit of the gene, and the limits of its value in every space.
     pub quantity: Quantity,
-    /// The values that it may have in the space.
+    /// Values that the gene may have in the space.
     pub range: GeneRange<'a>,
 }
 
 /// The quantity that a gene measures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
-    /// The unit; empty for a pure number.
+    /// Unit of the quantity; empty for a pure number.
     pub unit: &'static str,
-    /// The least and the greatest value in any file. The ranges of spaces lie within them.
+    /// Least and greatest value in any file. The ranges of spaces lie within these limits.
     pub limits: [f32; 2],
 }
 
 impl Quantity {
-    /// A quantity with a unit and limits.
+    /// Creates a quantity with a unit and limits.
     pub const fn new(unit: &'static str, limits: RangeInclusive<f32>) -> Self {
         Self { unit, limits: [*limits.start(), *limits.end()] }
     }
 
-    /// Its values in any file.
+    /// Returns the range of values in any file.
     pub(super) fn range(self) -> GeneRange<'static> {
         let [least, most] = self.limits;
         GeneRange::Between(least, most)
     }
 
-    /// A pure number within limits.
+    /// Creates a pure number with limits.
     pub const fn pure(limits: RangeInclusive<f32>) -> Self {
         Self::new("", limits)
     }
 }
 
-/// Takes the genes of a genome one by one to a function.
+/// Passes the genes of a genome one by one to a function.
 pub struct Genes<'a> {
-    /// Text in front of the path of each gene.
+    /// Text in front of the path of each visited gene.
     field: &'a dyn Display,
-    /// Text in front of the name of each gene.
+    /// Text in front of the name of each visited gene.
     name: &'a dyn Display,
     visit: &'a mut dyn FnMut(Gene<'_>, &mut f32),
 }
 
 impl<'a> Genes<'a> {
-    /// Takes each gene to a function.
+    /// Creates a visitor that passes each gene to a function.
     pub fn to(visit: &'a mut dyn FnMut(Gene<'_>, &mut f32)) -> Self {
         Self { field: &"", name: &"", visit }
     }
 
-    /// Visits the genes of a part, with a text in front of their paths and names.
+    /// Visits the genes of a part of the genome, with additional text in front of their paths and names.
     pub fn inside(
         &mut self,
         field: impl Display,
@@ -87,7 +87,7 @@ impl<'a> Genes<'a> {
         });
     }
 
-    /// Visits a gene. Its order among all genes is part of the bits of a run.
+    /// Visits a gene. The order of all genes influences the bits of a run.
     pub fn gene(
         &mut self,
         field: impl Display,
@@ -103,10 +103,10 @@ impl<'a> Genes<'a> {
     }
 }
 
-/// Checks the genes that are visited against what is allowed for each; none means anything.
+/// Checks each visited gene against the range that `allowed` returns for it; `None` allows every value.
 ///
 /// # Errors
-/// The first gene with a value that is not allowed.
+/// Returns the first gene whose value is not allowed.
 pub fn check_genes(
     allowed: impl for<'g> Fn(&Gene<'g>) -> Option<GeneRange<'g>>,
     genes: impl FnOnce(&mut Genes<'_>),
@@ -121,24 +121,24 @@ pub fn check_genes(
     result
 }
 
-/// Checks the genes that are visited against the limits of every space.
+/// Checks each visited gene against its limits in every space.
 ///
 /// # Errors
-/// The first gene with a value beyond them.
+/// Returns the first gene with a value beyond its limits.
 pub fn check_limits(genes: impl FnOnce(&mut Genes<'_>)) -> Result<(), Invalid> {
     check_genes(|gene| Some(gene.quantity.range()), genes)
 }
 
-/// A number of a genome that people can compare: a gene, or a summary of many.
+/// A number of a genome that people can compare: a gene, or a summary of many genes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Feature {
-    /// Its name.
+    /// Name of the feature.
     pub name: String,
-    /// Its unit; empty for a pure number.
+    /// Unit of the feature; empty for a pure number.
     pub unit: &'static str,
-    /// Its value.
+    /// Value of the feature.
     pub value: f32,
-    /// The position of the value in its range, from 0 to 1.
+    /// Position of the value in its range, from 0 to 1.
     pub share: f64,
 }
 
@@ -151,25 +151,25 @@ impl Feature {
 /// The values that a gene may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GeneRange<'a> {
-    /// Only this one: a setting of the space that the genome carries.
+    /// Only this value, which is a setting of the space that the genome carries.
     Fixed(f32),
-    /// Any from one end to the other.
+    /// Any value from the first to the second.
     Between(f32, f32),
-    /// Any from one positive end to the other; equal ratios are equally far apart.
+    /// Any value from the first to the second, both positive. Equal ratios are equally far apart.
     Ratio(f32, f32),
-    /// An angle in radians, where a full turn equals none.
+    /// Any angle in radians; a full turn is equal to 0.
     Turn,
-    /// One of a list.
+    /// One of these values.
     OneOf(&'a [f32]),
 }
 
 impl GeneRange<'_> {
-    /// Any value up to this size on both sides of 0.
+    /// Returns the range of values up to this size on both sides of 0.
     pub fn around_zero(most: f32) -> Self {
         Self::Between(-most, most)
     }
 
-    /// Whether there is no choice, so that a search needs no coordinate for the gene.
+    /// Returns whether the range has only one value, so that a search needs no coordinate for the gene.
     pub fn is_point(self) -> bool {
         match self {
             Self::Fixed(_) => true,
@@ -179,8 +179,8 @@ impl GeneRange<'_> {
         }
     }
 
-    /// The value at a coordinate. A turn repeats; beyond the ends of another range the coordinate is reflected,
-    /// so that every coordinate has a value and a small step remains a small step.
+    /// Returns the value at a coordinate. Outside 0 to 1, the coordinate of a turn repeats, and the coordinate of any other range is
+    /// reflected at its ends. Every coordinate therefore has a value, and a small step remains a small step.
     pub fn at(self, coordinate: f64) -> f32 {
         let wrapped = self.wrapped(coordinate);
         match self {
@@ -201,7 +201,7 @@ impl GeneRange<'_> {
         }
     }
 
-    /// The coordinate from 0 to 1 that has the same value.
+    /// Returns the coordinate from 0 to 1 that has the same value as any coordinate.
     pub fn wrapped(self, coordinate: f64) -> f64 {
         if !coordinate.is_finite() {
             return 0.0;
@@ -213,7 +213,7 @@ impl GeneRange<'_> {
         if wrapped > 1.0 { 2.0 - wrapped } else { wrapped }
     }
 
-    /// A coordinate of a value: [`Self::at`] returns that value, except for rounding.
+    /// Returns a coordinate of a value, from which [`Self::at`] returns the value, except for rounding.
     pub fn coordinate(self, value: f32) -> f64 {
         match self {
             Self::Fixed(_) => 0.0,
@@ -230,11 +230,11 @@ impl GeneRange<'_> {
         }
     }
 
-    /// A coordinate at which [`Self::at`] returns the value to the last bit, where there is one.
+    /// Returns a coordinate at which [`Self::at`] returns the value to the last bit, if there is one, otherwise one nearby.
     pub fn exact_coordinate(self, value: f32) -> f64 {
         let near = self.coordinate(value);
         let Self::Between(..) = self else { return near };
-        // The value at a coordinate depends on its nearest 32-bit float.
+        // The value depends only on the coordinate rounded to a 32-bit float.
         let (mut below, mut above) = (near as f32, near as f32);
         for _ in 0..4 {
             for candidate in [below, above] {
@@ -247,8 +247,8 @@ impl GeneRange<'_> {
         near
     }
 
-    /// The value at a coordinate, computed in 64 bits and rounded once. [`Self::at`] knows only the coordinates that 32 bits
-    /// can hold, so it leaves out most values of a range.
+    /// Returns the value at a coordinate, computed in 64 bits and rounded once. [`Self::at`] only uses coordinates rounded to 32 bits, so
+    /// it leaves out most values of a range.
     pub fn fine_at(self, coordinate: f64) -> f32 {
         let wrapped = self.wrapped(coordinate);
         match self {
@@ -261,9 +261,9 @@ impl GeneRange<'_> {
         }
     }
 
-    /// A coordinate at which [`Self::fine_at`] returns the value to the last bit. There is none for an angle beyond a full turn,
-    /// nor for a value so near to 0, in a range on both sides of it, that even 64 bits cannot tell it from its neighbours; then
-    /// a coordinate nearby.
+    /// Returns a coordinate at which [`Self::fine_at`] returns the value to the last bit. For an angle beyond a full turn there is none.
+    /// Nor is there one for a value so close to 0, within a range on both sides of 0, that even 64 bits cannot tell it from its
+    /// neighbours. For these it returns a coordinate nearby.
     pub fn fine_coordinate(self, value: f32) -> f64 {
         let near = match self {
             Self::Between(least, most) => {
@@ -286,7 +286,7 @@ impl GeneRange<'_> {
         near
     }
 
-    /// Whether a gene may have this value.
+    /// Returns whether a gene with this range may have this value.
     pub fn contains(self, value: f32) -> bool {
         match self {
             Self::Fixed(only) => value == only,
@@ -298,7 +298,7 @@ impl GeneRange<'_> {
         }
     }
 
-    /// The allowed values, in words.
+    /// Describes the allowed values in words.
     pub fn words(self) -> String {
         match self {
             Self::Fixed(only) => only.to_string(),
@@ -317,7 +317,7 @@ impl GeneRange<'_> {
         }
     }
 
-    /// A random value, all coordinates equally likely.
+    /// Draws a value at random. All coordinates are equally likely.
     pub fn random(self, rng: &mut ChaCha8Rng) -> f32 {
         match self {
             Self::Fixed(value) => value,
@@ -325,13 +325,13 @@ impl GeneRange<'_> {
         }
     }
 
-    /// A value shifted at random by at most `share` of the range. A choice from a list stays.
+    /// Shifts a value at random by at most `share` of the range. A choice from a list stays as it is.
     pub fn shift(self, value: f32, share: f32, rng: &mut ChaCha8Rng) -> f32 {
         match self {
             Self::Between(least, most) => {
                 let (middle, half) = ((least + most) / 2.0, (most - least) / 2.0);
                 let shifted = middle + shifted(value - middle, share * half, half, rng);
-                // Rounding could leave the range.
+                // Rounding could move the value out of the range.
                 shifted.clamp(least, most)
             }
             Self::Ratio(..) => {

@@ -9,11 +9,11 @@ use super::gene::{Gene, Genes};
 use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
 
-/// One individual. Champion files store it as it stands here.
+/// One individual. Champion files store these fields as they are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Genome {
-    /// The limits of the joints and the material.
+    /// Genes of the body: the limits of the joints and the material, or a body of the individual's own.
     pub body: BodyGenes,
     /// The genes that drive the joints.
     pub controller: ControllerGenes,
@@ -31,10 +31,11 @@ impl Genome {
         self.genes(space, &mut Genes::to(&mut visit));
     }
 
-    /// Checks that neurons of parts belong to a branching body, and each node of such a body has its neurons.
+    /// Checks that a controller of the kind `part_neurons` has neurons for each node of a branching body, and that a branching body has a
+    /// controller of this kind.
     ///
     /// # Errors
-    /// The first of both that does not hold.
+    /// Returns the first of these two conditions that does not hold.
     pub fn check_neurons(&self) -> Result<(), Invalid> {
         let nodes = self.body.nodes.len();
         match &self.controller {
@@ -56,11 +57,11 @@ impl Genome {
         count
     }
 
-    /// A hash (XXH3, 64 bits) over the bits of all genes: equal genomes have equal hashes. It seeds repeated
-    /// trials, so the order of genes is part of the bits of a run.
+    /// Returns a hash (XXH3, 64 bits) over the bits of all genes. Equal genomes have equal hashes. The hash seeds repeated trials, so the
+    /// order of genes influences the bits of a run.
     pub fn hash(&self) -> u64 {
         let mut hash = Xxh3Default::new();
-        // Values alone are hashed, so any space serves.
+        // Only values are hashed, not ranges, so any space will do.
         self.clone().visit(&GenomeSpace::default(), |_, value| {
             hash.update(&value.to_bits().to_le_bytes());
         });

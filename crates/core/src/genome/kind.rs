@@ -1,4 +1,4 @@
-//! The kinds of controllers, by name only; `controllers` registers the genes of each kind.
+//! The kinds of controllers, by name only. The module `controllers` registers the genes of each kind.
 
 use std::fmt;
 
@@ -30,25 +30,25 @@ choices! {
 }
 
 impl ControllerKind {
-    /// All kinds, the report's first.
+    /// All kinds of controllers; the one of the report comes first.
     pub const ALL: &'static [Self] = Self::OPTIONS;
 
-    /// The name in files; flags may write - for _.
+    /// Returns the name of the kind in files. Command-line flags may contain - instead of _.
     pub fn name(self) -> &'static str {
         self.choice().name
     }
 
-    /// The name at the head of a list or a chart.
+    /// Returns the name of the kind for the head of a list or a chart.
     pub fn title(self) -> &'static str {
         self.choice().title
     }
 
-    /// A sentence about it.
+    /// Returns a sentence that describes the kind.
     pub fn words(self) -> String {
         self.choice().sentence
     }
 
-    /// Whether it senses contacts, attitude and the stairs ahead, beside its joints.
+    /// Returns whether the controller senses contacts, attitude and the stairs ahead, besides its joints.
     pub fn senses_surroundings(self) -> bool {
         !matches!(self, Self::Signal | Self::Wave | Self::Gait)
     }

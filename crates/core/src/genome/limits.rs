@@ -1,31 +1,31 @@
-//! Limits of bodies in every space of genomes.
+//! Limits of genes in every space of genomes.
 
 use std::ops::RangeInclusive;
 
 use super::gene::Quantity;
 
-/// Half a turn is where a joint angle wraps around; a limit stays clear of it.
+/// Largest limit of a joint, in radians: less than half a turn, at which a joint angle wraps around.
 pub const LARGEST_LIMIT_RAD: f32 = 3.0;
-/// The range of every size of a block or a part in a file, in metres: that of the sizes in settings.
+/// Range of every size of a block or a part in a file, in metres. It is equal to the range of sizes in settings.
 pub const SIZE_RANGE_M: RangeInclusive<f32> = 0.1..=10.0;
-/// The range of every density, in kg/m³: from a balloon to tungsten.
+/// Range of every density, in kg/m³: from a balloon to tungsten.
 pub const DENSITY_RANGE_KG_M3: RangeInclusive<f32> = 0.1..=20_000.0;
-/// The range of every Young's modulus, in Pa: from a soap bubble to rubber.
+/// Range of every Young's modulus, in Pa: from a soap bubble to rubber.
 pub const MODULUS_RANGE_PA: RangeInclusive<f32> = 1.0..=1.0e7;
 
-/// A size of a block or a part.
+/// Quantity of a size of a block or a part.
 pub const SIZE: Quantity = Quantity::new("m", SIZE_RANGE_M);
-/// A density.
+/// Quantity of a density.
 pub const DENSITY: Quantity = Quantity::new("kg/m³", DENSITY_RANGE_KG_M3);
-/// A Young's modulus.
+/// Quantity of a Young's modulus.
 pub const MODULUS: Quantity = Quantity::new("Pa", MODULUS_RANGE_PA);
-/// A limit of a joint to either side, or another angle up to one.
+/// Quantity of a joint's limit to either side, or of another angle within such a limit.
 pub const LIMIT: Quantity = Quantity::new("rad", 0.0..=LARGEST_LIMIT_RAD);
-/// A share of a whole.
+/// Quantity of a share of a whole.
 pub const SHARE: Quantity = Quantity::pure(0.0..=1.0);
-/// A share to either side of a middle.
+/// Quantity of a share to either side of a middle.
 pub const SIDED_SHARE: Quantity = Quantity::pure(-1.0..=1.0);
-/// A phase. One turn is enough; a little more is no harm.
+/// Quantity of a phase. The range is larger than one turn, although one turn is enough.
 pub const PHASE: Quantity = Quantity::new("rad", -10.0..=10.0);
 
 #[cfg(test)]
@@ -35,7 +35,7 @@ mod tests {
     use crate::genome::{ControllerKind, Genome, GenomeShape, GenomeSpace};
     use crate::rng::{Purpose, stream};
 
-    /// A random genome of each kind of controller, and one with soft blocks of its own.
+    /// Returns a random genome of each kind of controller, and one with soft blocks of its own.
     fn genomes() -> Vec<Genome> {
         let of_kind = |&controller| GenomeSpace { controller, ..GenomeSpace::default() };
         let mut spaces: Vec<GenomeSpace> = ControllerKind::ALL.iter().map(of_kind).collect();
@@ -57,7 +57,7 @@ mod tests {
         genome.genes(&space, genes);
     }
 
-    /// The genome with another value of one gene. None where the gene is a choice, which cannot have such a value.
+    /// Returns the genome with another value of one gene; `None` if the gene is a choice from a list, which cannot have this value.
     fn with_value(genome: &Genome, index: usize, wanted: f32) -> Option<Genome> {
         let mut changed = genome.clone();
         let mut left = index;
@@ -95,7 +95,7 @@ mod tests {
                     let expected = format!("{field} is {beyond}; allowed: {allowed}");
                     assert!(message.ends_with(&expected), "{message}, not {expected}");
                 }
-                // A body of such parts may be impossible for another reason.
+                // A body with such parts may be impossible for another reason.
                 for value in [least, most] {
                     let Some(changed) = with_value(&genome, index, value) else { continue };
                     let message = check(&changed).err().map_or(String::new(), |e| e.to_string());

@@ -1,7 +1,7 @@
 //! Genomes: the limits of the joints, the material of the body, and the genes that drive the joints.
 //!
-//! Plain data that can be written down and read back. How a genome is drawn and varied is in
-//! [`GenomeSpace`]; what it does to a body is decided in `score`, where it meets a trial.
+//! A genome is plain data that can be saved and loaded. [`GenomeSpace`] determines how genomes are drawn and varied; `score` combines a
+//! genome with a trial and determines its effect on a body.
 
 mod body;
 mod chain;

@@ -1,4 +1,4 @@
-//! The ranges of controllers that sense their surroundings.
+//! The ranges of the genes of controllers that sense their surroundings.
 
 use std::ops::RangeInclusive;
 
@@ -8,20 +8,20 @@ use crate::schema::{number, setting_group, switch, whole};
 setting_group! {
     /// Ranges of the genes of reflexes, networks and rules.
     pub struct NetworkSpace in "Reflexes, networks and rules": "Ranges of controllers that sense their surroundings." {
-        /// Greatest size of a weight of a network of tanh neurons.
+        /// Greatest absolute value of a weight of a network of tanh neurons.
         weight_range: f32 = 4.0,
             number("Weight range", WEIGHT_RANGES).advanced()
                 .hint("Weights of a network stay between minus and plus this value. Large weights make neurons switches")
                 .slider(0.1, 20.0)
                 .logarithmic_from(0.1);
 
-        /// Hidden neurons of a modular or central network.
+        /// Number of hidden neurons of a modular or central network.
         hidden: u32 = 4,
             whole("Hidden neurons", 1..=MOST_HIDDEN)
                 .hint("Neurons between senses and joints: of each joint's module, or of the whole central network")
                 .slider(1.0, 16.0);
 
-        /// Greatest size of a reflex's weight.
+        /// Greatest absolute value of a weight of a reflex.
         reflex_weight_range: f32 = 1.0,
             number("Reflex weight range", WEIGHT_RANGES).advanced()
                 .hint("Weights of the senses in a reflex stay between minus and plus this value")
@@ -42,25 +42,25 @@ setting_group! {
                 .hint("Maximum rate at which load or resistance delays or advances a joint's wave")
                 .slider(0.0, 10.0);
 
-        /// Greatest size of a weight or bias of a continuous-time network.
+        /// Greatest absolute value of a weight or bias of a continuous-time network.
         ctrnn_weight_range: f32 = 16.0,
             number("CTRNN weight range", WEIGHT_RANGES).advanced()
                 .hint("Weights and biases of a continuous-time network stay between minus and plus this value")
                 .slider(1.0, 30.0);
 
-        /// Waves among which rules choose.
+        /// Number of waves among which rules choose.
         library_waves: u32 = 4,
             whole("Waves to choose from", 1..=MOST_LIBRARY_WAVES as u32)
                 .hint("Number of waves among which rules choose. Each has a frequency of its own")
                 .slider(1.0, 8.0);
 
-        /// Rules that choose among waves.
+        /// Number of rules that choose among waves.
         wave_rules: u32 = 12,
             whole("Rules", 1..=MOST_WAVE_RULES as u32)
                 .hint("Number of rules that choose a wave by what the snake senses")
                 .slider(1.0, 32.0);
 
-        /// Whether all limbs have the same neurons, of a controller with neurons in the limbs.
+        /// Whether all limbs have the same neurons, for controllers with neurons in the limbs.
         limb_neurons_shared: bool = true,
             switch("Same neurons in all limbs")
                 .hint("Limb neurons are the same in every limb. Otherwise each limb evolves its own, which multiplies the genes");
@@ -68,19 +68,19 @@ setting_group! {
 }
 
 impl NetworkSpace {
-    /// The range of weights and biases.
+    /// Returns the range of weights and biases of tanh neurons.
     pub(super) fn weights(&self) -> GeneRange<'static> {
         GeneRange::around_zero(self.weight_range)
     }
 }
 
-/// The range of every range of weights.
+/// Range that settings allow for every range of weights.
 const WEIGHT_RANGES: RangeInclusive<f32> = 0.01..=100.0;
-/// The most hidden neurons. Beyond them no evolution finds its way.
+/// Greatest number of hidden neurons. With more, evolution hardly makes progress.
 pub const MOST_HIDDEN: u32 = 32;
-/// The most waves among which rules choose.
+/// Greatest number of waves among which rules choose.
 pub const MOST_LIBRARY_WAVES: usize = 8;
-/// The most rules that choose among waves.
+/// Greatest number of rules that choose among waves.
 pub const MOST_WAVE_RULES: usize = 64;
-/// A weight or a bias.
+/// Quantity of a weight or a bias.
 pub const WEIGHT: Quantity = Quantity::pure(-100.0..=100.0);

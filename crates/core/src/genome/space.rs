@@ -1,4 +1,4 @@
-//! The space genomes are drawn from: the range of every gene.
+//! The space from which genomes are drawn: the range of every gene.
 
 use super::chain::BodySpace;
 use super::creature::CreatureSpace;
@@ -14,30 +14,30 @@ use crate::schema::{
 };
 
 setting_group! {
-    /// Ranges and lists that every genome is drawn from.
+    /// Ranges and lists from which every genome is drawn.
     pub struct GenomeSpace {
         /// The kind of controller that drives the joints.
         controller: ControllerKind = ControllerKind::Signal;
         /// Ranges of periodic controllers.
         wave: WaveSpace = WaveSpace::default();
-        /// Ranges of reflexes and networks.
+        /// Ranges of controllers that sense their surroundings, such as reflexes and networks.
         #[serde(default, skip_serializing_if = "is_default")]
         network: NetworkSpace = NetworkSpace::default();
         /// Ranges of bodies that evolve.
         #[serde(default, skip_serializing_if = "is_default")]
         bodies: BodySpace = BodySpace::default();
-        /// Parts and neurons of branching bodies.
+        /// Ranges of the parts and neurons of branching bodies.
         #[serde(default, skip_serializing_if = "is_default")]
         creatures: CreatureSpace = CreatureSpace::default();
-        /// A torque, of a signal or a wave, stays within plus and minus this, in N·m. The report has 1000.
+        /// Greatest torque of a signal or a wave to either side, in N·m. In the report it is 1000.
         torque_range_nm: f32 = 1000.0;
-        /// Greatest difference between neighbouring points of a random signal, in N·m. The report has 1000.
+        /// Greatest difference between neighbouring points of a random signal, in N·m. In the report it is 1000.
         torque_step_nm: f32 = 1000.0;
-        /// Torque points that take effect per simulated second. The report found that it matters.
+        /// Number of torque points that take effect per simulated second. The report found that it matters.
         points_per_s: f32 = 10.0;
-        /// The bend limits that random genomes choose from, in radians. The report has 0.6, 0.8, 1.0, 1.8.
+        /// Bend limits from which random genomes choose, in radians. In the report they are 0.6, 0.8, 1.0, 1.8.
         bend_limits_rad: Vec<f32> = vec![0.6, 0.8, 1.0, 1.8];
-        /// The twist limits that random genomes choose from, in radians. The report has 0, 0.9, 1.2, 1.5.
+        /// Twist limits from which random genomes choose, in radians. In the report they are 0, 0.9, 1.2, 1.5.
         twist_limits_rad: Vec<f32> = vec![0.0, 0.9, 1.2, 1.5];
         /// Least density of the material, in kg/m³.
         density_min_kg_m3: f32 = 2.0;
@@ -46,19 +46,19 @@ setting_group! {
     }
 }
 
-/// The range of torque points per second. Beyond the physics' own rate more points do nothing.
+/// Range of the number of torque points per second. Points beyond the rate of physics steps have no effect.
 pub const POINTS_PER_S_RANGE: std::ops::RangeInclusive<f32> = 0.1..=1000.0;
 
-/// The largest torque in a file, in N·m: a thousand times the report's.
+/// Largest torque in a file, in N·m: a thousand times that of the report.
 pub const LARGEST_TORQUE_NM: f32 = 1.0e6;
 
-/// A number of torque points per second.
+/// Quantity of a number of torque points per second.
 pub const POINTS_PER_S: Quantity = Quantity::new("Hz", POINTS_PER_S_RANGE);
-/// A torque to either side.
+/// Quantity of a torque to either side.
 pub const TORQUE: Quantity = Quantity::new("N·m", -LARGEST_TORQUE_NM..=LARGEST_TORQUE_NM);
 
-/// The most torque points in a genome, over all its signals: such a genome still makes a save of less
-/// than the 10 MiB that are read again.
+/// Greatest number of torque points in a genome, over all its signals. The save of a genome with this number stays below 10 MiB, the
+/// largest size that is loaded.
 pub const LARGEST_GENOME_TORQUES: usize = 600_000;
 
 impl SettingGroup for GenomeSpace {
@@ -140,7 +140,7 @@ impl SettingGroup for GenomeSpace {
 }
 
 impl GenomeSpace {
-    /// The section of the controller's kind.
+    /// Section of settings for the kind of controller.
     pub const CONTROLLER: Section =
         Section { title: "Controller", about: "How genes become torques." };
 
@@ -154,12 +154,12 @@ impl GenomeSpace {
             .map(|limits| limits.iter().any(|limit| *limit > 0.0))
     }
 
-    /// The range of the density of a part.
+    /// Returns the range of the density of a part.
     pub(super) fn densities(&self) -> GeneRange<'static> {
         GeneRange::Ratio(self.density_min_kg_m3, self.density_max_kg_m3)
     }
 
-    /// How many points a signal needs to last `duration_s`.
+    /// Returns how many points a signal needs to last `duration_s` seconds; at least 1.
     pub fn points(&self, duration_s: f32) -> usize {
         libm::ceilf(duration_s * self.points_per_s).max(1.0) as usize
     }

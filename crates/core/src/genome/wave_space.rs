@@ -1,4 +1,4 @@
-//! The ranges of periodic controllers.
+//! The ranges of the genes of periodic controllers.
 
 use std::ops::RangeInclusive;
 
@@ -9,7 +9,7 @@ use crate::schema::{number, setting_group, whole};
 setting_group! {
     /// Ranges of the genes of periodic controllers.
     pub struct WaveSpace in "Waves and gaits": "Ranges of periodic motions." {
-        /// Least frequency, in Hz.
+        /// Least frequency of waves and beats, in Hz.
         frequency_min_hz: f32 = 0.2,
             number("Minimum frequency", FREQUENCY_RANGE_HZ)
                 .unit("Hz")
@@ -17,7 +17,7 @@ setting_group! {
                 .slider(0.05, 5.0)
                 .logarithmic_from(0.05);
 
-        /// Greatest frequency, in Hz.
+        /// Greatest frequency of waves and beats, in Hz.
         frequency_max_hz: f32 = 3.0,
             number("Maximum frequency", FREQUENCY_RANGE_HZ)
                 .unit("Hz")
@@ -25,22 +25,22 @@ setting_group! {
                 .slider(0.05, 10.0)
                 .logarithmic_from(0.05);
 
-        /// Terms per wave; 1 is a sine.
+        /// Number of terms per wave; 1 makes a sine.
         harmonics: u32 = 1,
             whole("Harmonics", 1..=MOST_HARMONICS).advanced()
                 .hint("1 is a plain sine; more allow richer motions but add genes")
                 .slider(1.0, 5.0);
 
-        /// Greatest amplitude of a target angle of a bend, and of its offset to either side, in radians. Torque waves
-        /// have the range of the torque signals.
+        /// Greatest amplitude of a target angle of a bend, and of the angle's offset to either side, in radians. Torque waves have the
+        /// range of the torque signals instead.
         angle_range_rad: f32 = 1.0,
             number("Bend range", 0.0..=super::LARGEST_LIMIT_RAD)
                 .unit("rad")
                 .hint("Maximum amplitude of a gait's bends, and maximum offset in either direction")
                 .slider(0.0, 3.0);
 
-        /// Greatest amplitude of a target angle of a twist, and of its offset to either side, in radians. With 0 a
-        /// joint that may twist is held straight by its servo, and yields under load.
+        /// Greatest amplitude of a target angle of a twist, and of the angle's offset to either side, in radians. With 0, the servo holds
+        /// a joint that may twist straight, and the joint yields under load.
         #[serde(default = "one_rad")]
         twist_range_rad: f32 = 1.0,
             number("Twist range", 0.0..=super::LARGEST_LIMIT_RAD)
@@ -67,8 +67,8 @@ setting_group! {
                 .slider(0.0, 5000.0)
                 .logarithmic_from(1.0);
 
-        /// Damping of the servo, in N·m·s/rad. It acts through the torque, is constant over a step and limited
-        /// with it; the joints' own damping is a part of the body.
+        /// Damping of the servo, in N·m·s/rad. It is a part of the servo's torque, constant over a step and limited together with it. The
+        /// joints' own damping is a part of the body instead.
         servo_damping_nms_per_rad: f32 = 0.0,
             number("Servo damping", SERVO_DAMPING_RANGE).advanced()
                 .unit("N·m·s/rad")
@@ -86,13 +86,13 @@ setting_group! {
 }
 
 impl WaveSpace {
-    /// Widens the range of frequencies so that it contains one, in Hz.
+    /// Widens the range of frequencies so that it contains this frequency, in Hz.
     pub(super) fn widen_frequency(&mut self, frequency_hz: f32) {
         self.frequency_min_hz = self.frequency_min_hz.min(frequency_hz);
         self.frequency_max_hz = self.frequency_max_hz.max(frequency_hz);
     }
 
-    /// Widens the range of the servo's stiffness so that it contains one, in N·m/rad.
+    /// Widens the range of the servo's stiffness so that it contains this stiffness, in N·m/rad.
     pub(super) fn widen_stiffness(&mut self, stiffness_nm_per_rad: f32) {
         self.stiffness_min_nm_per_rad = self.stiffness_min_nm_per_rad.min(stiffness_nm_per_rad);
         self.stiffness_max_nm_per_rad = self.stiffness_max_nm_per_rad.max(stiffness_nm_per_rad);
@@ -123,24 +123,24 @@ impl WaveSpace {
     }
 }
 
-/// The twist range in files that do not state one.
+/// Returns the range of twists for files that do not state it, in radians.
 fn one_rad() -> f32 {
     1.0
 }
 
-/// The range of every frequency, in Hz: half the least rate of physics steps is 5 Hz.
+/// Range of every frequency, in Hz. It reaches above 5 Hz, half the least rate of physics steps.
 pub const FREQUENCY_RANGE_HZ: RangeInclusive<f32> = 0.01..=20.0;
 /// The range of every servo's stiffness, in N·m/rad.
 pub const STIFFNESS_RANGE_NM_PER_RAD: RangeInclusive<f32> = 0.0..=1.0e5;
 /// The range of every servo's damping, in N·m·s/rad.
 pub const SERVO_DAMPING_RANGE: RangeInclusive<f32> = 0.0..=1.0e4;
-/// A frequency.
+/// Quantity of a frequency.
 pub const FREQUENCY: Quantity = Quantity::new("Hz", FREQUENCY_RANGE_HZ);
-/// The stiffness of a servo.
+/// Quantity of the stiffness of a servo.
 pub const STIFFNESS: Quantity = Quantity::new("N·m/rad", STIFFNESS_RANGE_NM_PER_RAD);
-/// The damping of a servo.
+/// Quantity of the damping of a servo.
 pub const SERVO_DAMPING: Quantity = Quantity::new("N·m·s/rad", SERVO_DAMPING_RANGE);
-/// The most terms of a wave.
+/// Greatest number of terms of a wave.
 pub const MOST_HARMONICS: u32 = 5;
 
 #[cfg(test)]

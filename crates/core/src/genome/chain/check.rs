@@ -1,4 +1,4 @@
-//! Whether a body of blocks can be built.
+//! Checks whether a body of blocks can be built.
 
 use super::genes::{segment_genes, waiting_genes};
 use super::limits::{INERTIA_RATIO, check_pair};
@@ -11,7 +11,8 @@ use crate::world::check_softness;
 /// Checks that a body of these blocks can be built.
 ///
 /// # Errors
-/// Their number, a value of one, or the ratio of two neighbours is not allowed, or two have the same id.
+/// Returns an error if the number of blocks, a value of a block, or the ratio of two neighbours is not allowed, or if two blocks have the
+/// same id.
 pub fn check_segments(segments: &[Segment]) -> Result<(), Invalid> {
     within("segments", segments.len(), 2..=MOST_SEGMENTS as usize)?;
     check_limits(|genes| {

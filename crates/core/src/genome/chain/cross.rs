@@ -10,8 +10,8 @@ use crate::genome::individual::Genome;
 use crate::genome::space::GenomeSpace;
 
 impl GenomeSpace {
-    /// A child of two genomes with bodies of their own. Blocks of the same descent have sizes, joint and waves from either
-    /// parent, each group as a whole; all other blocks come from the first parent, the fitter one.
+    /// Returns a child of two genomes with bodies of their own. Where blocks of both parents have the same descent, the child takes their
+    /// sizes, their joint and their waves, each group as a whole, from either parent. All other blocks come from the fitter parent.
     pub fn with_crossed_bodies(
         &self,
         fitter: &Genome,
@@ -50,7 +50,7 @@ impl GenomeSpace {
                 waves.frequency_hz = from.frequency_hz;
             }
             for &(index, partner) in &pairs {
-                // A head has no waves.
+                // The head has no waves.
                 let joints = index.checked_sub(1).zip(partner.checked_sub(1));
                 if let Some((own, theirs)) = joints.filter(|_| of_other()) {
                     waves.joints[own].clone_from(&from.joints[theirs]);
@@ -62,9 +62,9 @@ impl GenomeSpace {
     }
 }
 
-/// Indices of blocks with equal ids in both bodies, in the order of both: a longest common subsequence.
+/// Returns the indices of blocks with equal ids in both bodies, in the order of both: a longest common subsequence.
 fn aligned(a: &[Segment], b: &[Segment]) -> Vec<(usize, usize)> {
-    // Lengths of the longest common subsequences of the ends of both.
+    // Entry [i][j] is the length of the longest common subsequence of `a` from i on and `b` from j on.
     let mut longest = vec![vec![0_usize; b.len() + 1]; a.len() + 1];
     for i in (0..a.len()).rev() {
         for j in (0..b.len()).rev() {

@@ -8,7 +8,7 @@ use crate::genome::space::GenomeSpace;
 use crate::world::{STIFFEST_M4_S2, modulus_at_pa};
 
 impl Segment {
-    /// A block of a body without ancestors, by its place from the head.
+    /// Creates a block of a body without ancestors. `index` is its place from the head.
     pub(in crate::genome) fn newborn(index: usize, space: &BodySpace) -> Self {
         Self {
             id: index as u64 + 1,
@@ -19,19 +19,19 @@ impl Segment {
             bend_limit_rad: (space.bend_limit_min_rad + space.bend_limit_max_rad) / 2.0,
             twist_limit_rad: (space.twist_limit_min_rad + space.twist_limit_max_rad) / 2.0,
             strength: 1.0,
-            // A gene fills it in.
+            // The initial value of a gene.
             youngs_modulus_pa: space.soft.then_some(space.modulus_min_pa),
         }
     }
 
-    /// Its Young's modulus, in Pa; of a rigid block the least at which a block is rigid.
+    /// Returns the block's Young's modulus, in Pa; for a rigid block, the least modulus at which a block is rigid.
     pub(in crate::genome) fn modulus_or_rigid_pa(&self) -> f32 {
         let sides_m = [self.width_m, self.height_m];
         let rigid_pa = modulus_at_pa(1.01 * STIFFEST_M4_S2, sides_m, self.density_kg_m3);
         self.youngs_modulus_pa.unwrap_or(rigid_pa)
     }
 
-    /// Visits the genes of the block.
+    /// Visits the genes of the block itself, without those of its joint.
     fn block_genes(&mut self, index: usize, space: &GenomeSpace, genes: &mut Genes<'_>) {
         let (field, name) =
             (format_args!("segments[{index}]."), format_args!("block {}, ", index + 1));
@@ -61,7 +61,7 @@ impl Segment {
     }
 }
 
-/// Visits the genes of all blocks that have an effect, from the head.
+/// Visits the genes of all blocks that have an effect, in order from the head.
 pub fn segment_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut Genes<'_>) {
     for (index, segment) in segments.iter_mut().enumerate() {
         segment.block_genes(index, space, genes);
@@ -71,7 +71,7 @@ pub fn segment_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut 
     }
 }
 
-/// Visits the genes of the joint of the head, which wait until a change of the body puts a block before it.
+/// Visits the genes of the joint of the head. They have no effect until a change of the body puts a block in front of the head.
 pub fn waiting_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut Genes<'_>) {
     if let Some(head) = segments.first_mut() {
         head.joint_genes(0, &space.bodies, genes);
@@ -79,7 +79,7 @@ pub fn waiting_genes(segments: &mut [Segment], space: &GenomeSpace, genes: &mut 
 }
 
 impl BodySpace {
-    /// Widens the space so that it contains a body.
+    /// Widens the space so that it contains a body with these blocks.
     pub(in crate::genome) fn widen(&mut self, segments: &[Segment]) {
         let count = segments.len() as u32;
         (self.limbs_min, self.limbs_max) = (self.limbs_min.min(count), self.limbs_max.max(count));
@@ -100,7 +100,7 @@ impl BodySpace {
         self.longest_m = self.longest_m.max(length_m);
     }
 
-    /// Widens the ranges of sizes so that they contain a part: its size across x, along y and along z, in metres.
+    /// Widens the ranges of sizes so that they contain a part with this size across x, along y and along z, in metres.
     pub(in crate::genome) fn widen_sizes(&mut self, [width_m, length_m, height_m]: [f32; 3]) {
         widen([&mut self.length_min_m, &mut self.length_max_m], length_m);
         for side_m in [width_m, height_m] {
@@ -108,7 +108,7 @@ impl BodySpace {
         }
     }
 
-    /// Widens the ranges of joints so that they contain one with these limits of bend and twist, and this strength.
+    /// Widens the ranges of joints so that they contain a joint with these limits of bend and twist, in radians, and this strength.
     pub(in crate::genome) fn widen_joints(&mut self, [bend, twist]: [f32; 2], strength: f32) {
         widen([&mut self.bend_limit_min_rad, &mut self.bend_limit_max_rad], bend);
         widen([&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad], twist);

@@ -13,11 +13,11 @@ use crate::rng::normal;
 /// Least probability that a gene mutates.
 const LEAST_SHARE: f64 = 0.1;
 
-/// Standard deviation of the logarithms of sizes among blocks that are nearly alike.
+/// Standard deviation of the logarithms of sizes in a body whose blocks are nearly alike.
 const NEARLY: f64 = 0.15;
 
 impl BodySpace {
-    /// Makes the blocks of a body nearly alike, with strong joints of wide limits.
+    /// Makes the blocks of a body nearly alike, with the strongest joints and the widest limits.
     pub(in crate::genome) fn make_plain(&self, segments: &mut [Segment], rng: &mut ChaCha8Rng) {
         let Some(plain_m) = self.plain_block_m(segments.len()) else { return };
         for segment in segments {
@@ -34,8 +34,8 @@ impl BodySpace {
 }
 
 impl GenomeSpace {
-    /// A child in which some genes have changed by normally distributed steps of this standard deviation, as a share of their
-    /// ranges: one in ten, but one at least on average (Sims 1994).
+    /// Returns a child in which some genes have changed by normally distributed steps with the standard deviation `step`, as a share of
+    /// their ranges. One gene in ten changes, but on average at least one (Sims 1994).
     pub fn with_small_changes(&self, parent: &Genome, step: f64, rng: &mut ChaCha8Rng) -> Genome {
         let mut child = parent.clone();
         let mut count = 0_usize;

@@ -1,21 +1,21 @@
-//! Brings a varied body back to its budget: the exact volume, the greatest length, and neighbours that the engine can hold
-//! together.
+//! Repairs a varied body so that it meets its limits: the exact volume, the greatest length, and differences between neighbours with which
+//! the engine can hold them together.
 
 use super::limits::{EVOLVED_INERTIA_RATIO, MASS_RATIO, ratio};
 use super::segment::Segment;
 use super::space::BodySpace;
 use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
 
-/// Attempts to meet all limits by changing only what exceeds them.
+/// Number of attempts to meet all limits by changing only sizes that exceed them.
 const PASSES: usize = 8;
 /// Relative tolerance of the volume.
 const VOLUME_TOLERANCE: f64 = 1.0e-3;
-/// Steps from the wanted body to the plain one, if the attempts fail.
+/// Number of steps from the wanted body to the plain one, which are tried if the attempts fail.
 const STEPS_TO_PLAIN: usize = 16;
 
 impl BodySpace {
-    /// Changes the sizes of the blocks as little as necessary, so that the body keeps all limits. Always succeeds for a
-    /// number of blocks that the space allows: in the worst case all blocks become equal.
+    /// Changes the sizes of the blocks as little as necessary, so that the body keeps all limits. It succeeds for every number of blocks
+    /// that the space allows: in the worst case all blocks become equal.
     pub(in crate::genome) fn repair(&self, segments: &mut [Segment]) {
         if segments.is_empty() {
             return;
@@ -53,7 +53,7 @@ impl BodySpace {
         }
     }
 
-    /// Whether a body keeps all limits of this space.
+    /// Returns whether a body keeps all limits of this space.
     pub(in crate::genome) fn is_within_limits(&self, segments: &[Segment]) -> bool {
         let volume_m3: f64 = segments.iter().map(Segment::volume_m3).sum();
         let wanted_m3 = f64::from(self.volume_m3);
@@ -74,7 +74,7 @@ impl BodySpace {
             })
     }
 
-    /// Scales all blocks alike until they have the volume together, each size within its range.
+    /// Scales all blocks by one factor until their total volume is that of the space. Each size stays within its range.
     fn fill_volume(&self, segments: &mut [Segment]) {
         for _ in 0..PASSES {
             let volume_m3: f64 = segments.iter().map(Segment::volume_m3).sum();
@@ -89,10 +89,10 @@ impl BodySpace {
         }
     }
 
-    /// Shortens a body that is too long, and thickens it so that its volume stays.
+    /// Shortens a body that is too long, and thickens it so that its volume stays the same.
     fn shorten(&self, segments: &mut [Segment]) {
         let length_m: f32 = segments.iter().map(|segment| segment.length_m).sum();
-        // A little below the limit, which filling the volume approaches again.
+        // The goal is a little below the limit, because filling the volume lengthens the body again.
         let longest_m = self.longest_m * 0.999;
         if length_m <= longest_m {
             return;
@@ -107,8 +107,8 @@ impl BodySpace {
 }
 
 impl Segment {
-    /// Gives a block that would fold up under its own weight the least modulus with which it does not. It depends on the sizes,
-    /// so it comes after them.
+    /// Raises the modulus of a block that would fold up under its own weight to the least value at which it does not. This value depends
+    /// on the sizes, so it is set after them.
     fn stiffen(&mut self) {
         let sides_m = [self.width_m, self.height_m];
         if let Some(modulus_pa) = &mut self.youngs_modulus_pa {
@@ -118,7 +118,7 @@ impl Segment {
     }
 }
 
-/// Shrinks the heavier of two neighbours that differ too much.
+/// Shrinks the heavier of two neighbours whose ratio of masses or moments of inertia is too large.
 fn shrink_the_heavier(segments: &mut [Segment]) {
     for rear in 1..segments.len() {
         let [mass, inertia] = [Segment::mass_kg, Segment::inertia_kg_m2].map(|of| {
@@ -140,7 +140,7 @@ fn shrink_the_heavier(segments: &mut [Segment]) {
     }
 }
 
-/// The value at a share of the way from one to another, by ratios.
+/// Returns the value at a share of the way from one number to another, on a logarithmic scale.
 fn between(from: f64, to: f32, share: f64) -> f32 {
     (from * libm::pow(f64::from(to) / from, share)) as f32
 }

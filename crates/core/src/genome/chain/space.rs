@@ -1,4 +1,4 @@
-//! The space of bodies that evolve.
+//! The space of chains of blocks that evolve.
 
 use crate::check::Invalid;
 use crate::genome::gene::GeneRange;
@@ -12,7 +12,7 @@ use super::segment::MOST_SEGMENTS;
 setting_group! {
     /// Ranges of bodies that evolve. All bodies have the same volume.
     pub struct BodySpace {
-        /// Whether each genome has a body of its own.
+        /// Whether each genome has a body of its own. Otherwise the trial determines the body.
         vary: bool = false;
         /// Least number of blocks.
         limbs_min: u32 = 2;
@@ -22,7 +22,7 @@ setting_group! {
         length_min_m: f32 = 0.4;
         /// Greatest length of a block, in metres.
         length_max_m: f32 = 4.0;
-        /// Least width and height of a block, in metres: twenty times the distance at which the engine foresees contacts.
+        /// Least width and height of a block, in metres: twenty times the distance at which the engine detects contacts in advance.
         thickness_min_m: f32 = 0.4;
         /// Greatest width and height of a block, in metres.
         thickness_max_m: f32 = 2.0;
@@ -34,16 +34,17 @@ setting_group! {
         twist_limit_min_rad: f32 = 0.0;
         /// Greatest twist limit of a joint, in radians.
         twist_limit_max_rad: f32 = 1.5;
-        /// Least share of the torque that a joint could have by its cross-section.
+        /// Least strength of a joint, as a share of the torque that its cross-section allows.
         strength_min: f32 = 0.25;
-        /// Volume of every body, in m³. The snake of five blocks has 10.
+        /// Volume of every body, in m³. The snake of five blocks has 10 m³.
         volume_m3: f32 = 10.0;
-        /// Greatest length of a straight body, in metres. The snake of five blocks has 10.
+        /// Greatest length of a straight body, in metres. The snake of five blocks has 10 m.
         longest_m: f32 = 12.0;
         /// Whether the softness of each block evolves. Otherwise all blocks are rigid.
         #[serde(default, skip_serializing_if = "is_default")]
         soft: bool = false;
-        /// Least Young's modulus of a block, in Pa. A block that would fold up under its own weight has the least that does not.
+        /// Least Young's modulus of a block, in Pa. A block that would fold up under its own weight gets the least modulus at which it
+        /// does not.
         #[serde(default = "usual_modulus_min_pa", skip_serializing_if = "is_usual_modulus_min")]
         modulus_min_pa: f32 = USUAL_MODULUS_PA[0];
         /// Greatest Young's modulus of a block, in Pa. Blocks that are too stiff to bend are rigid.
@@ -52,7 +53,7 @@ setting_group! {
     }
 }
 
-/// From blocks of 1 m that sag like a wet sponge to rigid ones.
+/// Default range of Young's modulus, in Pa: from blocks of 1 m that sag like a wet sponge to rigid ones.
 const USUAL_MODULUS_PA: [f32; 2] = [1000.0, 100_000.0];
 
 fn usual_modulus_min_pa() -> f32 {
@@ -203,7 +204,7 @@ impl SettingGroup for BodySpace {
 }
 
 impl BodySpace {
-    /// The settings that have no effect on branching bodies, by their paths in the space of genomes.
+    /// Paths, in the space of genomes, of the settings that have no effect on branching bodies.
     pub(in crate::genome) const OF_CHAINS: [&str; 5] = [
         "bodies.limbs_min",
         "bodies.limbs_max",
@@ -212,7 +213,7 @@ impl BodySpace {
         "bodies.modulus_max_pa",
     ];
 
-    /// The numbers of blocks that a body may have.
+    /// Returns the range of the number of blocks that a body may have.
     pub fn limbs(&self) -> std::ops::RangeInclusive<u32> {
         self.limbs_min..=self.limbs_max
     }
@@ -242,7 +243,7 @@ impl BodySpace {
         GeneRange::Between(self.strength_min, 1.0)
     }
 
-    /// The shortest and the longest straight body of this number of blocks, in metres. None if there is no such body.
+    /// Returns the shortest and the longest straight body of this number of blocks, in metres; `None` if the ranges allow no such body.
     pub fn lengths_m(&self, limbs: u32) -> Option<[f64; 2]> {
         let [volume_m3, longest_m] = [self.volume_m3, self.longest_m].map(f64::from);
         let [thinnest_m, thickest_m] = [self.thickness_min_m, self.thickness_max_m].map(f64::from);
@@ -253,8 +254,8 @@ impl BodySpace {
         (shortest_m <= longest_m).then_some([shortest_m, longest_m])
     }
 
-    /// Length, width and height of each block of a body of equal ones, in metres: as long together as the snake of five
-    /// blocks, as far as the ranges allow. None if they leave no such body.
+    /// Returns the length, width and height of each block of a body of equal blocks, in metres. Together they are as long as the snake of
+    /// five blocks, as far as the ranges allow. `None` if the ranges allow no such body.
     pub(super) fn plain_block_m(&self, limbs: usize) -> Option<[f64; 3]> {
         let [volume_m3, longest_m] = [self.volume_m3, self.longest_m].map(f64::from);
         let [least_m, most_m] = [self.thickness_min_m, self.thickness_max_m].map(f64::from);

@@ -1,4 +1,4 @@
-//! Changes of the structure of a body: blocks come, go, divide and merge, and their waves with them.
+//! Changes of the structure of a body: blocks are added, removed, split and merged, together with their waves.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -13,27 +13,27 @@ use crate::genome::space::GenomeSpace;
 /// A change of the structure of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BodyChange {
-    /// A copy of a block behind it, whose joint follows in the rhythm of its neighbours.
+    /// A block was copied. The copy lies behind it, and the copy's joint continues the rhythm of the neighbouring joints.
     Duplicate,
-    /// A block becomes two halves, held straight: at first hardly a difference.
+    /// A block was split into two halves, held straight: at first this makes hardly any difference.
     Split,
-    /// A block goes, with its joint.
+    /// A block was removed, with its joint.
     Remove,
-    /// Two neighbours become one: the inverse of a split.
+    /// Two neighbouring blocks were merged: the inverse of a split.
     Merge,
-    /// A block between two neighbours, the mean of both.
+    /// A block was inserted between two neighbours, as the mean of both.
     Insert,
-    /// A block changes its sizes a lot.
+    /// The sizes of a block changed a lot.
     Resize,
 }
 
 /// Standard deviation of the logarithm of a size in [`BodyChange::Resize`].
 const RESIZE: f64 = 0.4;
-/// Growth of a block's length from which the block behind it was merged into it rather than removed.
+/// Growth of a block's length from which on a missing block behind it is taken as merged into it rather than removed.
 const MERGED: f32 = 1.3;
 
 impl BodyChange {
-    /// All of them, with the probability that a child has one.
+    /// All changes, with the probability that a child has the change.
     pub const RATES: [(Self, f64); 6] = [
         (Self::Duplicate, 0.07),
         (Self::Split, 0.06),
@@ -43,7 +43,7 @@ impl BodyChange {
         (Self::Resize, 0.04),
     ];
 
-    /// Its name.
+    /// Returns the name of the change.
     pub fn name(self) -> &'static str {
         match self {
             Self::Duplicate => "duplicate",
@@ -55,13 +55,13 @@ impl BodyChange {
         }
     }
 
-    /// Number of places at which a body of this number of blocks can have this change: its blocks, or pairs of neighbours.
+    /// Counts the places at which a body with this number of blocks can have this change: its blocks, or its pairs of neighbours.
     fn places(self, blocks: usize) -> usize {
         let pairs = matches!(self, Self::Merge | Self::Insert);
         if pairs { blocks.saturating_sub(1) } else { blocks }
     }
 
-    /// The change in a text, such as "a block split".
+    /// Returns the change as a phrase, such as "a block split".
     pub fn words(self) -> &'static str {
         match self {
             Self::Duplicate => "a block duplicated",
@@ -73,8 +73,9 @@ impl BodyChange {
         }
     }
 
-    /// The change that made the structure of a child from that of its parent, if it was a single one. Ids do not tell a
-    /// removed block from one that was merged with the one before it: merged it is if that one has grown much longer.
+    /// Finds the change that made the structure of a child from that of its parent; `None` if it was not a single change. Ids do not tell
+    /// a removed block from a block that was merged into the one before it. It counts as merged if the block before it has grown much
+    /// longer.
     pub fn between(parent: &Genome, child: &Genome) -> Option<Self> {
         let (parent, child) = (&parent.body.segments, &child.body.segments);
         let same = parent.iter().zip(child).take_while(|(a, b)| a.id == b.id).count();
@@ -94,7 +95,7 @@ impl BodyChange {
         Some(if is_merged { Self::Merge } else { Self::Remove })
     }
 
-    /// Draws a change by its probability; none for the rest.
+    /// Draws a change by the probabilities of all changes; `None` with the remaining probability.
     pub fn draw(rng: &mut ChaCha8Rng) -> Option<Self> {
         let mut left = rng.random_range(0.0..1.0);
         Self::RATES.into_iter().find_map(|(change, rate)| {
@@ -105,8 +106,8 @@ impl BodyChange {
 }
 
 impl GenomeSpace {
-    /// A genome whose body has this change at a random place, within all limits. None if its body does not allow it, or if
-    /// the genome has no body of its own.
+    /// Returns a genome whose body has this change at a random place, within all limits. `None` if the body does not allow the change, or
+    /// if the genome has no body of its own.
     pub fn with_body_change(
         &self,
         parent: &Genome,
@@ -121,7 +122,7 @@ impl GenomeSpace {
         self.with_body_change_at(parent, change, place, rng)
     }
 
-    /// A genome whose body has this change at a place: the index of the block, or of the first of two. None under the
+    /// Returns a genome whose body has this change at a place: the index of the block, or of the first of two blocks. `None` under the
     /// conditions of [`Self::with_body_change`].
     pub fn with_body_change_at(
         &self,
@@ -152,8 +153,8 @@ impl GenomeSpace {
     }
 }
 
-/// The id of a new block between two others, derived from them alone: the same change of the same body has the same id
-/// in every run and on every machine.
+/// Returns the id of a new block between two others. It is derived from their ids alone, so that the same change of the same body has the
+/// same id in every run and on every machine.
 fn new_id(segments: &[Segment], place: usize, change: BodyChange) -> u64 {
     let id = |index: usize| segments.get(index).map_or(0, |segment| segment.id);
     let mut ordinal = 0_u64;
@@ -168,7 +169,7 @@ fn new_id(segments: &[Segment], place: usize, change: BodyChange) -> u64 {
     }
 }
 
-/// The waves of a controller that has them.
+/// Returns the waves of a controller; `None` for a controller without waves.
 pub(super) fn waves_mut(controller: &mut ControllerGenes) -> Option<&mut Waves> {
     match controller {
         ControllerGenes::Wave(waves) => Some(waves),
@@ -177,7 +178,7 @@ pub(super) fn waves_mut(controller: &mut ControllerGenes) -> Option<&mut Waves> 
     }
 }
 
-/// A genome in the middle of a change. The joint in front of block k, counted from 0, has the waves k - 1.
+/// A genome during a change of its body. The joint in front of block k, counted from 0, has the waves with index k - 1.
 struct BodyInChange<'a> {
     segments: &'a mut Vec<Segment>,
     waves: &'a mut Waves,
@@ -185,7 +186,7 @@ struct BodyInChange<'a> {
 }
 
 impl BodyInChange<'_> {
-    /// Says whether another block fits: `None` if the body has as many blocks as it may have.
+    /// Checks whether another block fits: `None` if the body already has the greatest number of blocks.
     fn room(&self) -> Option<()> {
         (self.segments.len() < self.space.bodies.limbs_max as usize).then_some(())
     }
@@ -221,7 +222,7 @@ impl BodyInChange<'_> {
         Some(())
     }
 
-    /// The joints beside the removed one share its offset, so that the body keeps its posture on the whole.
+    /// Removes a block. The joints beside the removed joint share its offset, so that the body roughly keeps its posture.
     fn remove(&mut self, place: usize) -> Option<()> {
         if self.segments.len() <= self.space.bodies.limbs_min as usize {
             return None;
@@ -312,7 +313,7 @@ impl BodyInChange<'_> {
         }
     }
 
-    /// The waves of a joint behind the joint of a block, one step further in the rhythm of the body.
+    /// Returns the waves of a joint inserted behind the joint of a block, one step further in the rhythm of the body.
     fn joint_behind(&self, place: usize) -> Option<JointWaves> {
         let joints = &self.waves.joints;
         let Some(own) = place.checked_sub(1) else { return self.joint_before_head() };
@@ -324,14 +325,14 @@ impl BodyInChange<'_> {
         Some(moved_on(joints.get(own)?, pair, 1.0))
     }
 
-    /// The waves of a joint before the first, one step back in the rhythm of the body.
+    /// Returns the waves of a joint in front of the first joint, one step back in the rhythm of the body.
     fn joint_before_head(&self) -> Option<JointWaves> {
         let joints = &self.waves.joints;
         let pair = joints.get(1).map(|second| [&joints[0], second]);
         Some(moved_on(joints.first()?, pair, -1.0))
     }
 
-    /// Greatest offsets about the bend and the twist axes.
+    /// Returns the greatest offsets about the bend and the twist axes, in rad for gaits and in N·m for torque waves.
     fn offset_ranges(&self) -> [f32; 2] {
         let wave = &self.space.wave;
         if self.space.controller == crate::genome::ControllerKind::Gait {
@@ -342,7 +343,7 @@ impl BodyInChange<'_> {
     }
 }
 
-/// A joint's waves, moved by the lag from the first to the second of a pair.
+/// Returns a joint's waves, shifted by the lag from the first to the second joint of a pair. `direction` is 1 or -1.
 fn moved_on(joint: &JointWaves, pair: Option<[&JointWaves; 2]>, direction: f32) -> JointWaves {
     let mut moved = joint.clone();
     let Some([first, second]) = pair else { return moved };
@@ -360,8 +361,8 @@ fn moved_on(joint: &JointWaves, pair: Option<[&JointWaves; 2]>, direction: f32) 
     moved
 }
 
-/// The wave half way between two: means of offset and amplitude, and the phase half way along the shorter way round.
-/// Averaging phasors instead would cancel opposite waves.
+/// Returns the wave half way between two: with the means of offset and amplitude, and the phase half way along the shorter way round. A
+/// mean of phasors would cancel opposite waves.
 fn half_way(a: &Wave, b: &Wave) -> Wave {
     let mut wave = a.clone();
     wave.offset = (a.offset + b.offset) / 2.0;
@@ -372,12 +373,12 @@ fn half_way(a: &Wave, b: &Wave) -> Wave {
     wave
 }
 
-/// The way from one phase to another by the shorter way round: from -π to π.
+/// Returns the lag from one phase to another by the shorter way round, from -π to π.
 fn lag_rad(from: f32, to: f32) -> f32 {
     turn(to - from + PI) - PI
 }
 
-/// A phase from 0 to less than a full turn.
+/// Wraps a phase to the range from 0 to less than a full turn.
 fn turn(phase_rad: f32) -> f32 {
     phase_rad - TAU * libm::floorf(phase_rad / TAU)
 }

@@ -1,4 +1,4 @@
-//! A central network: all senses lead to a few hidden neurons, and these to all joints.
+//! A central network: all senses are inputs of a few hidden neurons, and these drive all joints.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::network_space::MOST_HIDDEN;
 use crate::genome::space::GenomeSpace;
 
-/// Number of senses of a snake with this many joints: four of each joint, eight of each limb, four of the whole.
+/// Returns the number of senses of a snake with this many joints: four per joint, eight per limb, and four for the whole snake.
 pub const fn sense_count(joints: usize) -> usize {
     4 * joints + 8 * (joints + 1) + 4
 }
@@ -23,13 +23,13 @@ pub const fn sense_count(joints: usize) -> usize {
 pub struct CentralNetwork {
     /// Number of joints.
     pub joints: u32,
-    /// The servos that follow the targets.
+    /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,
     /// Frequency of the beat, in Hz.
     pub frequency_hz: f32,
-    /// The hidden neurons: their inputs are the senses in their order, then sine and cosine of the beat.
+    /// Hidden neurons. Their inputs are the senses in their order, then the sine and the cosine of the beat.
     pub hidden: Layer,
-    /// The output neurons: the bend targets of all joints from the head, then the twist targets, if there are any.
+    /// Output neurons: the bend targets of all joints from the head, then the twist targets, if joints can twist.
     pub outputs: Layer,
 }
 
@@ -90,5 +90,5 @@ impl ControllerEncoding for CentralNetwork {
     }
 }
 
-/// The most joints that a snake may have.
+/// Greatest number of joints that a snake may have.
 const MOST_JOINTS: usize = 11;

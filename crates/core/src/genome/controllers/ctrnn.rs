@@ -10,7 +10,7 @@ use crate::genome::gene::{GeneRange, Genes, GenomeShape, Quantity};
 use crate::genome::network_space::WEIGHT;
 use crate::genome::space::GenomeSpace;
 
-/// The inputs of a neuron, after the three neurons of its own joint.
+/// Names of a neuron's inputs, besides the three neurons of its own joint.
 pub const CTRNN_INPUTS: [&str; 13] = [
     "neuron 1 ahead",
     "neuron 1 behind",
@@ -27,8 +27,8 @@ pub const CTRNN_INPUTS: [&str; 13] = [
     "place along the body",
 ];
 
-/// Neurons at each joint. The first drives the bend target and is read by the neighbours, the second drives the twist
-/// target.
+/// Number of neurons at each joint. The first drives the bend target and is an input of the neighbours' neurons; the second drives the
+/// twist target.
 pub const CTRNN_NEURONS: usize = 3;
 
 /// A network of leaky integrators, `τ dy/dt = -y + Σ w σ(y + θ) + Σ g s` with σ(x) = 1 / (1 + exp(-x)), after Beer,
@@ -36,31 +36,31 @@ pub const CTRNN_NEURONS: usize = 3;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CtrnnGenes {
-    /// Number of joints, each with its neurons.
+    /// Number of joints, each with its own copy of the neurons.
     pub joints: u32,
-    /// The servos that follow the targets.
+    /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,
-    /// The neurons of each joint.
+    /// Genes of the neurons of a joint, which are the same at all joints.
     pub neurons: [CtrnnNeuron; CTRNN_NEURONS],
 }
 
-/// One neuron.
+/// Genes of one neuron.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CtrnnNeuron {
-    /// Decimal logarithm of its time constant in s.
+    /// Decimal logarithm of the neuron's time constant in s.
     pub log_time_constant: f32,
-    /// Its bias θ.
+    /// Bias θ of the neuron.
     pub bias: f32,
-    /// Weights of the outputs of the three neurons of its joint.
+    /// Weights of the outputs of the three neurons of the neuron's own joint.
     pub own: [f32; CTRNN_NEURONS],
-    /// Weights of [`CTRNN_INPUTS`].
+    /// Weights of the neuron's inputs, in the order of [`CTRNN_INPUTS`].
     pub inputs: [f32; CTRNN_INPUTS.len()],
 }
 
-/// The range of the logarithms of time constants: 0.05 s to 2 s, rounded.
+/// Range of the decimal logarithms of time constants: 0.05 s to 2 s, rounded.
 const LOG_TIME_CONSTANTS: [f32; 2] = [-1.3, 0.3];
-/// The decimal logarithm of a time constant in s.
+/// Quantity of the decimal logarithm of a time constant in s.
 const LOG_TIME_CONSTANT: Quantity = Quantity { unit: "log s", limits: LOG_TIME_CONSTANTS };
 
 impl CtrnnNeuron {
@@ -71,7 +71,7 @@ impl CtrnnNeuron {
         inputs: [0.0; CTRNN_INPUTS.len()],
     };
 
-    /// Its time constant, in s.
+    /// Returns the neuron's time constant, in s.
     pub fn time_constant_s(&self) -> f32 {
         libm::powf(10.0, self.log_time_constant)
     }
@@ -120,7 +120,7 @@ impl ControllerEncoding for CtrnnGenes {
         self.joints as usize
     }
 
-    /// The frequency of an oscillator with the mean of the time constants.
+    /// Returns the frequency, in Hz, of an oscillator with the mean of the time constants.
     fn estimated_frequency_hz(&self) -> Option<f32> {
         let sum_s: f32 = self.neurons.iter().map(CtrnnNeuron::time_constant_s).sum();
         Some(CTRNN_NEURONS as f32 / (std::f32::consts::TAU * sum_s))

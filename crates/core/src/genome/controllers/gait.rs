@@ -1,4 +1,4 @@
-//! Gaits: periodic joint angles, and the servo that follows them.
+//! Gaits: periodic target angles of the joints, and the servo that follows them.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,14 +10,14 @@ use super::wave::Waves;
 use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 
-/// Target angles of the joints, and the servo that pulls towards them: a torque of
-/// `stiffness · (target − angle) − damping · rate`, clamped to the joint's limit.
+/// Target angles of the joints, and the servo that turns the joints towards them with a torque of `stiffness · (target − angle) − damping
+/// · rate`, clamped to the joint's limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gait {
-    /// Torque per angle by which a joint misses its target, in N·m/rad.
+    /// Torque per angle between a joint and its target, in N·m/rad.
     pub stiffness_nm_per_rad: f32,
-    /// Torque against the joint's rate, in N·m·s/rad.
+    /// Torque against the joint's rate, per rate, in N·m·s/rad.
     pub servo_damping_nms_per_rad: f32,
     /// The target angles, in radians.
     pub waves: Waves,

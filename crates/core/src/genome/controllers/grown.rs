@@ -1,4 +1,4 @@
-//! A network that grew: its nodes and links are not given, but added one by one.
+//! A network that grew: mutations added its nodes and links one by one.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
@@ -10,8 +10,8 @@ use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::neat::{NeatRules, NetworkGenome};
 
-/// The inputs of a grown network that a snake has once, after the bend of each joint and the touch of each limb. The last
-/// is the bias.
+/// Names of those inputs of a grown network that the snake has once. They follow the bend of each joint and the touch of each limb. The
+/// last one is the bias.
 pub const GROWN_INPUTS: [&str; 12] = [
     "head gap",
     "head step up",
@@ -27,14 +27,14 @@ pub const GROWN_INPUTS: [&str; 12] = [
     "bias",
 ];
 
-/// A network for the whole snake, with the nodes and links that it has grown. Its outputs are the bend targets of the
-/// joints from the head; twists are held straight.
+/// A network for the whole snake, with the nodes and links that it has grown. Its outputs are the bend targets of the joints from the
+/// head. Servos hold the twists straight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrownGenes {
     /// Number of joints.
     pub joints: u32,
-    /// The servos that follow the targets.
+    /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,
     /// Frequency of the beat, in Hz.
     pub frequency_hz: f32,
@@ -43,13 +43,13 @@ pub struct GrownGenes {
 }
 
 impl GrownGenes {
-    /// Number of inputs and outputs of the network of a snake with this many joints.
+    /// Returns the numbers of inputs and outputs of the network of a snake with this many joints.
     pub fn ends(joints: usize) -> [u16; 2] {
         let inputs = joints + joints + 1 + GROWN_INPUTS.len();
         [inputs, joints].map(|count| u16::try_from(count).unwrap_or(u16::MAX))
     }
 
-    /// The name of an input of a snake with this many joints.
+    /// Returns the name of an input of a snake with this many joints; empty for an input that does not exist.
     pub fn input_name(index: usize, joints: usize) -> String {
         if index < joints {
             return format!("joint {} bend", index + 1);

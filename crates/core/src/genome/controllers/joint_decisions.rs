@@ -1,8 +1,8 @@
-//! Decisions of each joint: every joint decides four times a second whether it bends up, bends down or straightens, by
-//! rules of its own about what it senses near itself.
+//! Decisions of each joint: every joint decides four times a second whether it bends up, bends down or straightens, by rules of its own
+//! about what it senses nearby.
 //!
-//! This is this project's own variant of XCS (Wilson, 1995), not a published method: one system of rules per joint, which
-//! see different situations and share one reward.
+//! The method is this project's own variant of XCS (Wilson, 1995), not a published method: one system of rules per joint. The systems see
+//! different situations and share one reward.
 
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 use crate::learn::classifiers::{Xcs, XcsSettings};
 
-/// The bends among which a joint decides, in their order. An arched joint lies above its neighbours, a sagging one below.
+/// Names of the bends among which a joint decides, in their order. An arched joint lies above its neighbours, a sagging one below.
 pub const JOINT_BENDS: [&str; 3] = ["straight", "arch", "sag"];
 
-/// The bits of the situation of a joint, in their order: what is so where a bit is set, and where it is not.
+/// Bits of the situation of a joint, in their order: the words for a bit that is set, and for one that is not.
 pub const JOINT_BITS: [[&str; 2]; 12] = [
     ["arched", "not arched"],
     ["sagging", "not sagging"],
@@ -36,36 +36,36 @@ pub const JOINT_BITS: [[&str; 2]; 12] = [
     ["moving", "not moving"],
 ];
 
-/// The rules of all joints, and the servos that move them. It does not evolve: it has no genes, but learns from the outcome of
-/// its decisions.
+/// The rules of all joints, and the servos that move the joints. This controller does not evolve: it has no genes, but learns from the
+/// outcome of its decisions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointDecisionGenes {
-    /// The servos; the bend range is the angle of a full bend.
+    /// Servos of the joints. Their bend range is the angle of a full bend.
     pub servo: ServoGenes,
-    /// The rules of each joint, from the head.
+    /// Systems of rules, one per joint, from the head.
     #[serde(with = "shared")]
     pub systems: Arc<Vec<Xcs>>,
-    /// How it explores; none for play without chance.
+    /// How the controller explores; `None` for play without chance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explorer: Option<Explorer>,
 }
 
 impl JointDecisionGenes {
-    /// Rules of joints that know nothing yet.
+    /// Creates the systems of rules of joints that have not learned anything yet.
     ///
     /// # Errors
-    /// A parameter is out of range.
+    /// Returns a parameter that is out of range.
     pub fn empty_systems(settings: &XcsSettings, joints: usize) -> Result<Vec<Xcs>, Invalid> {
         (0..joints)
             .map(|_| Xcs::new(settings.clone(), JOINT_BITS.len(), JOINT_BENDS.len()))
             .collect()
     }
 
-    /// Checks that these are the rules of `joints` joints.
+    /// Checks that these are the systems of rules of `joints` joints.
     ///
     /// # Errors
-    /// The number that differs.
+    /// Returns the first number that differs.
     pub fn check_systems(systems: &[Xcs], joints: usize) -> Result<(), Invalid> {
         within("systems", systems.len(), joints..=joints)?;
         for (joint, system) in systems.iter().enumerate() {
@@ -87,7 +87,7 @@ impl ControllerEncoding for JointDecisionGenes {
         let systems = Self::empty_systems(&XcsSettings::default(), shape.joints);
         Self {
             servo: ServoGenes { twist_range_rad: 0.0, ..ServoGenes::zeroed(space) },
-            // The default parameters are in range.
+            // The default parameters are in range, so the systems are never missing.
             systems: Arc::new(systems.unwrap_or_default()),
             explorer: None,
         }
@@ -101,7 +101,7 @@ impl ControllerEncoding for JointDecisionGenes {
         self.systems.len()
     }
 
-    /// Half the rate of decisions: that of a bend that changes with each.
+    /// Returns half the rate of decisions: the frequency of a bend that changes with each decision.
     fn estimated_frequency_hz(&self) -> Option<f32> {
         Some(DECISIONS_PER_S as f32 / 2.0)
     }

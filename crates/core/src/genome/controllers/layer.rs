@@ -1,4 +1,4 @@
-//! A layer of neurons: weights of its inputs, and a bias.
+//! A layer of neurons: weights of their inputs, and their biases.
 
 use std::ops::RangeInclusive;
 
@@ -9,16 +9,16 @@ use super::tanh::tanh_each;
 use crate::genome::gene::{GeneRange, Genes};
 use crate::genome::network_space::WEIGHT;
 
-/// The weights of a layer of neurons: one row for each neuron, with a weight for each input and its bias at the end.
+/// Weights of a layer of neurons: one row per neuron, with a weight for each input, and the bias at the end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Layer {
-    /// The rows.
+    /// Rows of weights, one per neuron.
     pub rows: Vec<Vec<f32>>,
 }
 
 impl Layer {
-    /// A layer of zeros.
+    /// Creates a layer whose weights are zero.
     pub fn zeroed(neurons: usize, inputs: usize) -> Self {
         Self { rows: vec![vec![0.0; inputs + 1]; neurons] }
     }
@@ -28,18 +28,18 @@ impl Layer {
         self.rows.len()
     }
 
-    /// Number of inputs, without the bias.
+    /// Returns the number of inputs, without the bias.
     pub fn inputs(&self) -> usize {
         self.rows.first().map_or(0, |row| row.len().saturating_sub(1))
     }
 
-    /// Writes the output of each neuron, tanh of its weighted sum.
+    /// Writes the output of each neuron: tanh of its weighted sum.
     pub fn respond(&self, inputs: &[f32], outputs: &mut [f32]) {
         self.weigh(inputs, outputs);
         tanh_each(outputs);
     }
 
-    /// Writes the weighted sum of each neuron, in the order of the inputs, the bias last.
+    /// Writes the weighted sum of each neuron, added in the order of the inputs, with the bias last.
     pub fn weigh(&self, inputs: &[f32], sums: &mut [f32]) {
         for (result, row) in sums.iter_mut().zip(&self.rows) {
             let mut sum = 0.0;
@@ -50,7 +50,7 @@ impl Layer {
         }
     }
 
-    /// Visits the weights, all in ±`range`; `field` and `neuron` name the layer and its neurons, `input` the inputs.
+    /// Visits the weights, all with the range ±`range`. `field` and `neuron` name the layer and its neurons, `input` the inputs.
     pub fn genes(
         &mut self,
         [field, neuron]: [&'static str; 2],
@@ -69,8 +69,7 @@ impl Layer {
         }
     }
 
-    /// Visits the number of neurons, of which this many are allowed, and the number of weights of each; `field` names the
-    /// layer.
+    /// Visits the number of neurons, for which `neurons` are allowed, and the number of weights of each neuron. `field` names the layer.
     pub fn lengths(
         &self,
         field: &str,

@@ -1,13 +1,13 @@
-//! Neurons in the limbs, wired among themselves, to those of the neighbouring limbs, to senses and to a beat.
+//! Neurons in the limbs. Their inputs are neurons of the same limb and of the neighbouring limbs, senses, and a beat.
 //!
-//! After Miconi and Channon, *A virtual creatures model for studies in artificial evolution*, CEC 2005, pp. 565-572, whose
-//! abstract says that standard McCulloch-Pitts neurons replace the more complex set of neurons of Sims' creatures. Their
-//! creatures evolve bodies, too; the layout for a body that stays, with its numbers, is this program's own.
+//! The model follows Miconi and Channon, *A virtual creatures model for studies in artificial evolution*, CEC 2005, pp. 565-572, whose
+//! abstract says that standard McCulloch-Pitts neurons replace the more complex set of neurons of Sims' creatures. Their creatures evolve
+//! bodies, too. The layout for a body that does not evolve, with its numbers, is this program's own.
 //!
-//! The kind of a neuron and its inputs are choices, and every strategy searches them as coordinates: a step of CMA-ES or
-//! MAP-Elites across the border between two choices changes the wiring, although neighbours in the list have nothing in
-//! common. The report's strategy keeps the choices of the first generation. Only mutations of the genetic algorithm, and
-//! of novelty search, which is one, have rules for them.
+//! The kind of a neuron and its inputs are choices. Every strategy searches them as coordinates: a step of CMA-ES or MAP-Elites across the
+//! border between two choices changes the wiring, although neighbours in the list have nothing in common. The report's strategy keeps the
+//! choices of the first generation. Only mutations of the genetic algorithm, and of novelty search, which is a genetic algorithm, have
+//! rules for choices.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -23,31 +23,31 @@ use crate::genome::gene::{Gene, GeneRange, Genes, GenomeShape};
 use crate::genome::limits::PHASE;
 use crate::genome::space::GenomeSpace;
 
-/// Neurons of each limb. The first drives the bend target of the joint behind the limb, the second the twist target.
+/// Number of neurons in each limb. The first drives the bend target of the joint behind the limb, the second its twist target.
 pub const LIMB_NEURONS: usize = 4;
 
-/// Four neurons in each limb. All neurons respond at once, to what they said in the step before; at the start all are 0,
-/// and so are those of a neighbour that is not there.
+/// Four neurons in each limb. All neurons are updated at once, from the outputs of the step before. At the start all outputs are 0, and so
+/// are those of a neighbouring limb that does not exist.
 ///
-/// A step of theirs is a step of the physics, so what they do by themselves becomes faster with more steps per second; the
-/// beat does not.
+/// Neurons are updated once per physics step. What they do by themselves therefore becomes faster with more steps per second; the beat
+/// does not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimbNeurons {
-    /// Number of joints. There is one limb more, and each has its neurons.
+    /// Number of joints. There is one limb more than joints, and each limb has neurons.
     pub joints: u32,
-    /// The servos that follow the targets.
+    /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,
     /// Frequency of the beat, in Hz.
     pub frequency_hz: f32,
     /// Delay of the beat from each limb to the next, in radians.
     pub lag_rad: f32,
-    /// The neurons: those of all limbs, or those of each limb, head first.
+    /// Neurons: one set that all limbs have in common, or one set per limb, from the head.
     pub limbs: Vec<[LimbNeuron; LIMB_NEURONS]>,
 }
 
 impl LimbNeurons {
-    /// The neurons of a limb; 0 is the head.
+    /// Returns the neurons of a limb; 0 is the head.
     pub fn of_limb(&self, limb: usize) -> Option<&[LimbNeuron; LIMB_NEURONS]> {
         self.limbs.get(limb).or(self.limbs.first())
     }
@@ -121,7 +121,7 @@ impl ControllerEncoding for LimbNeurons {
         widen_weights(&mut space.network.weight_range, self);
     }
 
-    /// A neuron's genes mutate by chance, independently of its neighbours' genes.
+    /// Lets the genes of each neuron mutate by chance, independently of the genes of other neurons.
     fn after_mutation(&mut self, before: &[f32], space: &GenomeSpace, rng: &mut ChaCha8Rng) {
         let (mut parent, mut values) = (self.clone(), before.iter());
         let mut take =
@@ -163,7 +163,7 @@ mod tests {
             let space = space(is_shared);
             let mut genome = space.random_genome(SHAPE, &mut stream(1, 1, 0, Purpose::Birth));
             assert_eq!(genes(&mut genome).limbs.len(), sets);
-            // Three of the body, stiffness, frequency and lag.
+            // Three genes belong to the body, and one each to stiffness, frequency and lag.
             assert_eq!(space.dimension(SHAPE), 6 + sets * 4 * 8);
             genome.controller.check().expect("its own");
             let other = self::space(!is_shared);

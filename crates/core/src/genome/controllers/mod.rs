@@ -1,7 +1,7 @@
-//! The registry of controllers: the genes of each kind, in a file of their own.
+//! The registry of controllers. The genes of each kind are in a file of their own.
 //!
-//! A new kind is a variant of [`ControllerKind`], a line in `registry!` below, and the file that it names; what
-//! moves the joints by these genes is registered in [`crate::control`].
+//! A new kind needs a variant of [`ControllerKind`], a line in `registry!` below, and the file that this line names. The code that moves
+//! the joints by these genes is registered in [`crate::control`].
 
 mod bit_names;
 mod central;
@@ -68,7 +68,7 @@ use encoding::{ControllerEncoding, SettingNames};
 /// Makes the enum of all kinds of genes from one line for each kind.
 macro_rules! registry {
     ($($(#[$doc:meta])* $kind:ident($genes:ty),)*) => {
-        /// The genes of a controller. Champion files store them as they stand here.
+        /// The genes of a controller. Champion files store these fields as they are.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
         pub enum ControllerGenes { $($(#[$doc])* $kind($genes),)* }
 
@@ -77,14 +77,14 @@ macro_rules! registry {
                 match self { $(Self::$kind => <$genes>::settings(),)* }
             }
 
-            /// Genes of zeros, in the layout that a space prescribes for a shape.
+            /// Returns genes that are all zero, in the layout that a space prescribes for a shape.
             pub(super) fn zeroed(self, space: &GenomeSpace, shape: GenomeShape) -> ControllerGenes {
                 match self { $(Self::$kind => ControllerGenes::$kind(<$genes>::zeroed(space, shape)),)* }
             }
         }
 
         impl ControllerGenes {
-            /// Its kind.
+            /// Returns the kind of the controller.
             pub fn kind(&self) -> ControllerKind {
                 match self { $(Self::$kind(_) => ControllerKind::$kind,)* }
             }
@@ -101,15 +101,15 @@ macro_rules! registry {
 }
 
 registry! {
-    /// Free torque signals, the report's: point after point, without a rule.
+    /// Free torque signals, as in the report: each point has a torque of its own, without a rule.
     Signal(TorqueSignals),
     /// Periodic torques. The waves are in N·m.
     Wave(Waves),
     /// Periodic joint angles, followed by a servo.
     Gait(Gait),
-    /// A gait with reflexes.
+    /// A gait whose targets and phases are changed by reflexes.
     Reflex(ReflexGait),
-    /// One small network, which acts at each joint.
+    /// One small network, which is applied at each joint.
     Modular(ModularNetwork),
     /// One network for the whole snake.
     Central(CentralNetwork),
@@ -130,14 +130,13 @@ registry! {
 }
 
 impl ControllerKind {
-    /// Whether a setting below `genome`, by its path there, matters to this kind. Settings that no kind names
-    /// matter to all.
+    /// Returns whether a setting matters to this kind, given its path below `genome`. A setting that no kind names matters to all.
     pub fn uses(self, setting: &str) -> bool {
         let names = |kind: &Self| kind.settings().iter().any(|group| group.contains(&setting));
         names(&self) || !Self::ALL.iter().any(names)
     }
 
-    /// The settings below `genome` that matter to other kinds alone, by their paths there.
+    /// Returns the paths below `genome` of the settings that matter to other kinds only.
     pub fn unused_settings(self) -> Vec<&'static str> {
         let all = Self::ALL.iter().flat_map(|kind| kind.settings());
         all.copied().flatten().copied().filter(|setting| !self.uses(setting)).collect()
@@ -145,20 +144,20 @@ impl ControllerKind {
 }
 
 impl ControllerGenes {
-    /// Number of joints that it drives.
+    /// Returns the number of joints that the controller drives.
     pub fn joints(&self) -> usize {
         self.encoding().joints()
     }
 
-    /// Frequency of the motion, in Hz. A signal has no period: half the number of sign changes of its torques
-    /// per second, which is the same for a sine.
+    /// Returns the frequency of the motion, in Hz. A signal has no period. For it, the frequency is half the number of sign changes of its
+    /// torques per second, as for a sine.
     pub fn frequency_hz(&self) -> f32 {
         let of_gene = || self.values().into_iter().find(|(quantity, _)| *quantity == FREQUENCY);
         let estimated_hz = self.encoding().estimated_frequency_hz();
         estimated_hz.or_else(|| of_gene().map(|(_, value)| value)).unwrap_or(0.0)
     }
 
-    /// Drops what was learned but changes nothing that the snake does: rules that no decision needs.
+    /// Removes learned data that has no effect on what the snake does, such as rules that no decision needs.
     pub fn compact(&mut self) {
         self.encoding_mut().compact();
     }
@@ -166,9 +165,9 @@ impl ControllerGenes {
     /// Checks every value against the limits of all spaces.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
-        // Values of genes come first: a servo's decide how many outputs a network has.
+        // The values of genes are checked first, because a servo's genes decide how many outputs a network has.
         let check = || {
             check_limits(|genes| self.clone().genes(&GenomeSpace::default(), genes))?;
             let mut lengths = Ok(());
@@ -182,7 +181,7 @@ impl ControllerGenes {
         check().map_err(|error| error.inside(self.kind().name()))
     }
 
-    /// Widens a space so that it contains these genes, where ranges are settings.
+    /// Widens a space so that it contains these genes, where their ranges are settings.
     pub(super) fn widen(&self, space: &mut GenomeSpace) {
         let wave = &mut space.wave;
         for (quantity, value) in self.values() {
@@ -196,7 +195,7 @@ impl ControllerGenes {
         self.encoding().widen(space);
     }
 
-    /// The values of all genes, with their quantities.
+    /// Returns the values of all genes, with their quantities.
     fn values(&self) -> Vec<(Quantity, f32)> {
         let mut values = Vec::new();
         let mut add = |gene: Gene<'_>, value: &mut f32| values.push((gene.quantity, *value));
@@ -209,7 +208,7 @@ impl ControllerGenes {
         self.encoding_mut().genes(space, genes);
     }
 
-    /// The commands that the genes alone determine for a trial; none where they depend on senses.
+    /// Returns the commands that the genes alone determine for a trial of this length, in seconds; `None` where they depend on senses.
     pub fn commands(&self, duration_s: f64) -> Option<JointCommands> {
         self.encoding().commands(duration_s)
     }

@@ -1,4 +1,4 @@
-//! A modular network: the same small network at each joint, which exchanges messages with its neighbours.
+//! A modular network: the same small network at each joint. Each module exchanges messages with the modules of the neighbouring joints.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use crate::genome::limits::PHASE;
 use crate::genome::network_space::MOST_HIDDEN;
 use crate::genome::space::GenomeSpace;
 
-/// The inputs of a joint's module.
+/// Names of the inputs of a joint's module.
 pub const MODULE_INPUTS: [&str; 18] = [
     "own bend",
     "own bend rate",
@@ -35,7 +35,7 @@ pub const MODULE_INPUTS: [&str; 18] = [
     "beat, cosine",
 ];
 
-/// The outputs of a joint's module. The last is there only where twists have targets.
+/// Names of the outputs of a joint's module. The last one exists only if twists have targets.
 pub const MODULE_OUTPUTS: [&str; 3] = ["bend target", "message", "twist target"];
 
 /// One small network of tanh neurons for all joints.
@@ -44,15 +44,15 @@ pub const MODULE_OUTPUTS: [&str; 3] = ["bend target", "message", "twist target"]
 pub struct ModularNetwork {
     /// Number of joints, each with a module.
     pub joints: u32,
-    /// The servos that follow the targets.
+    /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,
     /// Frequency of the beat, in Hz.
     pub frequency_hz: f32,
     /// Delay of the beat from each joint to the next, in radians.
     pub lag_rad: f32,
-    /// The hidden neurons: their inputs are [`MODULE_INPUTS`].
+    /// Hidden neurons, whose inputs are [`MODULE_INPUTS`].
     pub hidden: Layer,
-    /// The output neurons: see [`MODULE_OUTPUTS`].
+    /// Output neurons, whose outputs are [`MODULE_OUTPUTS`].
     pub outputs: Layer,
 }
 

@@ -1,4 +1,4 @@
-//! A neuron of a limb: what it reads, and what it makes of it.
+//! A neuron of a limb: its inputs and its function.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -11,22 +11,22 @@ use crate::genome::gene::{GeneRange, Genes};
 use crate::genome::network_space::WEIGHT;
 use crate::rng::drawn;
 
-/// Inputs of a neuron.
+/// Number of inputs of a neuron.
 pub const NEURON_INPUTS: usize = 3;
 
-/// Chance with which a mutation changes a gene of a neuron. Steps in all of them at once would rewire most of a network in
-/// every child.
+/// Chance with which a mutation changes a gene of a neuron. If all genes changed at once, most of a network would be rewired in every
+/// child.
 const MUTATION_CHANCE: f64 = 0.1;
 
 /// A neuron: a function of the weighted sum of a few values, and of a bias.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LimbNeuron {
-    /// The function of its sum.
+    /// Function that the neuron applies to its weighted sum.
     pub kind: NeuronKind,
-    /// Added to its sum.
+    /// Bias of the neuron, which is added to the weighted sum.
     pub bias: f32,
-    /// Its inputs.
+    /// Inputs of the neuron.
     pub inputs: [NeuronInput; NEURON_INPUTS],
 }
 
@@ -34,31 +34,31 @@ pub struct LimbNeuron {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NeuronInput {
-    /// The value that it reads.
+    /// Source of the input's value.
     pub source: NeuronSource,
-    /// The factor of that value in the sum.
+    /// Factor of the value in the weighted sum.
     pub weight: f32,
 }
 
-/// Whether a gene mutates.
+/// Draws whether a gene mutates.
 fn mutates(rng: &mut ChaCha8Rng) -> bool {
     rng.random_range(0.0..1.0) < MUTATION_CHANCE
 }
 
-/// A choice after a mutation.
+/// Returns a choice after a mutation: with a small chance a new one from `all`, otherwise the one before.
 fn mutated<T: Copy>(before: T, all: &[T], rng: &mut ChaCha8Rng) -> T {
     if mutates(rng) { drawn(all, rng) } else { before }
 }
 
 impl LimbNeuron {
-    /// A neuron that is off.
+    /// A neuron that is switched off.
     pub(super) const ZEROED: Self = Self {
         kind: NeuronKind::Off,
         bias: 0.0,
         inputs: [NeuronInput { source: NeuronSource::Own1, weight: 0.0 }; NEURON_INPUTS],
     };
 
-    /// Its output when the values of all sources are these. The sum is in the order of the inputs, the bias last.
+    /// Returns the neuron's output for these values of all sources. The sum is computed in the order of the inputs, with the bias last.
     pub fn respond(&self, values: &[f32; NEURON_SOURCES]) -> f32 {
         let mut sum = 0.0;
         for input in &self.inputs {
@@ -67,7 +67,7 @@ impl LimbNeuron {
         self.kind.response(sum + self.bias)
     }
 
-    /// Visits its genes, of which weights and bias have this range.
+    /// Visits the neuron's genes. Weights and bias have this range.
     pub(super) fn genes(&mut self, weights: GeneRange<'_>, genes: &mut Genes<'_>) {
         choice_gene("kind", "kind", &NeuronKind::ALL, &KIND_CODES, &mut self.kind, genes);
         genes.gene("bias", "bias", WEIGHT, weights, &mut self.bias);
@@ -83,9 +83,10 @@ impl LimbNeuron {
         }
     }
 
-    /// Ends the mutation of a neuron that was `before`, in which all its numbers have taken a step: each gene keeps its
-    /// mutation by chance, a choice is then one of all, and the others return to what they were. The inputs of a neuron that
-    /// has been switched on are drawn anew, with weights in ±`most`: while it was off, nothing selected them.
+    /// Completes the mutation of a neuron after all its numbers have taken a step; `before` is the neuron before the step. Each gene keeps
+    /// its change with a small chance, in which case a choice is drawn anew; otherwise it returns to its value before. The inputs of a
+    /// neuron that has just been switched on are drawn anew, with weights within ±`most`, because there was no selection of them while it
+    /// was off.
     pub(super) fn mutate(&mut self, before: &Self, most: f32, rng: &mut ChaCha8Rng) {
         self.kind = mutated(before.kind, &NeuronKind::ALL, rng);
         if !mutates(rng) {
@@ -130,7 +131,7 @@ mod tests {
     #[test]
     fn step_neurons_compute_and_or_and_not() {
         let step = |bias, inputs| neuron(NeuronKind::Step, bias, inputs);
-        // Sums of exactly 0 count: the threshold itself fires.
+        // A sum of exactly 0 reaches the threshold.
         let and = step(-2.0, [(Touch, 1.0), (Blocked, 1.0), (Own1, 0.0)]);
         let or = step(-1.0, [(Touch, 1.0), (Blocked, 1.0), (Own1, 0.0)]);
         let not = step(0.0, [(Touch, -1.0), (Blocked, 0.0), (Own1, 0.0)]);
@@ -155,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_ring_of_three_neurons_oscillates() {
-        // Each excites itself and is inhibited by the one before it.
+        // Each neuron excites itself and is inhibited by the one before it.
         let ring = [(Own1, Own3), (Own2, Own1), (Own3, Own2)].map(|(own, before)| {
             neuron(NeuronKind::Tanh, 0.0, [(own, 2.0), (before, -2.0), (Touch, 0.0)])
         });
@@ -175,7 +176,7 @@ mod tests {
     #[test]
     fn genes_mutate_by_chance_and_a_neuron_switched_on_has_new_inputs() {
         let before = neuron(NeuronKind::Off, 0.25, [(Touch, 1.0), (Blocked, 2.0), (Own1, 3.0)]);
-        // As after a step in all numbers.
+        // Here all numbers have taken a step.
         let mut stepped = LimbNeuron { bias: 0.5, ..before };
         stepped.inputs.iter_mut().for_each(|input| input.weight += 0.5);
         let mut rng = stream(1, 1, 0, Purpose::Mutation);

@@ -1,4 +1,4 @@
-//! The choices of a neuron: what it computes, and what its inputs read.
+//! The choices of a neuron: its function, and the sources of its inputs.
 
 use std::fmt::Display;
 
@@ -8,17 +8,17 @@ use crate::genome::gene::{GeneRange, Genes, Quantity};
 use crate::schema::named_values;
 
 named_values! {
-    /// The function of a neuron's sum. A gene has the place in the list of all as its value.
+    /// The function that a neuron applies to its sum. The value of its gene is the index in the list of all functions.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NeuronKind {
-        /// Nothing: its output is 0.
+        /// The output is always 0: the neuron is switched off.
         Off = "off";
         /// The hyperbolic tangent of the sum.
         Tanh = "tanh";
-        /// 1 for a sum of at least 0, otherwise 0: the neuron of McCulloch and Pitts, whose threshold is minus the bias.
+        /// The output is 1 for a sum of at least 0, otherwise 0: the neuron of McCulloch and Pitts, whose threshold is minus the bias.
         Step = "step";
-        /// 1 / (1 + exp(-sum)).
+        /// The logistic function, 1 / (1 + exp(-sum)).
         Sigmoid = "sigmoid";
     }
 }
@@ -35,10 +35,10 @@ impl NeuronKind {
 }
 
 named_values! {
-    /// A value that a neuron can read. Those of neurons are from the last step, those of senses and of the beat from this one.
+    /// A value that a neuron can read. Outputs of neurons are those of the last step; senses and the beat are those of the present step.
     ///
-    /// They are in the order of a limb's values: the neurons of the limb itself, of the limb in front and of the limb behind,
-    /// the limb's senses, the beat. A gene has the place in the list of all as its value.
+    /// The order is that of a limb's values: the neurons of the limb itself, of the limb in front and of the limb behind, the limb's
+    /// senses, the beat. The value of a gene is the index in the list of all sources.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NeuronSource {
@@ -72,12 +72,12 @@ pub const NEURON_SOURCES: usize = NeuronSource::ALL.len();
 
 impl NeuronSource {}
 
-/// The values of a gene that is a kind.
+/// Values of a gene that chooses the kind of a neuron.
 pub(super) const KIND_CODES: [f32; NeuronKind::ALL.len()] = codes();
-/// The values of a gene that is a source.
+/// Values of a gene that chooses a source.
 pub(super) const SOURCE_CODES: [f32; NEURON_SOURCES] = codes();
 
-/// The values of a gene that chooses from a list of this length.
+/// Returns the values of a gene that chooses from a list of this length: 0, 1, 2, ...
 const fn codes<const N: usize>() -> [f32; N] {
     let mut codes = [0.0; N];
     let mut index = 0;
@@ -88,7 +88,7 @@ const fn codes<const N: usize>() -> [f32; N] {
     codes
 }
 
-/// Visits a choice as a gene, whose value is the place of the choice in the list of all.
+/// Visits a choice as a gene, whose value is the index of the choice in the list of all.
 pub(super) fn choice_gene<T: Copy + PartialEq>(
     field: impl Display,
     name: impl Display,

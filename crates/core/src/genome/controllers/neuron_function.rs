@@ -1,4 +1,4 @@
-//! The functions of a creature's neurons: the 23 of Sims (1994).
+//! The functions of a creature's neurons: the 23 functions of Sims (1994).
 
 use serde::{Deserialize, Serialize};
 
@@ -6,61 +6,61 @@ use crate::schema::listed_values;
 
 /// Time constant of a neuron that smooths, in s.
 const SMOOTH_S: f64 = 0.25;
-/// Largest output of a neuron, and largest state.
+/// Largest absolute value of a neuron's output, and of its state.
 const LARGEST_OUTPUT: f64 = 10.0;
 /// Largest exponent, so that no output overflows.
 const LARGEST_EXPONENT: f64 = 5.0;
 
 listed_values! {
-    /// The function of a neuron. Its inputs are a, b and c, of which it has as many as it needs.
+    /// The function of a neuron. Its inputs are a, b and c; a function that needs fewer inputs has only a, or a and b.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NeuronFunction {
-        /// a + b + c.
+        /// Output: a + b + c.
         Sum;
-        /// a b.
+        /// Output: a b.
         Product;
-        /// a / b; 0 for b = 0.
+        /// Output: a / b; 0 for b = 0.
         Divide;
-        /// 1 if a + b + c > 0, otherwise 0.
+        /// Output: 1 if a + b + c > 0, otherwise 0.
         SumThreshold;
-        /// 1 if a > b, otherwise -1.
+        /// Output: 1 if a > b, otherwise -1.
         GreaterThan;
-        /// -1, 0 or 1.
+        /// Output: the sign of a, as -1, 0 or 1.
         SignOf;
-        /// The least of a, b and c.
+        /// Output: the least of a, b and c.
         Min;
-        /// The greatest of them.
+        /// Output: the greatest of a, b and c.
         Max;
-        /// |a|.
+        /// Output: |a|.
         Abs;
-        /// b if a > 0, otherwise c.
+        /// Output: b if a > 0, otherwise c.
         If;
-        /// From b at a = 0 to c at a = 1.
+        /// Output: from b at a = 0 linearly to c at a = 1.
         Interpolate;
-        /// sin a.
+        /// Output: sin a.
         Sin;
-        /// cos a.
+        /// Output: cos a.
         Cos;
-        /// The arc tangent of a.
+        /// Output: the arc tangent of a.
         Atan;
-        /// ln(|a| + 10⁻⁶).
+        /// Output: ln(|a| + 10⁻⁶).
         Log;
-        /// exp a, with an exponent of at most 5 to either side.
+        /// Output: exp a, with an exponent from -5 to 5.
         Expt;
-        /// tanh(a + b + c): the neuron of McCulloch and Pitts with a smooth step.
+        /// Output: tanh(a + b + c), the neuron of McCulloch and Pitts with a smooth step.
         Sigmoid;
-        /// The integral of a over time.
+        /// Output: the integral of a over time.
         Integrate;
-        /// The rate of a.
+        /// Output: the rate of change of a.
         Differentiate;
-        /// a, smoothed.
+        /// Output: a, smoothed over time.
         Smooth;
-        /// Keeps a as long as b > 0, and its last value afterwards.
+        /// Output: a as long as b > 0, afterwards the last value of a with b > 0.
         Memory;
-        /// A sine wave; a shifts its phase.
+        /// Output: a sine wave, whose phase a shifts.
         OscillateWave;
-        /// A saw tooth from -1 to 1; a shifts its phase.
+        /// Output: a saw tooth from -1 to 1, whose phase a shifts.
         OscillateSaw;
     }
 }
@@ -69,20 +69,20 @@ listed_values! {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NeuronState(f64);
 
-/// The moment of an update.
+/// The time at which a neuron is updated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeuronMoment {
-    /// Periods of the neuron's oscillation since the start.
+    /// Number of periods of the neuron's oscillation since the start.
     pub periods: f64,
     /// Time since the last update, in s.
     pub step_s: f64,
 }
 
 impl NeuronFunction {
-    /// The functions of Miconi and Channon (2005), a smooth step, and an oscillator.
+    /// The functions of neurons of Miconi and Channon (2005): a smooth step, and an oscillator.
     pub const STANDARD: [Self; 2] = [Self::Sigmoid, Self::OscillateWave];
 
-    /// Number of inputs.
+    /// Returns the number of inputs of the function.
     pub fn inputs(self) -> usize {
         match self {
             Self::Sum
@@ -108,12 +108,12 @@ impl NeuronFunction {
         }
     }
 
-    /// Whether it has a frequency.
+    /// Returns whether the function is an oscillator, which has a frequency.
     pub fn oscillates(self) -> bool {
         matches!(self, Self::OscillateWave | Self::OscillateSaw)
     }
 
-    /// The output for these inputs, between ±10. What is not a number becomes 0.
+    /// Returns the output for these inputs, within ±10. NaN becomes 0.
     pub fn respond(
         self,
         [a, b, c]: [f64; 3],

@@ -1,4 +1,4 @@
-//! Neurons in the parts of a creature: a small graph in each node of its body, which grows with the node.
+//! Neurons in the parts of a creature: each node of the body's graph contains a small graph of neurons, which grows with the node.
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
@@ -26,51 +26,51 @@ pub const MOST_CREATURE_NEURONS: usize = 96;
 pub struct PartNeurons {
     /// Number of joints of the body.
     pub joints: u32,
-    /// The neurons of each node of the body's graph.
+    /// Neurons and joint inputs of each node of the body's graph.
     pub nodes: Vec<NodeNeurons>,
-    /// Neurons that belong to no part, and that every neuron may read.
+    /// Neurons that belong to no part. Every neuron may read them.
     pub shared: Vec<PartNeuron>,
 }
 
-/// The neurons that each part of a node has, and the inputs that drive its joint.
+/// The neurons that each part of a node has, and the inputs that drive the part's joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeNeurons {
-    /// The neurons.
+    /// Neurons of the part.
     pub neurons: Vec<PartNeuron>,
-    /// Share of the greatest torque about the bend axis.
+    /// Input for the torque about the bend axis, as a share of the greatest torque.
     pub bend: PartInput,
-    /// Share of the greatest torque about the twist axis.
+    /// Input for the torque about the twist axis, as a share of the greatest torque.
     pub twist: PartInput,
 }
 
-/// A neuron.
+/// A neuron of a part, or a shared one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartNeuron {
-    /// Its function.
+    /// Function of the neuron.
     pub function: NeuronFunction,
-    /// Added to its first input.
+    /// Bias of the neuron, which is added to its first input.
     pub bias: f32,
-    /// Frequency of an oscillator, in Hz; none of other neurons.
+    /// Frequency of an oscillator, in Hz; `None` for other neurons.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency_hz: Option<f32>,
-    /// Its inputs, as many as the function has.
+    /// Inputs of the neuron, as many as its function has.
     pub inputs: Vec<PartInput>,
 }
 
-/// A weighted input.
+/// A weighted input of a neuron or of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartInput {
-    /// The value that it reads.
+    /// Source of the input's value.
     pub source: PartSource,
-    /// Its factor.
+    /// Factor of the value.
     pub weight: f32,
 }
 
-/// A value that an input can read. The number of a neuron counts from 0; where there are fewer neurons it starts again from the first,
-/// and without any the value is 0.
+/// A source of an input. The index of a neuron counts from 0. If there are fewer neurons, counting continues from the first one; if there
+/// are none, the value is 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PartSource {
@@ -78,17 +78,17 @@ pub enum PartSource {
     Sense(PartSense),
     /// A neuron of the same part.
     Own(u8),
-    /// A neuron of the part that it has grown from.
+    /// A neuron of the part from which this part has grown.
     Parent(u8),
-    /// The mean of a neuron of all parts that grow from it.
+    /// The mean over all parts that grow from this part of their neurons with this index.
     Children(u8),
     /// A neuron that belongs to no part.
     Shared(u8),
 }
 
 listed_values! {
-    /// A sense of a part: see the catalogue of senses in `control`. Those of a joint are of the joint that holds the part; the
-    /// first part has none.
+    /// A sense of a part: see the catalogue of senses in `control`. Senses of a joint are those of the joint that holds the part. The
+    /// first part has no such joint.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     #[expect(missing_docs, reason = "the catalogue of senses describes them")]
@@ -109,7 +109,7 @@ listed_values! {
 }
 
 impl PartSource {
-    /// The number of its neuron; none of a sense.
+    /// Returns the index of the neuron; `None` for a sense.
     fn neuron(self) -> Option<u8> {
         match self {
             Self::Sense(_) => None,
@@ -120,7 +120,7 @@ impl PartSource {
         }
     }
 
-    /// The bytes that stand for it in a hash.
+    /// Returns the bytes that represent the source in a hash.
     fn code(self) -> [u8; 2] {
         match self {
             Self::Sense(sense) => [0, sense as u8],
@@ -178,7 +178,7 @@ impl PartNeuron {
 }
 
 impl PartNeurons {
-    /// The lists of neurons with their paths, those of the nodes first.
+    /// Returns the lists of neurons with their paths in saves, first those of the nodes.
     fn lists(&self) -> impl Iterator<Item = (String, &[PartNeuron])> {
         let of_nodes = self.nodes.iter().enumerate();
         let of_nodes =
@@ -186,7 +186,7 @@ impl PartNeurons {
         of_nodes.chain([("shared".to_owned(), &self.shared[..])])
     }
 
-    /// All neurons, those of the nodes first.
+    /// Returns all neurons, first those of the nodes.
     fn all(&self) -> impl Iterator<Item = &PartNeuron> {
         self.nodes.iter().flat_map(|node| &node.neurons).chain(&self.shared)
     }
@@ -248,7 +248,7 @@ impl ControllerEncoding for PartNeurons {
         self.joints as usize
     }
 
-    /// The mean of its oscillators; 0 without one.
+    /// Returns the mean frequency of the oscillators, in Hz; 0 without oscillators.
     fn estimated_frequency_hz(&self) -> Option<f32> {
         let frequencies: Vec<f32> = self.all().filter_map(|neuron| neuron.frequency_hz).collect();
         Some(frequencies.iter().sum::<f32>() / frequencies.len().max(1) as f32)

@@ -13,7 +13,7 @@ use crate::genome::limits::LIMIT;
 use crate::genome::network_space::WEIGHT;
 use crate::genome::space::GenomeSpace;
 
-/// The inputs of a joint's reflex, about its bend or its twist axis; the last is the bias.
+/// Names of the inputs of a joint's reflex about its bend or twist axis; the last one is the bias.
 pub const REFLEX_INPUTS: [&str; 9] = [
     "own angle",
     "own rate",
@@ -26,27 +26,27 @@ pub const REFLEX_INPUTS: [&str; 9] = [
     "bias",
 ];
 
-/// A gait whose targets move by `reach · tanh(Σ weight · sense)`, with the same weights for all joints, and whose phases
-/// are shifted by load and resistance.
+/// A gait with reflexes. The senses move the target angles by `reach · tanh(Σ weight · sense)`, with the same weights for all joints. Load
+/// and resistance shift the phases of the waves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReflexGait {
-    /// The gait.
+    /// The gait without reflexes.
     pub gait: Gait,
     /// Greatest angle by which the senses move a target, in radians.
     pub reach_rad: f32,
-    /// Weights of the senses about the bend axes: see [`REFLEX_INPUTS`].
+    /// Weights of the senses about the bend axes, in the order of [`REFLEX_INPUTS`].
     pub bend_weights: [f32; REFLEX_INPUTS.len()],
-    /// Weights of the senses about the twist axes.
+    /// Weights of the senses about the twist axes, in the order of [`REFLEX_INPUTS`].
     pub twist_weights: [f32; REFLEX_INPUTS.len()],
-    /// Strength σ of the rule `dφ/dt = -σ N cos φ`, by which the load N of the limb behind a joint draws the phase φ of
-    /// the joint's wave, in rad/s (Owaki, Kano, Nagasawa, Tero and Ishiguro, 2013).
+    /// Strength σ of the rule `dφ/dt = -σ N cos φ`, in rad/s, by which the load N of the limb behind a joint pulls the phase φ of the
+    /// joint's wave (Owaki, Kano, Nagasawa, Tero and Ishiguro, 2013).
     pub load_phase_rad_per_s: f32,
-    /// Rate at which resistance ahead of a joint's front limb delays the phase, in rad/s at full resistance.
+    /// Rate at which resistance ahead of a joint's front limb delays the phase of the joint's wave, in rad/s at full resistance.
     pub blocked_phase_rad_per_s: f32,
 }
 
-/// A rate of phase.
+/// Quantity of a rate at which a phase is shifted.
 const PHASE_RATE: Quantity = Quantity::new("rad/s", -60.0..=60.0);
 
 impl ControllerEncoding for ReflexGait {

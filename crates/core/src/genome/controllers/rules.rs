@@ -1,8 +1,8 @@
 //! A small library of waves, and rules that choose among them by what the snake senses.
 //!
-//! The idea is that of Lassabe, Luga and Duthen (2007) as the report describes it: what a creature senses passes through
-//! a classifier system, which picks the wave that drives the joints. Here the rules are genes, with fixed strengths.
-//! Numbers of waves and rules, conditions, periods and probabilities are this program's own.
+//! The idea is that of Lassabe, Luga and Duthen (2007) as the report describes it: what a creature senses is the input of a classifier
+//! system, which picks the wave that drives the joints. In this program the rules are genes, with fixed strengths. Numbers of waves and
+//! rules, conditions, periods and probabilities are this program's own.
 
 use std::ops::Range;
 
@@ -19,18 +19,18 @@ use crate::genome::kind::ControllerKind;
 use crate::genome::network_space::{MOST_LIBRARY_WAVES, MOST_WAVE_RULES};
 use crate::genome::space::GenomeSpace;
 
-/// Waves of target angles, the rules that choose among them, and the servo that pulls towards the targets: see
+/// Waves of target angles, the rules that choose among them, and the servo that turns the joints towards the targets: see
 /// [`Gait`](super::Gait).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RuleGenes {
-    /// Torque per angle by which a joint misses its target, in N·m/rad.
+    /// Torque per angle between a joint and its target, in N·m/rad.
     pub stiffness_nm_per_rad: f32,
-    /// Torque against the joint's rate, in N·m·s/rad.
+    /// Torque against the joint's rate, per rate, in N·m·s/rad.
     pub servo_damping_nms_per_rad: f32,
-    /// The waves, in radians. The first drives the joints for which no rule decides.
+    /// Waves of target angles, in radians. The first wave drives the joints for which no rule decides.
     pub library: Vec<Waves>,
-    /// The rules.
+    /// Rules that choose among the waves.
     pub rules: Vec<WaveRule>,
 }
 
@@ -53,7 +53,7 @@ impl RuleGenes {
     }
 }
 
-/// Number of coordinates of the genes that are visited.
+/// Counts the coordinates of the genes that are visited.
 fn coordinates(genes: impl FnOnce(&mut Genes<'_>)) -> usize {
     let mut count = 0;
     genes(&mut Genes::to(&mut |gene, _| count += usize::from(!gene.range.is_point())));
@@ -61,7 +61,7 @@ fn coordinates(genes: impl FnOnce(&mut Genes<'_>)) -> usize {
 }
 
 impl GenomeSpace {
-    /// The coordinates of each wave of the library in a point of the unit cube; none for kinds without a library.
+    /// Returns the range of coordinates of each wave of the library in a point of the unit cube; empty for kinds without a library.
     pub fn library_coordinates(&self, shape: GenomeShape) -> Vec<Range<usize>> {
         if self.controller != ControllerKind::Rules {
             return Vec::new();

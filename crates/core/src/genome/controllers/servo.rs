@@ -1,4 +1,4 @@
-//! The servo of a network: how far its outputs move the targets of the joints, and how stiffly these are followed.
+//! The servo of a network: how far the network's outputs move the targets of the joints, and how stiffly the joints follow them.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,25 +7,25 @@ use crate::genome::limits::LIMIT;
 use crate::genome::space::GenomeSpace;
 use crate::genome::wave_space::{SERVO_DAMPING, STIFFNESS};
 
-/// The servo of a controller whose outputs from -1 to 1 are target angles.
+/// The servo of a controller whose outputs from -1 to 1 determine target angles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ServoGenes {
-    /// Torque per angle by which a joint misses its target, in N·m/rad.
+    /// Torque per angle between a joint and its target, in N·m/rad.
     pub stiffness_nm_per_rad: f32,
-    /// Torque against the joint's rate, in N·m·s/rad.
+    /// Torque against the joint's rate, per rate, in N·m·s/rad.
     pub damping_nms_per_rad: f32,
-    /// The target angle of a bend at the output 1, in radians.
+    /// Target angle of a bend at the output 1, in radians.
     pub bend_range_rad: f32,
-    /// The target angle of a twist at the output 1, in radians; at 0, twists are held straight.
+    /// Target angle of a twist at the output 1, in radians; with 0, twists are held straight.
     pub twist_range_rad: f32,
 }
 
-/// The range of twists that are held straight.
+/// Quantity of the range of twists if all twists are held straight.
 const NO_ANGLE: Quantity = Quantity::new("rad", 0.0..=0.0);
 
 impl ServoGenes {
-    /// Genes of zeros, with what is the same for all genomes of a space.
+    /// Returns genes with the stiffness 0, and with the values that are the same for all genomes of a space.
     pub fn zeroed(space: &GenomeSpace) -> Self {
         Self {
             stiffness_nm_per_rad: 0.0,
@@ -35,7 +35,7 @@ impl ServoGenes {
         }
     }
 
-    /// Whether the twists have outputs of their own.
+    /// Returns whether the controller has outputs for the twists.
     pub fn twists(&self) -> bool {
         self.twist_range_rad > 0.0
     }
@@ -81,7 +81,7 @@ impl ServoGenes {
     /// Widens a space so that it contains these genes.
     pub fn widen(&self, space: &mut GenomeSpace) {
         space.wave.angle_range_rad = self.bend_range_rad;
-        // Without a limit above 0 a space has no twists, whatever its range.
+        // A space whose twist limits are all 0 has no twists, whatever its twist range is.
         if self.twists() || twists(space) {
             space.wave.twist_range_rad = self.twist_range_rad;
         }
@@ -95,7 +95,7 @@ impl ServoGenes {
     }
 }
 
-/// Whether a space has genes of twists.
+/// Returns whether genomes of a space have outputs for twists.
 pub(super) fn twists(space: &GenomeSpace) -> bool {
     space.wave.twist_range_rad > 0.0 && space.twist_limits_rad.iter().any(|limit| *limit > 0.0)
 }

@@ -1,4 +1,4 @@
-//! Torque signals: how they are drawn and how they vary, as the report has it.
+//! Torque signals: how they are drawn and how they vary, as in the report.
 
 use rand::RngExt;
 use rand::seq::IndexedRandom;
@@ -10,11 +10,11 @@ use crate::genome::body::BodyGenes;
 use crate::genome::gene::{Feature, GeneRange, Genes, GenomeShape, shifted};
 use crate::genome::space::{GenomeSpace, LARGEST_GENOME_TORQUES, POINTS_PER_S, TORQUE};
 
-/// One torque signal per joint axis. Each holds its value until the next point.
+/// One torque signal per joint axis. Each point's torque holds until the next point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TorqueSignals {
-    /// Points that take effect per simulated second.
+    /// Number of points that take effect per simulated second.
     pub points_per_s: f32,
     /// The signals of each joint, from the head; all signals have the same number of points.
     pub joints: Vec<JointSignals>,
@@ -31,19 +31,19 @@ pub struct JointSignals {
 }
 
 impl JointSignals {
-    /// The signals with the names of their fields and of their axes.
+    /// Returns the signals with the names of their fields and of their axes.
     fn axes(&self) -> [(&'static str, &'static str, &Vec<f32>); 2] {
         [("bend_nm", "bend", &self.bend_nm), ("twist_nm", "twist", &self.twist_nm)]
     }
 }
 
 impl TorqueSignals {
-    /// Every signal of the snake in a fixed order: joints from the head, bend before twist.
+    /// Returns every signal of the snake in a fixed order, for changes: joints from the head, bend before twist.
     pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         self.joints.iter_mut().flat_map(|joint| [&mut joint.bend_nm, &mut joint.twist_nm])
     }
 
-    /// Every signal of the snake in the same order, to read.
+    /// Returns every signal of the snake in a fixed order, for reading: joints from the head, bend before twist.
     pub fn all(&self) -> impl Iterator<Item = &Vec<f32>> {
         self.joints.iter().flat_map(|joint| [&joint.bend_nm, &joint.twist_nm])
     }
@@ -108,7 +108,7 @@ impl ControllerEncoding for TorqueSignals {
     }
 
     fn randomize(&mut self, body: &mut BodyGenes, space: &GenomeSpace, rng: &mut ChaCha8Rng) {
-        // `check` refuses empty lists; a list that is empty all the same means a joint held fast.
+        // `check` refuses empty lists. If a list is empty nevertheless, the joint cannot move.
         let choose =
             |limits: &[f32], rng: &mut ChaCha8Rng| limits.choose(rng).copied().unwrap_or(0.0);
         body.bend_limit_rad = choose(&space.bend_limits_rad, rng);
@@ -119,8 +119,8 @@ impl ControllerEncoding for TorqueSignals {
         }
     }
 
-    /// Shifts every point of every signal, and the density by the same share of its range. The joint limits,
-    /// chosen once per snake, are inherited.
+    /// Shifts every point of every signal, and the density by the same share of its range. The joint limits, which are chosen once per
+    /// snake, are inherited.
     fn mutate(
         &mut self,
         body: &mut BodyGenes,
@@ -142,7 +142,7 @@ impl ControllerEncoding for TorqueSignals {
             let range = GeneRange::Between(0.0, most.max(f32::MIN_POSITIVE));
             Feature::new(name, unit, value, range)
         };
-        // Torques that change their sign with every point have the highest frequency.
+        // Torques that change their sign at every point have the highest frequency.
         let most_hz = self.points_per_s / 2.0;
         let rhythm_hz = self.estimated_frequency_hz().unwrap_or(0.0);
         let mut features = vec![feature("rhythm".to_owned(), "Hz", rhythm_hz, most_hz)];
@@ -170,8 +170,8 @@ impl ControllerEncoding for TorqueSignals {
     }
 }
 
-/// Fills a signal by the report's random walk: the first point anywhere in ±`range_nm`, each next
-/// one within ±`step_nm` of the one before, clamped to the range.
+/// Fills a signal by the random walk of the report: the first point lies anywhere in ±`range_nm`, each next one within ±`step_nm` of the
+/// one before, clamped to the range.
 fn random_walk(signal: &mut [f32], range_nm: f32, step_nm: f32, rng: &mut ChaCha8Rng) {
     let mut torque_nm = rng.random_range(-range_nm..=range_nm);
     for (index, point) in signal.iter_mut().enumerate() {

@@ -1,8 +1,8 @@
 //! The hyperbolic tangent of many numbers at once.
 //!
-//! Four modules of a network take 24 of them in a step. `libm::tanhf` branches, so the processor computes them one after the other,
-//! which took a tenth of the time of a step. The function here gives the same bits without a branch, so the compiler makes
-//! vector instructions of the loop over it.
+//! Four modules of a network compute 24 hyperbolic tangents in a step. `libm::tanhf` branches, so the processor computes one after the
+//! other, which took a tenth of the time of a step. The function in this module gives the same bits without a branch, so that the compiler
+//! can turn a loop over it into vector instructions.
 
 /// Replaces each number by its hyperbolic tangent, with the bits of `libm::tanhf`. A NaN stays a NaN.
 pub fn tanh_each(values: &mut [f32]) {
@@ -11,16 +11,15 @@ pub fn tanh_each(values: &mut [f32]) {
     }
 }
 
-/// The method of FreeBSD's `s_tanhf.c` and `s_expm1f.c`, which libm follows too. A choice between two values replaces each branch.
-/// Branches that serve only arguments which a hyperbolic tangent never has, or whose result is the same without them, are left
-/// out.
+/// Computes tanh x by the method of FreeBSD's `s_tanhf.c` and `s_expm1f.c`, which libm follows, too. A choice between two values replaces
+/// each branch. Left out are branches for arguments that cannot occur, and branches without which the result is the same.
 #[inline]
 fn tanh(x: f32) -> f32 {
-    // With t = exp(-2x) - 1 up to the first of these sizes, tanh x = -t / (t + 2). Beyond it t = exp(2x) - 1, and tanh x is
-    // t / (t + 2) up to the second, then 1 - 2 / (t + 2). They are ln(5/3)/2 and ln(3)/2.
+    // Up to the size `SMALL`, t = exp(-2x) - 1 and tanh x = -t / (t + 2). Beyond it, t = exp(2x) - 1, and tanh x is t / (t + 2) up to the
+    // size `MEDIUM`, then 1 - 2 / (t + 2). The two sizes are ln(5/3)/2 and ln(3)/2.
     const SMALL: f32 = f32::from_bits(0x3e82_c578);
     const MEDIUM: f32 = f32::from_bits(0x3f0c_9f54);
-    // ln 2 in two parts, half of it, and its inverse.
+    // ln 2 in two parts, followed by half of ln 2 and its inverse.
     const LN_2_HIGH: f32 = f32::from_bits(0x3f31_7180);
     const LN_2_LOW: f32 = f32::from_bits(0x3717_f7d1);
     const HALF_LN_2: f32 = f32::from_bits(0x3eb1_7218);
@@ -28,15 +27,15 @@ fn tanh(x: f32) -> f32 {
     // Coefficients for exp(x) - 1 near 0: -0.0333 and 0.00158.
     const Q1: f32 = f32::from_bits(0xbd08_8868);
     const Q2: f32 = f32::from_bits(0x3acf_3010);
-    // 2²³: a sum with it has no fraction, and its lowest bits are the whole number that was added.
+    // 2²³: a sum with it has no fraction, and its lowest bits are the whole number that was added to it.
     const WHOLE: f32 = 8_388_608.0;
 
-    // From 10 on the result is 1.
+    // From a size of 10 on, the result is 1.
     let size = if x.abs() < 10.0 { x.abs() } else { 10.0 };
     let (is_small, is_large) = (size <= SMALL, size > MEDIUM);
     let exponent = 2.0 * if is_small { -size } else { size };
 
-    // exponent = k ln 2 + rest, with an error of the rest.
+    // The exponent is k ln 2 + rest, and the rest has an error.
     let quotient = INVERSE_LN_2 * exponent + 0.5;
     let nearest = (quotient + WHOLE) - WHOLE;
     let floor = if nearest > quotient { nearest - 1.0 } else { nearest };
@@ -109,7 +108,7 @@ mod tests {
         }
     }
 
-    /// Takes a minute: `cargo test --release -p snakes-core all_numbers -- --ignored`.
+    /// Tests all numbers, which takes a minute: `cargo test --release -p snakes-core all_numbers -- --ignored`.
     #[test]
     #[ignore = "takes a minute"]
     fn all_numbers_have_the_bits_of_libm() {

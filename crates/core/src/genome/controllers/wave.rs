@@ -1,4 +1,4 @@
-//! Periodic controllers: a wave for each joint axis, all at one frequency. Alone, the waves are torques.
+//! Periodic controllers: a wave for each joint axis, all with the same frequency. Without a servo, the waves are torques.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::genome::limits::{LARGEST_LIMIT_RAD, PHASE};
 use crate::genome::space::{GenomeSpace, TORQUE};
 use crate::genome::wave_space::MOST_HARMONICS;
 
-/// One wave per joint axis, at one shared frequency.
+/// One wave per joint axis. All have the same frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Waves {
@@ -24,9 +24,9 @@ pub struct Waves {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointWaves {
-    /// About the bend axis.
+    /// Wave about the bend axis.
     pub bend: Wave,
-    /// About the twist axis.
+    /// Wave about the twist axis.
     pub twist: Wave,
 }
 
@@ -34,9 +34,9 @@ pub struct JointWaves {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// The centre of its swing, in the unit of its controller: N·m or radians.
+    /// Centre of the wave, in the unit of its controller: N·m or radians.
     pub offset: f32,
-    /// The terms, from the fundamental up.
+    /// Terms of the wave, from the fundamental up.
     pub harmonics: Vec<Harmonic>,
 }
 
@@ -44,17 +44,18 @@ pub struct Wave {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Harmonic {
-    /// In the unit of the controller: N·m or radians.
+    /// Amplitude of the term, in the unit of the controller: N·m or radians.
     pub amplitude: f32,
-    /// Phase at the start, in radians.
+    /// Phase of the term at the start, in radians.
     pub phase_rad: f32,
 }
 
 impl Wave {
-    /// Its value after `turns` periods of the fundamental, summed in double precision, which suffices for the
+    /// Returns the wave's value after `turns` periods of the fundamental. It is summed in double precision, which is exact enough for the
     /// longest trial.
     pub fn at(&self, turns: f64) -> f32 {
-        // A sine is the dearest part of a controller, and half of the terms of a snake that cannot twist have no amplitude.
+        // Sines take most of a controller's time. Terms without amplitude are skipped, because a snake that cannot twist has none in half
+        // of its terms.
         let swings = self.harmonics.iter().enumerate().filter(|(_, of)| of.amplitude != 0.0);
         let terms = swings.map(|(index, harmonic)| {
             let angle = std::f64::consts::TAU * (index + 1) as f64 * turns;
@@ -63,11 +64,11 @@ impl Wave {
         (f64::from(self.offset) + terms.sum::<f64>()) as f32
     }
 
-    /// Visits the genes, with offset and amplitudes up to `most` of this quantity.
+    /// Visits the genes. Offset and amplitudes have this quantity, and are at most `most`.
     fn genes(&mut self, quantity: Quantity, most: f32, genes: &mut Genes<'_>) {
         genes.gene("offset", "offset", quantity, GeneRange::around_zero(most), &mut self.offset);
         for (index, harmonic) in self.harmonics.iter_mut().enumerate() {
-            // A term of k times the frequency has k times the rates.
+            // A term with k times the frequency has k times the rates, so its greatest amplitude is divided by k.
             let most = most / (index + 1) as f32;
             let moves = most > 0.0;
             let term = TERMS.get(index).copied().unwrap_or_default();
@@ -81,7 +82,7 @@ impl Wave {
         }
     }
 
-    /// The range of offsets and fundamental amplitudes that it needs: the k-th term has a k-th of the range.
+    /// Returns the range of offsets and fundamental amplitudes that contains this wave. The k-th term has a k-th of this range.
     fn needed_range(&self) -> f32 {
         let terms = self.harmonics.iter().zip(1_u8..).map(|(harmonic, k)| {
             let (k, mut range) = (f32::from(k), harmonic.amplitude.abs() * f32::from(k));
@@ -94,18 +95,18 @@ impl Wave {
     }
 }
 
-/// An offset or an amplitude of a target angle, to either side.
+/// Quantity of the offset or an amplitude of a target angle, to either side.
 const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
-/// How the names of charts count the terms of a wave.
+/// Suffixes by which the names in charts count the terms of a wave.
 const TERMS: [&str; MOST_HARMONICS as usize] = ["", " 2", " 3", " 4", " 5"];
 
 impl Waves {
-    /// Every wave in a fixed order: joints from the head, bend before twist.
+    /// Returns every wave in a fixed order, for changes: joints from the head, bend before twist.
     pub fn all_mut(&mut self) -> impl Iterator<Item = &mut Wave> {
         self.joints.iter_mut().flat_map(|joint| [&mut joint.bend, &mut joint.twist])
     }
 
-    /// Every wave in the same order, to read.
+    /// Returns every wave in a fixed order, for reading: joints from the head, bend before twist.
     pub fn all(&self) -> impl Iterator<Item = &Wave> {
         self.joints.iter().flat_map(|joint| [&joint.bend, &joint.twist])
     }
@@ -116,7 +117,7 @@ impl Waves {
         self.genes_up_to(ranges_rad, ANGLE, space, genes);
     }
 
-    /// Visits the genes of waves with offsets and amplitudes of a quantity, and at most of these sizes, about the bend and
+    /// Visits the genes of waves. Offsets and amplitudes have this quantity, and are at most `bend` about the bend axes and `twist` about
     /// the twist axes.
     fn genes_up_to(
         &mut self,
@@ -126,7 +127,7 @@ impl Waves {
         genes: &mut Genes<'_>,
     ) {
         space.wave.frequency_gene(&mut self.frequency_hz, genes);
-        // A joint that cannot turn needs no search.
+        // An axis about which a joint cannot turn gets a range of one value, so that it has no coordinates.
         let [bend_turns, twist_turns] = space.turning_axes();
         let bend = if bend_turns { bend } else { 0.0 };
         let twist = if twist_turns { twist } else { 0.0 };
@@ -141,8 +142,8 @@ impl Waves {
         }
     }
 
-    /// Widens a space so that it contains the number of terms. Returns the ranges of offsets
-    /// and amplitudes that these waves need about the bend and the twist axes, at least `bend` and `twist`.
+    /// Widens a space so that it contains the number of terms. Returns the ranges of offsets and amplitudes that these waves need about
+    /// the bend and the twist axes, at least `bend` and `twist`.
     pub(super) fn widen_from(&self, [bend, twist]: [f32; 2], space: &mut GenomeSpace) -> [f32; 2] {
         let terms = self.all().map(|wave| wave.harmonics.len() as u32).max();
         space.wave.harmonics = terms.unwrap_or(space.wave.harmonics);
@@ -152,7 +153,7 @@ impl Waves {
         [needed(bend, |joint| &joint.bend), needed(twist, |joint| &joint.twist)]
     }
 
-    /// Samples of all waves during a trial.
+    /// Returns samples of all waves during a trial of this length, in seconds: times in seconds, and values.
     pub(super) fn samples(&self, duration_s: f64) -> Vec<[Vec<(f64, f64)>; 2]> {
         const SAMPLES_PER_S: f64 = 60.0;
         let count = (duration_s * SAMPLES_PER_S) as usize;

@@ -1,4 +1,4 @@
-//! A rule that chooses a wave: a condition on what the snake senses, and what to do where it holds.
+//! A rule that chooses a wave: a condition on what the snake senses, and what the rule does when the condition holds.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,8 +7,8 @@ use crate::genome::gene::{GeneRange, Genes, Quantity};
 use crate::genome::limits::SHARE;
 use crate::learn::classifiers::Condition;
 
-/// The statements of the bits that conditions look at, in the order of the symbols: for a bit that is set, and for one that
-/// is not. Bit number i has the value 2^i.
+/// Words for the bits of conditions, in the order of the symbols: for a bit that is set, and for one that is not. Bit number i has the
+/// value 2^i.
 pub const RULE_SENSES: [[&str; 2]; 10] = [
     ["head gap under 1 m", "head gap 1 m or more"],
     ["head gap under 0.25 m", "head gap 0.25 m or more"],
@@ -26,18 +26,18 @@ pub const RULE_SENSES: [[&str; 2]; 10] = [
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WaveRule {
-    /// When it may decide: for each of [`RULE_SENSES`] a symbol, 1 if it must hold, 0 if it must not, and # if it does not
-    /// matter.
+    /// Condition under which the rule may decide. For each of [`RULE_SENSES`] it has a symbol: 1 if the bit must be set, 0 if it must not,
+    /// and # if it does not matter.
     pub condition: Condition,
-    /// The joints for which it decides.
+    /// Joints for which the rule decides.
     pub group: JointGroup,
-    /// The wave that it chooses; the first of the library is 1.
+    /// Number of the wave that the rule chooses; the first wave of the library is 1.
     pub wave: u32,
-    /// Of the rules whose conditions hold the strongest decides, from 0 to 1.
+    /// Strength of the rule, from 0 to 1. Of the rules whose conditions hold, the strongest decides.
     pub strength: f32,
 }
 
-/// The joints for which a rule decides. The front half has one joint more where their number is odd.
+/// The joints for which a rule decides. If their number is odd, the front half has one joint more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointGroup {
@@ -49,15 +49,15 @@ pub enum JointGroup {
     Rear,
 }
 
-/// The range of a gene for a symbol, whose values are -1 for 0, 0 for # and 1 for 1. A random one is # with a probability
-/// of 0.6, so that one in ten random rules holds at a moment, and one of a dozen most of the time. With three symbols
-/// equally likely it would be one in sixty.
+/// Range of a gene for a symbol. The values -1, 0 and 1 stand for 0, # and 1. A random symbol is # with a probability of 0.6. Then one in
+/// ten random rules holds at a given moment, and one of a dozen holds most of the time. With three equally likely symbols, one in sixty
+/// would hold.
 const SYMBOLS: GeneRange<'_> = GeneRange::Between(-1.25, 1.25);
-/// From this size on, the value of such a gene is rounded away from #.
+/// Least absolute value of a gene for a symbol that is not rounded to #.
 const LEAST_CERTAIN: f32 = 0.75;
-/// The range of a gene for a group: -1 for the front, 0 for all and 1 for the rear.
+/// Range of a gene for a group of joints: -1 stands for the front, 0 for all and 1 for the rear.
 const GROUPS: GeneRange<'_> = GeneRange::Between(-1.5, 1.5);
-/// A symbol or a group, as a number.
+/// Quantity of a gene for a symbol or a group.
 const SIGN: Quantity = Quantity::pure(-1.5..=1.5);
 
 impl WaveRule {
@@ -69,18 +69,18 @@ impl WaveRule {
         strength: 0.0,
     };
 
-    /// Whether it may decide for the front or the rear half of the joints while the snake senses these bits.
+    /// Returns whether the rule may decide for the front or the rear half of the joints while the snake senses these bits.
     pub fn holds(&self, bits: u32, half: JointGroup) -> bool {
         (self.group == JointGroup::All || self.group == half) && self.condition.matches(bits)
     }
 
-    /// Its condition in words: "head blocked, tail does not touch".
+    /// Describes the rule's condition in words, such as "head blocked, tail does not touch".
     pub fn words(&self) -> String {
         bits_in_words(&RULE_SENSES, self.condition.care(), self.condition.value(), "always")
     }
 
-    /// Visits the genes. Symbols, groups and waves are numbers that are rounded, so that a small step of a search leaves
-    /// most of them as they are; `waves` is the size of the library.
+    /// Visits the genes. Symbols, groups and waves are numbers that are rounded, so that a small step of a search changes few of them.
+    /// `waves` is the size of the library.
     pub(super) fn genes(&mut self, waves: usize, genes: &mut Genes<'_>) {
         for (sense, [name, _]) in RULE_SENSES.iter().enumerate() {
             let mut symbol = number_of(self.condition.symbol(sense));
@@ -103,7 +103,7 @@ impl WaveRule {
     }
 }
 
-/// The value of the gene of a symbol.
+/// Returns the value of the gene of a symbol; `None` is #.
 fn number_of(symbol: Option<bool>) -> f32 {
     match symbol {
         None => 0.0,
@@ -112,7 +112,7 @@ fn number_of(symbol: Option<bool>) -> f32 {
     }
 }
 
-/// The symbol of a value of its gene.
+/// Returns the symbol for a value of its gene; `None` is #.
 fn symbol_of(number: f32) -> Option<bool> {
     (number.abs() >= LEAST_CERTAIN).then_some(number > 0.0)
 }

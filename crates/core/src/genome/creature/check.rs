@@ -1,4 +1,4 @@
-//! Whether a creature can be built.
+//! Checks whether a creature can be built.
 
 use super::genes::node_genes;
 use super::growth::{bare_plan, grow};
@@ -10,13 +10,13 @@ use crate::genome::limits::SIZE_RANGE_M;
 use crate::genome::space::GenomeSpace;
 use crate::world::BodyPlan;
 
-/// Greatest height of the centre of mass before a trial, in metres. A taller body could win by falling over.
+/// Greatest height of the centre of mass before a trial, in metres. A taller body could gain by falling over.
 const HIGHEST_M: f32 = 1.5;
 
 /// Checks every value of a graph.
 ///
 /// # Errors
-/// The first value that is not allowed.
+/// Returns the first value that is not allowed.
 pub fn check_nodes(nodes: &[BodyNode]) -> Result<(), Invalid> {
     within("nodes", nodes.len(), 1..=MOST_NODES)?;
     for (index, node) in nodes.iter().enumerate() {
@@ -28,7 +28,7 @@ pub fn check_nodes(nodes: &[BodyNode]) -> Result<(), Invalid> {
 /// Checks every value of a graph, and that the creature that grows from it can be built.
 ///
 /// # Errors
-/// The first thing that is not allowed.
+/// Returns the first violation.
 pub fn check_creature(nodes: &[BodyNode]) -> Result<(), Invalid> {
     check_nodes(nodes)?;
     check_built(&bare_plan(nodes, &grow(nodes)), INERTIA_RATIO)
@@ -37,7 +37,7 @@ pub fn check_creature(nodes: &[BodyNode]) -> Result<(), Invalid> {
 /// Checks that a grown body can be built: see `check_creature`.
 ///
 /// # Errors
-/// It has a single part, neighbours differ too much, or it is too tall.
+/// Returns an error if the body has a single part, if neighbours differ too much, or if the body is too tall.
 pub(super) fn check_built(body: &BodyPlan, largest_inertia: f64) -> Result<(), Invalid> {
     if body.joints.is_empty() {
         return Err(Invalid::new("nodes", "a graph of which one part grows", "at least two parts"));

@@ -1,4 +1,4 @@
-//! The genes of a creature's body, and what else of it belongs to a genome's hash.
+//! The genes of a creature's body, and the other data of the body that belongs to a genome's hash.
 
 use xxhash_rust::xxh3::Xxh3Default;
 
@@ -9,11 +9,11 @@ use crate::genome::gene::{GeneRange, Genes, Quantity};
 use crate::genome::limits::{DENSITY, LIMIT, SHARE, SIDED_SHARE, SIZE, SIZE_RANGE_M};
 use crate::genome::space::GenomeSpace;
 
-/// Largest angle between a part and the side that it grows from, beside a right angle, in radians.
+/// Largest deviation from a right angle between a part and the side from which it grows, in radians.
 const LARGEST_TILT_RAD: f32 = 1.2;
-/// An angle between a part and the side that it grows from, beside a right angle.
+/// Quantity of a deviation from a right angle between a part and the side from which it grows.
 const TILT: Quantity = Quantity::new("rad", -LARGEST_TILT_RAD..=LARGEST_TILT_RAD);
-/// A factor of size from a part to one that grows from it.
+/// Quantity of the factor of size from a part to a part that grows from it.
 const SCALE: Quantity = Quantity::pure(0.5..=1.5);
 
 /// Visits the genes of all nodes.
@@ -26,7 +26,7 @@ pub fn node_genes(nodes: &mut [BodyNode], space: &GenomeSpace, genes: &mut Genes
 
 fn genes_of(node: &mut BodyNode, space: &GenomeSpace, genes: &mut Genes<'_>) {
     let bodies = &space.bodies;
-    // The space limits the sizes of parts, which the factors of size change.
+    // The space limits the sizes of grown parts, which the factors of size change. The genes of sizes have the range of all files.
     let sizes = GeneRange::Ratio(*SIZE_RANGE_M.start(), *SIZE_RANGE_M.end());
     genes.gene("length_m", "length", SIZE, sizes, &mut node.length_m);
     genes.gene("width_m", "width", SIZE, sizes, &mut node.width_m);
@@ -74,7 +74,7 @@ impl BodySpace {
     }
 }
 
-/// Hashes what is not a number: joints, sides, and who grows from whom.
+/// Hashes the data of a body that are not numbers: joints, sides, and the connections between nodes.
 pub fn hash_structure(nodes: &[BodyNode], hash: &mut Xxh3Default) {
     for node in nodes {
         hash.update(&[node.joint as u8, node.copies as u8, node.connections.len() as u8]);

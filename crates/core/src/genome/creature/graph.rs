@@ -1,4 +1,4 @@
-//! A creature's graph with its neurons, and graphs of two parents.
+//! A creature's graph with its neurons, and the combination of the graphs of two parents.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -12,23 +12,23 @@ use crate::rng::{drawn, uniform};
 /// A node with its neurons.
 #[derive(Debug, Clone)]
 pub struct WholeNode {
-    /// The plan of its part.
+    /// Plan of the node's part.
     pub body: BodyNode,
-    /// The neurons of its part.
+    /// Neurons of the node's part.
     pub neurons: NodeNeurons,
 }
 
-/// A creature's graph, with bodies and neurons side by side.
+/// A creature's graph, with body and neurons of each node side by side.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    /// The nodes, the first of which grows first.
+    /// Nodes of the graph. Growth begins with the first one.
     pub nodes: Vec<WholeNode>,
     /// Neurons that belong to no part.
     pub shared: Vec<PartNeuron>,
 }
 
 impl Graph {
-    /// The graph of a creature.
+    /// Extracts the graph of a creature; empty for other genomes.
     pub fn of(genome: &Genome) -> Self {
         let ControllerGenes::PartNeurons(genes) = &genome.controller else {
             return Self { nodes: Vec::new(), shared: Vec::new() };
@@ -41,7 +41,7 @@ impl Graph {
         Self { nodes, shared: genes.shared.clone() }
     }
 
-    /// The creature of this graph, from which this number of parts grows.
+    /// Converts the graph to the genome of a creature. `parts` is the number of parts that grow from the graph.
     pub fn into_genome(self, parts: usize) -> Genome {
         let (bodies, nodes): (Vec<_>, Vec<_>) =
             self.nodes.into_iter().map(|node| (node.body, node.neurons)).unzip();
@@ -53,7 +53,7 @@ impl Graph {
         }
     }
 
-    /// Removes the nodes that no connection leads to from the first.
+    /// Removes the nodes that cannot be reached by connections from the first node.
     pub fn remove_unreachable(&mut self) {
         let mut reached = vec![false; self.nodes.len()];
         let mut left = vec![0];
@@ -78,19 +78,19 @@ impl Graph {
         }
     }
 
-    /// The plans of the parts.
+    /// Returns the plans of the parts of all nodes.
     pub fn bodies(&self) -> Vec<BodyNode> {
         self.nodes.iter().map(|node| node.body.clone()).collect()
     }
 
-    /// Takes other plans of the same parts.
+    /// Replaces the plans of the parts of all nodes.
     pub fn take_bodies(&mut self, bodies: Vec<BodyNode>) {
         self.nodes.iter_mut().zip(bodies).for_each(|(node, body)| node.body = body);
     }
 }
 
-/// The nodes of both parents in a row, from the first up to a place, from the second up to another, and from the first again.
-/// Connections beyond the nodes that there are lead to random ones.
+/// Crosses two graphs over. The nodes come from the first parent up to one place, from the second up to another, and then from the first
+/// again. Connections to nodes that do not exist lead to random nodes instead.
 pub fn crossed(first: &Graph, second: &Graph, rng: &mut ChaCha8Rng) -> Graph {
     let longest = first.nodes.len().max(second.nodes.len());
     let (a, b) = (rng.random_range(0..=longest), rng.random_range(0..=longest));
@@ -108,8 +108,8 @@ pub fn crossed(first: &Graph, second: &Graph, rng: &mut ChaCha8Rng) -> Graph {
     Graph { nodes, shared }
 }
 
-/// The first parent, of which one connection leads to a node of the second. None if it has no connection, or if the nodes of
-/// both would be too many.
+/// Grafts the second graph onto the first: one connection of the first leads to a node of the second. `None` if the first graph has no
+/// connection, or if both together have too many nodes.
 pub fn grafted(mut graph: Graph, second: &Graph, rng: &mut ChaCha8Rng) -> Option<Graph> {
     let offset = graph.nodes.len() as u32;
     let all: Vec<(usize, usize)> = graph

@@ -6,43 +6,42 @@ use crate::world::{
     BodyPlan, JointPlan, Mount, PartPlan, Pose, Rotation, Vector, joint_turn, neighbours_pass,
 };
 
-/// Largest number of parts of a creature. No more grow.
+/// Largest number of parts of a creature. Growth stops at this number.
 pub const MOST_PARTS: usize = 16;
 /// Largest number of joints from the first part to any other.
 pub const MOST_DEPTH: usize = 6;
-/// Largest number of parts that grow from one.
+/// Largest number of parts that grow from one part.
 const MOST_CHILDREN: usize = 3;
 
 /// A part that has grown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GrownPart {
-    /// Index of its node.
+    /// Index of the node of which the part has grown.
     pub node: usize,
-    /// Index of the part that it has grown from; none of the first.
+    /// Index of the part from which this part has grown; `None` for the first part.
     pub parent: Option<usize>,
     /// Size across x, along y and along z, in metres.
     pub size_m: [f32; 3],
-    /// Place on the parent at which its joint holds it.
+    /// Place on the parent at which the joint holds the part.
     pub mount: Mount,
-    /// Whether it is a mirror image of what its node says.
+    /// Whether the part is a mirror image of its node's plan.
     pub is_mirrored: bool,
 }
 
-/// A part that may still grow others, with the state of its growth.
+/// A part from which others may still grow, with the state of its growth.
 struct Bud {
-    /// Number of parts of each node on the path from the first part, this one included.
+    /// For each node, the number of its parts on the path from the first part to this one, both included.
     counts: Vec<u32>,
     scale: f32,
     depth: usize,
-    /// Where the part stands if the first one stands at the origin.
+    /// Pose and size of the part, if the first part stands at the origin.
     placed: PlacedBox,
 }
 
-/// Grows the parts of a graph, parents before their children and each generation from left to right of the lists. A part of a
-/// node grows from another as long as the path to it has fewer parts of that node than the node allows. Where no connection
-/// of a part that is not terminal can be followed any more, its terminal ones apply. What would exceed the largest number of
-/// parts does not grow, nor what would lie inside another part. Sims discarded creatures whose parts did; most random ones
-/// have such parts.
+/// Grows the parts of a graph: parents before their children, and each generation in the order of the lists. A part of a node grows from
+/// another part as long as the path to it has fewer parts of this node than the node allows. If none of a part's connections that are not
+/// terminal can be followed any more, its terminal connections apply. Parts beyond the largest number do not grow, nor do parts that would
+/// lie inside another part. Sims discarded creatures with such parts, but most random creatures have some.
 pub fn grow(nodes: &[BodyNode]) -> Vec<GrownPart> {
     let Some(first) = nodes.first() else { return Vec::new() };
     let mut counts = vec![0; nodes.len()];
@@ -99,7 +98,7 @@ pub fn grow(nodes: &[BodyNode]) -> Vec<GrownPart> {
     parts
 }
 
-/// The connections of a node that a part of it follows, given the number of parts of each node on its path.
+/// Returns the connections of a node that a part of it follows, given the number of parts of each node on the part's path.
 fn followed<'a>(nodes: &'a [BodyNode], node: usize, counts: &[u32]) -> Vec<&'a Connection> {
     let all = nodes[node].connections.iter().filter(|connection| {
         let to = connection.to as usize;
@@ -109,7 +108,7 @@ fn followed<'a>(nodes: &'a [BodyNode], node: usize, counts: &[u32]) -> Vec<&'a C
     if inner.is_empty() { terminal } else { inner }
 }
 
-/// Where a part of a node is held on another.
+/// Computes where a part is held on its parent.
 fn mount_of(
     connection: &Connection,
     parent: &GrownPart,
@@ -120,7 +119,7 @@ fn mount_of(
     let [u, v] = connection.place;
     let half_turn = std::f32::consts::FRAC_1_SQRT_2;
     let about = |x: f32, z: f32| Rotation::from_xyzw(x, 0.0, z, half_turn);
-    // The part extends backwards from its joint; each side turns that direction outwards.
+    // The part extends backwards from its joint. The rotation of each side turns this direction outwards.
     let (at_m, side) = match connection.side {
         BodySide::Front if parent.parent.is_some() => {
             ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY)
@@ -153,12 +152,12 @@ fn mount_of(
         turn = Rotation::from_xyzw(turn.x, -turn.y, -turn.z, turn.w);
         twist_rad = -twist_rad;
     }
-    // The connection says how the part stands in the built pose, from which the middle of the range is turned away.
+    // The connection determines the rotation of the part in the built pose. The middle of the joint's range deviates from it.
     let start_rad = [bend_rad, twist_rad];
     Mount { at_m, turn: turn * joint_turn(start_rad).inverse(), start_rad }
 }
 
-/// The body that has grown, with joints without torque and damping: sizes, masses and places.
+/// Builds the body that has grown, with joints without torque and damping: its sizes, masses and places.
 pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
     let part = |(limb, part): (usize, &GrownPart)| {
         let [width_m, length_m, height_m] = part.size_m;
@@ -196,12 +195,12 @@ pub fn bare_plan(nodes: &[BodyNode], grown: &[GrownPart]) -> BodyPlan {
     body
 }
 
-/// Whether a part is so short that its neighbours pass through each other.
+/// Returns whether a part is so short that its neighbours pass through each other.
 fn is_short(front: &GrownPart, middle: &GrownPart, rear: &GrownPart) -> bool {
     neighbours_pass(middle.size_m[1], [front.size_m[2], rear.size_m[2]])
 }
 
-/// The pairs of a part and the child of a short child of it.
+/// Returns the pairs of parts that pass through each other, because a short part lies between them: a part and its grandchild.
 fn contact_free_pairs(grown: &[GrownPart]) -> Vec<[usize; 2]> {
     let pairs = grown.iter().enumerate().filter_map(|(index, part)| {
         let middle = grown.get(part.parent?)?;
@@ -278,7 +277,7 @@ pub(super) mod tests {
         let poses = poses(&nodes);
         assert_near(poses[1].translation, [-1.5, -1.0, 0.25]);
         assert_near(poses[2].translation, [1.5, -1.0, 0.25]);
-        // Their length lies across the body.
+        // The length of both parts lies across the body.
         assert_near(poses[1].rotation * Vector::Y, [1.0, 0.0, 0.0]);
         assert_near(poses[2].rotation * Vector::Y, [-1.0, 0.0, 0.0]);
     }
@@ -336,10 +335,10 @@ pub(super) mod tests {
         let leaf = node(1, Vec::new());
         let twins = [node(1, vec![to(1, BodySide::Left), to(1, BodySide::Left)]), leaf.clone()];
         assert_eq!(grow(&twins).len(), 2);
-        // The mirror image of a part in the middle is the part itself.
+        // The mirror image of a part in the middle would lie inside the part.
         let middle = Connection { is_mirrored: true, ..to(1, BodySide::Rear) };
         assert_eq!(grow(&[node(1, vec![middle]), leaf]).len(), 2);
-        // A square: the fifth part would lie in the first.
+        // Parts that grow in a square: the fifth one would lie inside the first.
         let mut around = to(0, BodySide::Left);
         around.place = [-1.0, 0.0];
         let mut square = node(5, vec![around]);

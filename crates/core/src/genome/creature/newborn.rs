@@ -15,15 +15,16 @@ use crate::genome::individual::Genome;
 use crate::genome::space::GenomeSpace;
 use crate::rng::{drawn, uniform};
 
-/// Attempts to draw a creature that can be built, before a plain one takes its place.
+/// Number of attempts to draw a creature that can be built, before a plain creature takes its place.
 const ATTEMPTS: usize = 100;
-/// Largest number of parts that is drawn for a creature without parents; more can evolve.
+/// Largest number of parts that is drawn for a creature without parents. Evolution can add more.
 const LARGEST_RANDOM: usize = 10;
 
 impl GenomeSpace {
-    /// A random creature.
+    /// Draws a random creature.
     pub(in crate::genome) fn random_creature(&self, rng: &mut ChaCha8Rng) -> Genome {
-        // Small creatures lie apart more often than large ones, so the number of parts is drawn first.
+        // Parts of small creatures overlap less often than those of large ones. The number of parts is therefore drawn first, so that
+        // large creatures are not rare.
         let parts = self.creatures.parts();
         let wanted = rng.random_range(*parts.start()..=(*parts.end()).min(LARGEST_RANDOM));
         let mut fallback = None;
@@ -45,8 +46,8 @@ impl GenomeSpace {
         fallback.unwrap_or_else(|| self.plain_creature(rng))
     }
 
-    /// A straight creature of equal parts, as few as may be, which every space allows: a node that follows itself, and another at
-    /// its end if its copies are too few.
+    /// Returns a straight creature of equal parts, as few as possible, which every space allows: a node that follows itself, and another
+    /// node at its end if its copies are too few.
     fn plain_creature(&self, rng: &mut ChaCha8Rng) -> Genome {
         let rear = |to, is_terminal| Connection {
             to,
@@ -79,7 +80,7 @@ impl GenomeSpace {
         graph.into_genome(parts as usize)
     }
 
-    /// The creature of a graph, repaired; none if it cannot be built.
+    /// Repairs a graph and converts it to a creature; `None` if it cannot be built.
     pub(super) fn finished_creature(&self, mut graph: Graph) -> Option<Genome> {
         graph.remove_unreachable();
         if graph.nodes.is_empty() || graph.nodes.len() > MOST_NODES {
@@ -97,7 +98,7 @@ impl GenomeSpace {
         Some(graph.into_genome(grown.len()))
     }
 
-    /// A new node without connections. Its neurons are wired at random, with a path to the joint (Miconi and Channon 2005).
+    /// Draws a node without connections. Its neurons are wired at random, with a path to the joint (Miconi and Channon 2005).
     pub(super) fn new_node(&self, rng: &mut ChaCha8Rng) -> WholeNode {
         let bodies = &self.bodies;
         let sided = GeneRange::around_zero(1.0);
@@ -132,7 +133,7 @@ impl GenomeSpace {
         PartInput { source: new_source(rng), weight: self.new_weight(rng) }
     }
 
-    /// A neuron of any function of the set.
+    /// Draws a neuron with any function of the set.
     pub(super) fn new_neuron(&self, rng: &mut ChaCha8Rng) -> PartNeuron {
         let function = drawn(self.creatures.neurons.functions(), rng);
         let mut neuron = PartNeuron { function, bias: 0.0, frequency_hz: None, inputs: Vec::new() };
@@ -140,7 +141,7 @@ impl GenomeSpace {
         neuron
     }
 
-    /// An oscillator: every set of functions has one.
+    /// Draws an oscillator. Every set of functions has one.
     fn new_oscillator(&self, rng: &mut ChaCha8Rng) -> PartNeuron {
         let all = self.creatures.neurons.functions().iter().copied();
         let oscillators: Vec<_> = all.filter(|function| function.oscillates()).collect();
@@ -148,7 +149,7 @@ impl GenomeSpace {
         neuron.function = drawn(&oscillators, rng);
         neuron.bias = GeneRange::around_zero(3.0).random(rng);
         self.suit_inputs(&mut neuron, rng);
-        // A steady beat to begin with.
+        // Weights of 0 give it a steady beat to begin with.
         neuron.inputs.iter_mut().for_each(|input| input.weight = 0.0);
         neuron
     }
@@ -166,7 +167,7 @@ impl GenomeSpace {
     }
 }
 
-/// A connection to any of this many nodes.
+/// Draws a connection to any of this many nodes.
 pub fn new_connection(nodes: usize, rng: &mut ChaCha8Rng) -> Connection {
     let mut within = |most: f32| GeneRange::around_zero(most).random(rng);
     let (place, turn_rad) = ([within(1.0), within(1.0)], [within(0.6), within(0.6), within(0.6)]);
@@ -181,7 +182,7 @@ pub fn new_connection(nodes: usize, rng: &mut ChaCha8Rng) -> Connection {
     }
 }
 
-/// A source of any kind: the kinds are equally likely.
+/// Draws a source. The kinds of sources are equally likely.
 pub fn new_source(rng: &mut ChaCha8Rng) -> PartSource {
     let index = rng.random_range(0..MOST_PART_NEURONS as u8);
     match rng.random_range(0..5) {
@@ -201,7 +202,7 @@ pub(super) mod tests {
 
     pub const SHAPE: GenomeShape = GenomeShape { joints: 4, duration_s: 15.0 };
 
-    /// A space of creatures.
+    /// Returns a space of creatures.
     pub fn space() -> GenomeSpace {
         let controller = ControllerKind::PartNeurons;
         let mut space = GenomeSpace { controller, ..GenomeSpace::default() };
@@ -228,7 +229,7 @@ pub(super) mod tests {
             let genome = space.random_genome(shape, &mut stream(seed, 1, 0, Purpose::Birth));
             counts[grow(&genome.body.nodes).len()] += 1;
         }
-        // Many trees of many parts lie in themselves.
+        // Creatures with many parts are rarer, because many of their trees overlap themselves.
         assert!(counts[2..8].iter().all(|count| *count > 15), "{counts:?}");
     }
 }

@@ -1,11 +1,11 @@
-//! A node of the graph: the plan of a part, with the parts that grow from it.
+//! A node of the graph: the plan of a part, with connections to the parts that grow from it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
 use crate::schema::{listed_values, named_values};
 
-/// Largest number of nodes of a graph: a part of its own for each.
+/// Largest number of nodes of a graph, so that each node can have a part.
 pub const MOST_NODES: usize = 16;
 /// Largest number of connections of a node.
 pub const MOST_CONNECTIONS: usize = 3;
@@ -16,46 +16,46 @@ pub const MOST_COPIES: u32 = 5;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyNode {
-    /// Size along the part, away from its joint, in metres. Like the other sizes it is that of a part whose factor of size is 1.
+    /// Size along the part, away from its joint, in metres. All three sizes are those of a part whose factor of size is 1.
     pub length_m: f32,
-    /// Size across it, in metres.
+    /// Size across the part, in metres.
     pub width_m: f32,
-    /// Height, in metres.
+    /// Height of the part, in metres.
     pub height_m: f32,
-    /// Density, in kg/m³.
+    /// Density of the part, in kg/m³.
     pub density_kg_m3: f32,
-    /// The axes about which its joint turns. The joint of the first part waits until the node grows from another.
+    /// Axes about which the part's joint turns. For the first part, the joint has no effect until the node also grows from another part.
     pub joint: NodeJoint,
     /// Largest bend to either side of the middle of the range, in radians.
     pub bend_limit_rad: f32,
-    /// Largest twist to either side of the middle, in radians.
+    /// Largest twist to either side of the middle of the range, in radians.
     pub twist_limit_rad: f32,
-    /// Bend in the built pose, from -1 to 1 times the limit: at 0 the joint turns as far up as down.
+    /// Bend in the built pose, from -1 to 1 times the limit. With 0, the joint can turn as far up as down.
     pub bend_start: f32,
-    /// Twist in the built pose, likewise.
+    /// Twist in the built pose, from -1 to 1 times the limit.
     pub twist_start: f32,
-    /// Share of the torque that its joint could have by its cross-section, from 0 to 1.
+    /// Strength of the part's joint, from 0 to 1, as a share of the torque that its cross-section allows.
     pub strength: f32,
-    /// How many parts along a path from the first may be of this node.
+    /// Largest number of parts of this node along a path from the first part.
     pub copies: u32,
-    /// The parts that grow from it.
+    /// Connections to the parts that grow from the node's parts.
     pub connections: Vec<Connection>,
 }
 
 named_values! {
-    /// The axes about which a joint turns. Universal, bend-twist and twist-bend joints of Sims are one here: the engine's joint
-    /// locks the third axis and knows no order of the other two. His spherical joint is left out, because every joint of this
-    /// program has two driven axes.
+    /// The axes about which a joint turns. Universal, bend-twist and twist-bend joints of Sims are one kind in this program: the engine's
+    /// joint locks the third axis and has no order of the other two. His spherical joint is left out, because every joint of this program
+    /// has at most two driven axes.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NodeJoint {
         /// No axis: the joint holds the part in its place.
         Rigid = "rigid";
-        /// It bends.
+        /// The joint bends.
         Revolute = "revolute";
-        /// It twists.
+        /// The joint twists.
         Twist = "twist";
-        /// It bends and twists.
+        /// The joint bends and twists.
         Universal = "universal";
     }
 }
@@ -65,46 +65,46 @@ listed_values! {
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum BodySide {
-        /// Opposite its joint.
+        /// The side opposite the part's joint.
         Rear;
-        /// At smaller x.
+        /// The side at smaller x.
         Left;
-        /// At larger x.
+        /// The side at larger x.
         Right;
-        /// Above.
+        /// The upper side.
         Top;
-        /// Below.
+        /// The lower side.
         Bottom;
-        /// Where its joint is. Only the first part has room there; for others it counts as the rear.
+        /// The side of the part's joint. Only the first part has room on this side; for other parts it counts as the rear.
         Front;
     }
 }
 
-/// A connection: where a part grows from another.
+/// A connection of the graph: where one part grows from another.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Connection {
-    /// Index of the node of the part that grows.
+    /// Index of the node to which the growing part belongs.
     pub to: u32,
-    /// The side that it grows from.
+    /// Side of the parent from which the part grows.
     pub side: BodySide,
-    /// Place on that side, from its middle to an edge: -1 to 1 along x, on the left and right along y; and -1 to 1 along z, above
-    /// and below along y.
+    /// Place on the side, from -1 to 1 between two edges; 0 is the middle. The first number is along x, but on the left and right along y.
+    /// The second is along z, but above and below along y.
     pub place: [f32; 2],
-    /// Rotations of the part against the right angle that it would have with the side, in radians: upwards about its x axis,
-    /// sideways about its z axis, and about its own length.
+    /// Rotations of the part away from a right angle to the side, in radians: upwards about its x axis, sideways about its z axis, and
+    /// about its own length.
     pub turn_rad: [f32; 3],
-    /// Factor of size, which all that grows from the part inherits.
+    /// Factor of size. All parts that grow from the part inherit it.
     pub scale: f32,
-    /// Whether a second part grows as the mirror image of the first, on the other side of the plane x = 0 of the part.
+    /// Whether a second part grows as the mirror image of the first, on the other side of the parent's plane x = 0.
     pub is_mirrored: bool,
-    /// Whether it only counts where no other connection of the part can be followed any more, as that of a hand at the end of an
+    /// Whether the connection only counts where no other connection of the part can be followed any more, as for a hand at the end of an
     /// arm.
     pub is_terminal: bool,
 }
 
 impl NodeJoint {
-    /// Whether it bends, and whether it twists.
+    /// Returns whether the joint bends, and whether it twists.
     pub fn turns(self) -> [bool; 2] {
         match self {
             Self::Rigid => [false, false],
@@ -116,20 +116,20 @@ impl NodeJoint {
 }
 
 impl BodyNode {
-    /// Size across x, along y and along z, in metres.
+    /// Returns the sizes across x, along y and along z, in metres.
     pub fn size_m(&self) -> [f32; 3] {
         [self.width_m, self.length_m, self.height_m]
     }
 
-    /// Its sizes across x, along y and along z, in metres, to be changed.
+    /// Returns the sizes across x, along y and along z, in metres, for changes.
     pub(super) fn sizes_mut(&mut self) -> [&mut f32; 3] {
         [&mut self.width_m, &mut self.length_m, &mut self.height_m]
     }
 
-    /// Checks all that is not a gene; the graph has this many nodes.
+    /// Checks the values of the node that are not genes, for a graph with this many nodes.
     ///
     /// # Errors
-    /// The first value that is not allowed.
+    /// Returns the first value that is not allowed.
     pub(super) fn check(&self, nodes: usize) -> Result<(), Invalid> {
         within("copies", self.copies, 1..=MOST_COPIES)?;
         within("connections", self.connections.len(), 0..=MOST_CONNECTIONS)?;

@@ -1,22 +1,22 @@
-//! Whether two boxes lie in each other.
+//! Tests whether two boxes overlap.
 
 use crate::world::{Pose, Vector};
 
-/// Depth to which parts that are not joined may lie in each other before a trial, in metres: the engine's own tolerance.
-/// Deeper ones would be pushed apart, and gain energy from it.
+/// Depth to which parts that are not joined may overlap before a trial, in metres: the engine's own tolerance. The engine would push parts
+/// apart that overlap more, and they would gain energy from it.
 const OVERLAP_M: f32 = 0.005;
 
 /// A box: its pose, and its size along its own axes, in metres.
 #[derive(Debug, Clone, Copy)]
 pub struct PlacedBox {
-    /// The pose of its centre.
+    /// Pose of the box's centre.
     pub pose: Pose,
-    /// The size.
+    /// Size of the box along its own axes, in metres.
     pub size_m: [f32; 3],
 }
 
-/// Whether two boxes lie in each other by more than the tolerance. They do unless one of fifteen axes separates them: the
-/// normals of their sides, and the cross products of their edges (Gottschalk, Lin and Manocha 1996).
+/// Returns whether two boxes overlap by more than the tolerance. They do unless one of fifteen axes separates them: the normals of their
+/// sides, and the cross products of their edges (Gottschalk, Lin and Manocha 1996).
 pub fn overlap(boxes: [&PlacedBox; 2]) -> bool {
     let axes =
         boxes.map(|of| [Vector::X, Vector::Y, Vector::Z].map(|axis| of.pose.rotation * axis));
@@ -31,7 +31,7 @@ pub fn overlap(boxes: [&PlacedBox; 2]) -> bool {
     let [first, second] = axes;
     let normals = first.into_iter().chain(second);
     let crossed = first.into_iter().flat_map(|a| second.map(|b| a.cross(b)));
-    // Of parallel edges the product vanishes, and the normals say all.
+    // The cross product of parallel edges vanishes; in this case the normals are sufficient.
     let edges = crossed.filter(|axis| axis.length_squared() > 1.0e-6).map(Vector::normalize);
     !normals.chain(edges).any(is_apart)
 }
@@ -55,7 +55,7 @@ mod tests {
             ([0.997, 0.0, 0.0], 0.0, false),
             ([1.01, 0.0, 0.0], 0.0, false),
             ([0.0, 0.0, 1.2], 0.3, false),
-            // A corner reaches further than a side.
+            // A corner reaches further than a side does.
             ([1.15, 0.0, 0.0], std::f32::consts::FRAC_PI_4, true),
             ([1.22, 0.0, 0.0], std::f32::consts::FRAC_PI_4, false),
             ([0.9, 0.9, 0.0], std::f32::consts::FRAC_PI_4, false),

@@ -1,4 +1,4 @@
-//! Brings the sizes of a varied creature back to its budget: the exact volume, parts that are neither too thin nor too large,
+//! Repairs the sizes of a varied creature so that it meets its limits: the exact volume, parts that are neither too thin nor too large,
 //! and neighbours that the engine can hold together.
 
 use super::check::{check_built, check_nodes};
@@ -7,7 +7,7 @@ use super::node::BodyNode;
 use crate::genome::chain::{BodySpace, EVOLVED_INERTIA_RATIO, MASS_RATIO, inertia_kg_m2, ratio};
 use crate::genome::space::GenomeSpace;
 
-/// Attempts to meet the limits by changing only what exceeds them, before all parts become equal cubes.
+/// Number of attempts to meet the limits by changing only sizes that exceed them, before all parts become equal cubes.
 const PASSES: usize = 12;
 /// Relative tolerance of the volume.
 const VOLUME_TOLERANCE: f64 = 1.0e-3;
@@ -16,7 +16,7 @@ fn volume_m3(grown: &[GrownPart]) -> f64 {
     grown.iter().map(|part| part.size_m.into_iter().map(f64::from).product::<f64>()).sum()
 }
 
-/// Multiplies all sizes so that the creature has this volume, and returns the parts that grow then.
+/// Scales all sizes so that the creature has this volume, and returns the parts that then grow.
 fn fill_volume(nodes: &mut [BodyNode], wanted_m3: f64) -> Vec<GrownPart> {
     let grown_m3 = volume_m3(&grow(nodes));
     let factor = libm::cbrt(wanted_m3 / grown_m3);
@@ -29,7 +29,7 @@ fn fill_volume(nodes: &mut [BodyNode], wanted_m3: f64) -> Vec<GrownPart> {
 }
 
 impl BodySpace {
-    /// The least and the greatest size of a part across x, along y and along z, in metres.
+    /// Returns the least and the greatest size of a part across x, along y and along z, in metres.
     fn part_sizes_m(&self) -> [[f32; 2]; 3] {
         let thickness = [self.thickness_min_m, self.thickness_max_m];
         [thickness, [self.length_min_m, self.length_max_m], thickness]
@@ -54,7 +54,7 @@ impl GenomeSpace {
         fill_volume(nodes, wanted_m3);
     }
 
-    /// Moves the sizes of nodes whose parts exceed a limit towards it. Whether there were any.
+    /// Moves the sizes of nodes whose parts exceed a limit towards the limit. Returns whether there were such nodes.
     fn bring_closer(&self, nodes: &mut [BodyNode], grown: &[GrownPart]) -> bool {
         let mut is_beyond = false;
         let ranges_m = self.bodies.part_sizes_m();
@@ -63,7 +63,7 @@ impl GenomeSpace {
             for ((of_node, of_part), [least_m, most_m]) in sides {
                 if !(least_m..=most_m).contains(&of_part) {
                     is_beyond = true;
-                    // A little further than the limit, because the volume moves it back.
+                    // The size moves a little beyond the limit, because filling the volume moves it back.
                     *of_node *= if of_part < least_m {
                         1.05 * least_m / of_part
                     } else {
@@ -103,7 +103,7 @@ impl GenomeSpace {
         is_beyond
     }
 
-    /// Whether these nodes and the parts that have grown from them keep all limits of this space.
+    /// Returns whether these nodes and the parts that have grown from them keep all limits of this space.
     pub(in crate::genome) fn allows_creature(
         &self,
         nodes: &[BodyNode],
@@ -121,7 +121,7 @@ impl GenomeSpace {
         }
         let fits = |part: &GrownPart| {
             let mut sides = part.size_m.into_iter().zip(ranges_m);
-            // Sizes are rounded to 32 bits.
+            // The tolerance is for sizes that are rounded to 32 bits.
             sides.all(|(size_m, [least_m, most_m])| {
                 (least_m * 0.9999..=most_m * 1.0001).contains(&size_m)
             })

@@ -1,4 +1,4 @@
-//! The space of branching bodies, beside the sizes and limits that they have in common with chains.
+//! The space of branching bodies, besides the sizes and limits that branching bodies have in common with chains.
 
 use super::growth::{MOST_DEPTH, MOST_PARTS};
 use crate::check::{Invalid, within};
@@ -8,11 +8,11 @@ use crate::genome::space::GenomeSpace;
 use crate::schema::{choice, choices, setting_group, whole};
 
 setting_group! {
-    /// The parts and neurons of a creature.
+    /// Ranges of the parts and neurons of a creature.
     pub struct CreatureSpace in "Creatures":
         "Parts and neurons of branching bodies. Their sizes, joints and volume are those of evolving bodies."
     {
-        /// Least number of parts. A chain has at most seven.
+        /// Least number of parts. It is at most seven, the length of the longest chain.
         parts_min: u32 = 2,
             whole("Minimum parts", 2..=MOST_DEPTH as u32 + 1)
                 .hint("Smallest number of parts that a creature may have")
@@ -24,7 +24,7 @@ setting_group! {
                 .hint("Largest number of parts that a creature may have")
                 .slider(2.0, 16.0);
 
-        /// The functions of its neurons.
+        /// Functions that the neurons of a creature may have.
         neurons: NeuronSet = NeuronSet::Standard,
             choice("Neurons")
                 .hint("Functions that neurons compute");
@@ -44,21 +44,21 @@ choices! {
 }
 
 impl GenomeSpace {
-    /// Whether genomes of this space are creatures.
+    /// Returns whether genomes of this space are creatures.
     pub fn has_creatures(&self) -> bool {
         self.bodies.vary && self.controller == ControllerKind::PartNeurons
     }
 }
 
 impl CreatureSpace {
-    /// The numbers of parts that a creature may have.
+    /// Returns the range of the number of parts that a creature may have.
     pub fn parts(&self) -> std::ops::RangeInclusive<usize> {
         self.parts_min as usize..=self.parts_max as usize
     }
 }
 
 impl NeuronSet {
-    /// Its functions.
+    /// Returns the functions of the set.
     pub fn functions(self) -> &'static [NeuronFunction] {
         match self {
             Self::Standard => &NeuronFunction::STANDARD,

@@ -1,16 +1,16 @@
-//! The tree of joints of a creature, as a text by which shapes can be told apart.
+//! The tree of joints of a creature, as a text that distinguishes shapes.
 
 use super::growth::grow;
 use super::node::{BodyNode, NodeJoint};
 
-/// The tree of joints that grows from a graph: for each part a letter of its joint, and in parentheses what grows from it, in
-/// an order that does not depend on the graph. The first part is O; F is a rigid joint, R a revolute one, T one that twists, U
-/// a universal one. Two creatures have the same text if their parts are joined alike, wherever the joints are.
+/// Returns the tree of joints that grows from a graph as a text: for each part a letter for its joint, and in parentheses the parts that
+/// grow from it, in an order that does not depend on the graph. The first part is O; F is a rigid joint, R a revolute one, T one that
+/// twists, U a universal one. Two creatures have the same text if their parts are joined alike, wherever the joints are.
 pub fn joint_tree(nodes: &[BodyNode]) -> String {
     let grown = grow(nodes);
     let mut texts: Vec<String> = vec![String::new(); grown.len()];
     let mut children: Vec<Vec<String>> = vec![Vec::new(); grown.len()];
-    // Children come after their parents.
+    // Children come after their parents, so that their texts are complete when the parent's is made.
     for (index, part) in grown.iter().enumerate().rev() {
         let letter = match part.parent.map(|_| nodes[part.node].joint) {
             None => 'O',

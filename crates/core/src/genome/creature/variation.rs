@@ -13,26 +13,26 @@ use crate::rng::{drawn, uniform};
 
 /// Chance that a choice of a node, of a connection or of a neuron is drawn anew in a mutation.
 const REDRAWN: f64 = 0.04;
-/// Chance that a node gets another connection, and that a connection goes.
+/// Chance that a mutation adds a connection to a node, and that it removes a connection.
 const CONNECTED: f64 = 0.08;
-/// Chance that a node gets another neuron, and that a neuron goes.
+/// Chance that a mutation adds a neuron to a node, and that it removes a neuron.
 const GROWN_NEURON: f64 = 0.05;
-/// Share of these chances, and of the steps of numbers, in a child of two parents.
+/// Factor on the chances and the steps of a mutation in a child of two parents.
 const AFTER_MATING: f64 = 0.3;
 
-/// How a creature is made from its parents.
+/// The operator by which a creature is made from its parents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CreatureChange {
-    /// Of one parent, with mutations.
+    /// The creature is a mutant of one parent.
     Mutation,
-    /// Nodes of both parents in a row, switching between them.
+    /// The creature has nodes of both parents in a row, switching between the parents.
     Crossover,
-    /// A connection of the first parent leads to a node of the second, and all that grows from it.
+    /// A connection of the first parent leads to a node of the second parent, and to all that grows from it.
     Grafting,
 }
 
 impl CreatureChange {
-    /// Draws one: 40 % mutation, 30 % crossover, 30 % grafting, the shares of Sims (1994).
+    /// Draws an operator: 40 % mutation, 30 % crossover, 30 % grafting, as in Sims (1994).
     pub fn draw(rng: &mut ChaCha8Rng) -> Self {
         match uniform(rng) {
             share if share < 0.4 => Self::Mutation,
@@ -47,8 +47,8 @@ fn chance(share: f64, rng: &mut ChaCha8Rng) -> bool {
 }
 
 impl GenomeSpace {
-    /// A child of one or two creatures, or none if what was drawn cannot be built. Numbers take normally distributed steps of
-    /// this standard deviation, as a share of their ranges.
+    /// Returns a child of one or two creatures; `None` if the child cannot be built. Numbers take normally distributed steps with the
+    /// standard deviation `step`, as a share of their ranges.
     pub fn changed_creature(
         &self,
         [first, second]: [&Genome; 2],
@@ -67,13 +67,13 @@ impl GenomeSpace {
             self.mutate_graph(&mut graph, rate, rng);
             graph.remove_unreachable();
         }
-        // Its number of joints is not known before the numbers have changed.
+        // The number of joints is only known after the numbers have changed, so it is 0 until then.
         let genome = self.with_small_changes(&graph.into_genome(0), step * rate, rng);
         self.finished_creature(Graph::of(&genome))
     }
 
-    /// Mutates all that is not a number, at this share of the usual rates: first the parameters of nodes, then a new node that
-    /// connections may lead to, then connections, and last the neurons.
+    /// Mutates everything that is not a number, at this share of the usual rates: first the parameters of nodes, then a new node to which
+    /// connections may lead, then connections, and last the neurons.
     fn mutate_graph(&self, graph: &mut Graph, rate: f64, rng: &mut ChaCha8Rng) {
         for node in &mut graph.nodes {
             if chance(REDRAWN * rate, rng) {
@@ -182,7 +182,7 @@ mod tests {
                 assert_eq!(genome.controller.joints(), joints);
             }
         }
-        // Bodies whose parts lie in each other are drawn again.
+        // Bodies whose parts overlap are drawn again, so not every attempt gives a creature.
         assert!(made.iter().all(|count| *count > 60), "{made:?} of 300");
     }
 

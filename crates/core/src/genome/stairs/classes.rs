@@ -22,26 +22,26 @@ pub const HELD_OUT_PER_CLASS: u32 = 15;
 /// Seed of the held-out stairs.
 const HELD_OUT_SEED: u64 = 60;
 
-/// Held-out staircase number `number` of a class, from 0 to [`HELD_OUT_PER_CLASS`] less one. No run may learn on it: it
-/// comes from a stream of its own.
+/// Returns the held-out staircase number `number` of a class, from 0 to `HELD_OUT_PER_CLASS - 1`. It comes from a stream of its own, so
+/// that no run learns on it.
 pub fn held_out(class: StairsClass, number: u32) -> StairsGenome {
     class.draw(&mut stream(HELD_OUT_SEED, class as u32, number, Purpose::HeldOutStairs))
 }
 
 impl StairsGenome {
-    /// A staircase of a class that is drawn, too.
+    /// Draws a class, and a staircase of this class.
     pub fn random(rng: &mut ChaCha8Rng) -> Self {
         drawn(StairsClass::OPTIONS, rng).draw(rng)
     }
 }
 
 impl StairsClass {
-    /// The staircase of this class that belongs to a seed; another seed gives another one. None is held out.
+    /// Returns the staircase of this class that belongs to a seed. None of these staircases is held out.
     pub fn of_seed(self, seed: u32) -> StairsGenome {
         self.draw(&mut stream(seed.into(), self as u32, 0, Purpose::StairsDice))
     }
 
-    /// A staircase of this class.
+    /// Draws a staircase of this class.
     fn draw(self, rng: &mut ChaCha8Rng) -> StairsGenome {
         let mut genome = StairsGenome {
             steps: rng.random_range(6..=12),

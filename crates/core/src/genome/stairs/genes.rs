@@ -11,8 +11,8 @@ use crate::schema::{PerPart, number, setting_group, whole};
 use crate::world::Stairs;
 
 setting_group! {
-    /// The numbers from which a staircase is built. All lengths are of the mean step; a staircase without irregularities
-    /// and features has equal steps.
+    /// The numbers from which a staircase is built. Rise and tread are those of the mean step. A staircase without irregularities and
+    /// features has equal steps.
     #[derive(Copy)]
     pub struct StairsGenome {
         /// Number of steps.
@@ -36,19 +36,19 @@ setting_group! {
         /// How far each tread overhangs its riser, in metres; at most half of the shallowest flat tread.
         nosing_m: f32 = 0.0,
             number("Nosing", NOSINGS_M).unit("m").hint("How far each tread overhangs its riser");
-        /// Width across, in metres.
+        /// Width of the stairs, in metres.
         width_m: f32 = 5.0,
             number("Width", WIDTHS_M).unit("m").hint("Width of the stairs");
-        /// How much of each tread is a ramp that leads up to it: 0 for vertical risers.
+        /// Share of each tread, from 0 to 1, that is a ramp leading up to it; 0 makes vertical risers.
         ramp: f32 = 0.0,
             number("Ramp", 0.0..=1.0).hint("How much of each tread is a ramp that leads up to it");
         /// Number of the step whose tread is a landing of [`LANDING_M`] or more; the lowest is 1, and 0 means none.
         landing: u32 = 0,
             whole("Landing", 0..=20).hint("Number of the step that is a landing on the way; 0 for none");
-        /// Number of the step that is missing, of the second to the last but one that leads up; 0 means none.
+        /// Number of the missing step: from the second step to the last but one of those that lead up; 0 means none.
         missing: u32 = 0,
             whole("Missing step", 0..=19).hint("Number of the step that is missing; 0 for none");
-        /// Number of the last steps, which lead down: at most half of all.
+        /// Number of steps at the end that lead down: at most half of all steps.
         down: u32 = 0,
             whole("Steps down", 0..=10).hint("Number of the last steps, which lead down");
     }
@@ -57,7 +57,7 @@ setting_group! {
         within("down", self.down, 0..=self.steps / 2)?;
         let up = self.steps - self.down;
         within("landing", self.landing, 0..=self.steps)?;
-        // The first step cannot be missing: there would be one less.
+        // The first step cannot be missing, because this would only make one step less.
         match self.missing {
             0 => Ok(()),
             missing if (2..up).contains(&missing) => Ok(()),
@@ -69,22 +69,22 @@ setting_group! {
     }
 }
 
-/// Numbers of steps.
+/// Range of the number of steps.
 pub(super) const STEPS: RangeInclusive<u32> = 3..=20;
-/// Mean heights of steps, in metres.
+/// Range of the mean height of steps, in metres.
 pub(super) const RISES_M: RangeInclusive<f32> = 0.1..=1.2;
-/// Mean depths of steps, in metres.
+/// Range of the mean depth of steps, in metres.
 pub(super) const TREADS_M: RangeInclusive<f32> = 0.6..=3.0;
-/// Relative deviations from the mean.
+/// Range of the relative deviations from the mean.
 pub(super) const NOISES: RangeInclusive<f32> = 0.0..=0.4;
-/// Seeds of the deviations.
+/// Range of the seed of the deviations.
 pub(super) const NOISE_SEEDS: RangeInclusive<u32> = 0..=0xff_ffff;
-/// Depths by which treads overhang their risers, in metres.
+/// Range of the depth by which treads overhang their risers, in metres.
 pub(super) const NOSINGS_M: RangeInclusive<f32> = 0.0..=0.3;
-/// Widths of the stairs, in metres.
+/// Range of the width of the stairs, in metres.
 pub(super) const WIDTHS_M: RangeInclusive<f32> = 2.5..=6.0;
 
-/// Least depth of a landing on the way, in metres: a snake of five blocks has room on two of them.
+/// Least depth of an intermediate landing, in metres: half the length of the snake of five blocks.
 pub const LANDING_M: f32 = 5.0;
 /// Least difference in height between treads that follow one another, in metres.
 const LEAST_RISE_M: f32 = 0.02;
@@ -92,7 +92,7 @@ const LEAST_RISE_M: f32 = 0.02;
 const LEAST_FLAT_M: f32 = 0.1;
 
 impl StairsGenome {
-    /// The staircase of these numbers, with the first riser and the landing of the default one.
+    /// Builds the staircase of these numbers, with the first riser and the landing of the default staircase.
     pub fn stairs(&self) -> Stairs {
         let plain = Stairs {
             steps: self.steps,
@@ -141,11 +141,11 @@ impl StairsGenome {
         let mut owed_m = 0.0;
         for (step, rise_m) in rises_m.iter_mut().enumerate() {
             if step >= first_down {
-                // Each of the steps that follow leads down, too.
+                // Height is left for the steps that follow, because each of them leads down, too.
                 let left_m = (self.steps as usize - 1 - step) as f32 * LEAST_RISE_M;
                 *rise_m = -lowered_m(height_m - left_m, *rise_m);
             } else if Some(step) == missing {
-                // A gap one rise deep, behind which the stairs go on where they would have been.
+                // The gap is one rise deep. Behind it the stairs continue as without a gap.
                 let depth_m = lowered_m(height_m, self.rise_m);
                 owed_m = depth_m + *rise_m;
                 *rise_m = -depth_m;
@@ -159,7 +159,7 @@ impl StairsGenome {
     }
 }
 
-/// The shape in a line: number, rise and tread, then what makes them uneven.
+/// Writes the shape in a line: number of steps, rise and tread, then what makes them uneven.
 impl fmt::Display for StairsGenome {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { steps, rise_m, tread_m, rise_noise, tread_noise, nosing_m, .. } = self;
@@ -189,8 +189,8 @@ impl fmt::Display for StairsGenome {
     }
 }
 
-/// How far a step leads down from a height that should lead down by `rise_m`: to the ground, if it would come near it. In
-/// metres.
+/// Returns how far a step leads down, in metres, from a height of which it should lead down by `rise_m`: down to the ground, if it would
+/// otherwise end close to it.
 fn lowered_m(height_m: f32, rise_m: f32) -> f32 {
     if height_m - rise_m < LEAST_RISE_M { height_m } else { rise_m }
 }

@@ -12,13 +12,13 @@ use crate::rng::drawn;
 use crate::schema::check;
 use crate::world::Stairs;
 
-/// Probability that the number of steps changes by one.
+/// Probability that the number of steps changes.
 const STEPS_CHANGE: f64 = 0.2;
-/// Probability that the irregularities get another seed.
+/// Probability that the seed of the irregularities changes.
 const SEED_CHANGE: f64 = 0.1;
-/// Probability that each of the other numbers changes, but for features.
+/// Probability of a change of each other number, except for features.
 const NUMBER_CHANGE: f64 = 0.5;
-/// Probability that a landing, a missing step, ramps or steps down come, change or go.
+/// Probability that a landing, a missing step, ramps or steps down are added, changed or removed.
 const FEATURE_CHANGE: f64 = 0.15;
 /// Number of attempts to draw a change that is allowed.
 const ATTEMPTS: u32 = 50;
@@ -30,24 +30,24 @@ pub struct StairsChange {
     pub strength: u32,
     /// Greatest length of all treads together, in metres.
     pub longest_m: f32,
-    /// Whether a landing, a missing step, ramps, and steps down may come, change, and go.
+    /// Whether a landing, a missing step, ramps and steps down may be added, changed and removed.
     pub features: bool,
 }
 
-/// Strengths of a mutation, equally likely. With the least alone, a snake that climbs low stairs well would find all mutants too
+/// Strengths of a mutation, equally likely. With the least strength alone, a snake that climbs low stairs well would find all mutants too
 /// easy.
 const STRENGTHS: [u32; 4] = [1, 2, 4, 8];
 
 impl StairsChange {
-    /// A change of a strength that is drawn.
+    /// Draws the strength of a change.
     pub fn drawn(longest_m: f32, features: bool, rng: &mut ChaCha8Rng) -> Self {
         Self { strength: drawn(&STRENGTHS, rng), longest_m, features }
     }
 }
 
 impl StairsGenome {
-    /// Stairs with equal steps of this rise, and with the steps, the mean tread and the width of other stairs, as far as they
-    /// are allowed.
+    /// Returns stairs with equal steps of this rise, in metres, and with the number of steps, the mean tread and the width of other
+    /// stairs, as far as the ranges allow.
     pub fn like(stairs: &Stairs, rise_m: f32) -> Self {
         Self {
             steps: stairs.steps.clamp(*STEPS.start(), *STEPS.end()),
@@ -58,9 +58,9 @@ impl StairsGenome {
         }
     }
 
-    /// A mutant: each of its numbers changes with an even chance, by at most a step of 0.1 m of rise, 0.2 m of tread, 5 % of
-    /// irregularity, 0.05 m of nosing and 0.25 m of width, times the strength. Unchanged if no attempt gives a staircase that
-    /// is allowed.
+    /// Returns a mutant. Each of its numbers changes with an even chance, by at most a step of 0.1 m of rise, 0.2 m of tread, 5 % of
+    /// irregularity, 0.05 m of nosing and 0.25 m of width, times the strength. The staircase is unchanged if no attempt gives an allowed
+    /// one.
     #[must_use]
     pub fn mutant(&self, change: &StairsChange, rng: &mut ChaCha8Rng) -> Self {
         for _ in 0..ATTEMPTS {
@@ -72,7 +72,7 @@ impl StairsGenome {
         *self
     }
 
-    /// Length of all treads, in metres.
+    /// Returns the sum of the depths of all treads, in metres.
     pub fn length_m(&self) -> f32 {
         self.stairs().treads_m()
     }

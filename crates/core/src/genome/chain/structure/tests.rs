@@ -16,7 +16,7 @@ fn rng(individual: u32) -> ChaCha8Rng {
     stream(7, 1, individual, Purpose::Mutation)
 }
 
-/// Five blocks of the report, with a wave that runs down the body.
+/// Returns a genome with the five blocks of the report, and a wave that runs down the body.
 fn snake() -> Genome {
     let mut genome = space().random_genome_of_plain_body(SHAPE, &mut rng(0));
     for segment in &mut genome.body.segments {
@@ -43,7 +43,7 @@ fn phases(genome: &mut Genome) -> Vec<f32> {
     waves(genome).joints.iter().map(|joint| joint.bend.harmonics[0].phase_rad).collect()
 }
 
-/// The change at the place that a test wants, found by trying random numbers.
+/// Returns the first genome with the change that satisfies `is_it`, found by trying random numbers.
 fn changed(change: BodyChange, is_it: impl Fn(&Genome) -> bool) -> Genome {
     let parent = snake();
     let mut all = (0..200).filter_map(|i| space().with_body_change(&parent, change, &mut rng(i)));
@@ -57,7 +57,7 @@ fn assert_phases(genome: &mut Genome, expected: &[f32]) {
     assert!(found.iter().zip(expected).all(is_near), "{found:?} instead of {expected:?}");
 }
 
-/// Whether the new block is at this place.
+/// Returns a test of whether the new block is at this place.
 fn is_new_at(place: usize) -> impl Fn(&Genome) -> bool {
     move |genome| genome.body.segments[place].id > 100
 }
@@ -156,7 +156,7 @@ fn children_keep_the_volume_and_every_limit_over_100_000_mutations() {
         counts[segments.len()] += 1;
     }
     assert!(worst <= 0.01, "{worst} m³ off");
-    // The walk visits every number of blocks, so that no operator is one-sided beyond repair.
+    // The walk reaches every number of blocks, so no operator dominates so much that the others cannot compensate.
     assert!(counts[2..].iter().all(|count| *count > 100), "{counts:?}");
 }
 

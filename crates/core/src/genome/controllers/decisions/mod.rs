@@ -1,5 +1,4 @@
-//! Decisions: four times a second the snake takes one of a few postures, by what it has learned to be worth in its
-//! situation.
+//! Decisions: four times a second the snake takes one of a few postures, by the values that it has learned for its situation.
 
 mod policy;
 
@@ -21,13 +20,13 @@ use crate::genome::space::GenomeSpace;
 use crate::learn::q_table::QRule;
 use crate::rng::{Purpose, stream};
 
-/// Decisions per second.
+/// Number of decisions per second.
 pub const DECISIONS_PER_S: u32 = 4;
 
-/// Weight of a reward one decision later, relative to one now, for a table: a horizon of five seconds.
+/// Weight of a reward one decision later relative to a reward now, for a table. It corresponds to a horizon of five seconds.
 pub const DECISION_DISCOUNT: f32 = 0.95;
 
-/// The postures among which a decision chooses: always another than the one before.
+/// Names of the postures among which a decision chooses. It never chooses the same posture again.
 pub const POSTURES: [&str; 11] = [
     "straight",
     "fold in front",
@@ -42,17 +41,16 @@ pub const POSTURES: [&str; 11] = [
     "tail down",
 ];
 
-/// Number of situations that a table distinguishes: eleven last postures, three gaps, heights and pitches of the head, and
-/// four questions: see [`TABLE_QUESTIONS`].
+/// Number of situations that a table distinguishes: eleven last postures, three classes each of the head's gap, height and pitch, and the
+/// answers to four questions ([`TABLE_QUESTIONS`]).
 pub const TABLE_STATES: usize = POSTURES.len() * 3 * 3 * 3 * (1 << TABLE_QUESTIONS.len());
 
-/// The questions by which a table distinguishes situations, beside its bins.
+/// Questions by which a table distinguishes situations, besides classes of numbers.
 pub const TABLE_QUESTIONS: [&str; 4] =
     ["moving", "middle at a riser", "folded in front", "folded behind"];
 
-/// The bits by which rules distinguish situations, in their order: what is so where a bit is set, and where it is not. Few,
-/// because each further one splits the experience of a run; the last five tell the last posture, so that a rule can say what
-/// comes after it.
+/// Bits by which rules distinguish situations, in their order: the words for a bit that is set, and for one that is not. There are few
+/// bits, because each further one divides the experience of a run. The last five tell the last posture, so that a rule can depend on it.
 pub const SITUATION_BITS: [[&str; 2]; 10] = [
     ["riser within half a metre", "no riser within half a metre"],
     ["riser at the middle", "no riser at the middle"],
@@ -66,18 +64,18 @@ pub const SITUATION_BITS: [[&str; 2]; 10] = [
     ["last joint but one folded", "last joint but one not folded"],
 ];
 
-/// A learned policy, and the servos that move the joints to its postures. It does not evolve: it has no genes, but learns
+/// A learned policy, and the servos that move the joints to its postures. This controller does not evolve: it has no genes, but learns
 /// from the outcome of its decisions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DecisionGenes {
     /// Number of joints.
     pub joints: u32,
-    /// The servos; the bend range is the angle of a full bend.
+    /// Servos of the joints. Their bend range is the angle of a full bend.
     pub servo: ServoGenes,
-    /// The learned values or rules.
+    /// The learned policy: values or rules.
     pub policy: Policy,
-    /// How it explores; none for play without chance.
+    /// How the controller explores; `None` for play without chance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explorer: Option<Explorer>,
 }
@@ -90,16 +88,16 @@ pub struct Explorer {
     pub epsilon: f32,
     /// Seed of the run.
     pub seed: u64,
-    /// The generation.
+    /// Generation of the individual.
     pub generation: u32,
-    /// Its index there.
+    /// Index of the individual in its generation.
     pub individual: u32,
-    /// The rule by which a table learns in its own copy during the episode.
+    /// Rule by which a table, in the individual's own copy, learns during the episode.
     pub rule: QRule,
 }
 
 impl Explorer {
-    /// The stream of its random numbers.
+    /// Returns the stream of the individual's random numbers.
     pub fn rng(&self) -> ChaCha8Rng {
         stream(self.seed, self.generation, self.individual, Purpose::Explore)
     }
@@ -109,7 +107,7 @@ impl Explorer {
         self.rule.check().map_err(|error| error.inside("explorer.rule"))
     }
 
-    /// Adds the bits that tell it from others to a hash.
+    /// Adds the bits that distinguish the explorer from others to a hash.
     pub(super) fn hash(&self, hash: &mut Xxh3Default) {
         let Self { epsilon, seed, generation, individual, rule: _ } = self;
         hash.update(&epsilon.to_bits().to_le_bytes());
@@ -141,7 +139,7 @@ impl ControllerEncoding for DecisionGenes {
         self.joints as usize
     }
 
-    /// Half the rate of decisions: that of a posture that changes with each.
+    /// Returns half the rate of decisions: the frequency of a posture that changes with each decision.
     fn estimated_frequency_hz(&self) -> Option<f32> {
         Some(DECISIONS_PER_S as f32 / 2.0)
     }

@@ -10,16 +10,16 @@ use crate::check::{Invalid, within};
 use crate::learn::classifiers::{Condition, Xcs, Zcs};
 use crate::learn::q_table::ActionValues;
 
-/// A learned policy of decisions. Clones share it.
+/// A learned policy of decisions. Clones share its data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Policy {
-    /// The value of each posture in each situation.
+    /// A table with the value of each posture in each situation.
     #[serde(with = "shared")]
     Table(Arc<ActionValues>),
-    /// Rules that predict what a posture is worth, kept for their accuracy.
+    /// Rules that predict the value of a posture. Rules with accurate predictions are kept.
     #[serde(with = "shared")]
     Xcs(Arc<Xcs>),
-    /// Rules that grow stronger with their reward.
+    /// Rules whose strength grows with their reward.
     #[serde(with = "shared")]
     Zcs(Arc<Zcs>),
 }
@@ -31,10 +31,10 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// Checks that it decides among the postures, by the situations that there are.
+    /// Checks that the policy has the expected numbers of postures and of situations.
     ///
     /// # Errors
-    /// The number that differs.
+    /// Returns the number that differs.
     pub fn check(&self) -> Result<(), Invalid> {
         let same = |bits: usize, actions: usize| {
             within("situation_bits", bits, SITUATION_BITS.len()..=SITUATION_BITS.len())?;
@@ -48,7 +48,7 @@ impl Policy {
         checked.map_err(|error| error.inside("policy"))
     }
 
-    /// Adds the bits of everything that was learned to a hash.
+    /// Adds the bits of all learned data to a hash.
     pub(super) fn hash(&self, hash: &mut Xxh3Default) {
         match self {
             Self::Table(table) => {
@@ -89,7 +89,7 @@ fn hash_rule(condition: &Condition, action: u16, hash: &mut Xxh3Default) {
     hash.update(&action.to_le_bytes());
 }
 
-/// Writes shared data as if it were not shared.
+/// Serialises the data of an `Arc` as if it were not shared.
 pub mod shared {
     use std::sync::Arc;
 
