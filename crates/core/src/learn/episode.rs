@@ -1,4 +1,4 @@
-//! The experience of one episode, from which a learner that all episodes of a run share can learn.
+//! The experience of one episode. A learner that all episodes of a run have in common learns from it.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,22 +10,23 @@ use crate::check::{Invalid, within};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Episode {
-    /// The experience of a table.
+    /// Experience for a table of values.
     Table(Vec<Transition>),
-    /// The experience of a system of rules: its decisions, and how the episode ended.
+    /// Experience for a system of rules: its decisions, and how the episode ended.
     Rules(Vec<RecordedDecision>, EpisodeEnd),
-    /// The experience of the system of rules at each joint, from the head: its decisions, and how the episode ended.
+    /// Experience for the system of rules at each joint, from the head: its decisions, and how the episode ended.
     Joints(Vec<(Vec<RecordedDecision>, EpisodeEnd)>),
 }
 
-/// Maximum number of decisions in an episode: more than ten minutes have at the shortest interval.
+/// Maximum number of decisions in an episode: more than ten minutes contain at the shortest interval.
 const MOST_DECISIONS: usize = 1_000_000;
 
 impl Episode {
-    /// Checks the length. A learner checks each decision when it learns from it, and knows which situations there are.
+    /// Checks the number of decisions. A learner checks each decision when it learns from it, because only the learner knows which
+    /// situations there are.
     ///
     /// # Errors
-    /// The episode is longer than any.
+    /// Returns an error if the episode has more than `MOST_DECISIONS` decisions.
     pub fn check(&self) -> Result<(), Invalid> {
         let length = match self {
             Self::Table(transitions) => transitions.len(),

@@ -1,7 +1,7 @@
-//! Declares the parameters of a learner: each with its documentation, its default and its range in one place.
+//! Declares the parameters of a learner. The documentation, the default and the range of each are in one place.
 
-/// Declares a struct of parameters, in the order of files, with its defaults and a check of the ranges. A range may refer to
-/// other parameters by `*name`; the documentation of a field ends with its range.
+/// Declares a struct of parameters, in the order of files, with their defaults and a check of their ranges. A range may refer to other
+/// parameters by `*name`.
 ///
 /// ```text
 /// parameters! {
@@ -40,7 +40,7 @@ macro_rules! parameters {
             /// Checks every parameter.
             ///
             /// # Errors
-            /// The first that is outside its range.
+            /// Returns the first parameter that is outside its range.
             pub fn check(&self) -> Result<(), $crate::check::Invalid> {
                 let Self { $($field),* } = self;
                 $($crate::check::within(stringify!($field), *$field, $range)?;)*
@@ -63,8 +63,8 @@ mod tests {
     use crate::learn::neat::NeatRules;
     use crate::learn::q_table::QRule;
 
-    /// Checks that the defaults are allowed, and that each number of `usual` may have the values at both ends of the range
-    /// that a refusal names, and none beyond them. Returns the number of ranges.
+    /// Checks that the defaults are allowed, and that each number of `usual` may have the values at both ends of the range that an error
+    /// names, and no value beyond them. Returns the number of ranges.
     fn ranges_of<T>(usual: &T, check: fn(&T) -> Result<(), Invalid>) -> usize
     where
         T: Default + Serialize + DeserializeOwned,
@@ -105,7 +105,7 @@ mod tests {
     fn every_parameter_is_refused_beyond_the_ends_of_its_range_alone() {
         assert_eq!(ranges_of(&XcsSettings::default(), XcsSettings::check), 14);
         assert_eq!(ranges_of(&ZcsSettings::default(), ZcsSettings::check), 10);
-        // The limit of weights is also that of these three.
+        // The limit of weights must not be below these three parameters.
         let still = NeatRules {
             weight_step: 0.0,
             new_weight: 0.0,

@@ -1,43 +1,43 @@
 //! Random choices: with a probability, in proportion to weights, among the largest values.
 //!
-//! Each function draws exactly one random number, whatever the weights are. So a change in the last bit of a weight
-//! cannot shift the numbers that later choices get.
+//! Each function draws exactly one random number, whatever the weights are. A change in the last bit of a weight therefore cannot shift
+//! the numbers that later choices draw.
 
 use rand::Rng;
 use rand::RngExt;
 
-/// True with the given probability.
+/// Returns true with this probability.
 pub fn happens(probability: f32, rng: &mut impl Rng) -> bool {
     rng.random_range(0.0..1.0) < f64::from(probability)
 }
 
-/// An index drawn in proportion to its weight; weights that are not positive count as zero.
+/// Draws an index in proportion to its weight. Weights that are not positive count as zero.
 ///
-/// If rounding leaves the wheel past its end, the last positive weight is drawn; if no weight is positive, index 0.
+/// If rounding leads beyond the last weight, the last positive weight is drawn; if no weight is positive, index 0.
 pub fn roulette(weights: &[f64], rng: &mut impl Rng) -> usize {
     let mut left = rng.random_range(0.0..1.0) * sum(weights);
     landing(weights, &mut left)
 }
 
-/// A roulette for many draws from many weights, of which few change between draws.
+/// A roulette for many draws from many weights, of which few change between two draws.
 #[derive(Debug)]
 pub struct Wheel {
     weights: Vec<f64>,
-    /// The sum of each block of weights.
+    /// Sum of the weights of each block.
     blocks: Vec<f64>,
 }
 
-/// Weights per block of a wheel: about the root of the usual number of weights, so that a draw reads few of both.
+/// Number of weights per block: about the square root of the usual number of weights, so that a draw reads few blocks and few weights.
 const BLOCK: usize = 64;
 
 impl Wheel {
-    /// A wheel of weights that are not negative.
+    /// Creates a wheel with these weights, which must not be negative.
     pub fn new(weights: Vec<f64>) -> Self {
         let blocks = weights.chunks(BLOCK).map(sum).collect();
         Self { weights, blocks }
     }
 
-    /// An index drawn in proportion to its weight; if no weight is positive, index 0.
+    /// Draws an index in proportion to its weight; if no weight is positive, index 0.
     pub fn draw(&self, rng: &mut impl Rng) -> usize {
         let mut left = rng.random_range(0.0..1.0) * sum(&self.blocks);
         let block = landing(&self.blocks, &mut left);
@@ -46,7 +46,7 @@ impl Wheel {
         start + landing(&self.weights[start.min(end)..end], &mut left)
     }
 
-    /// Multiplies a weight.
+    /// Multiplies a weight by a factor.
     pub fn scale(&mut self, index: usize, factor: f64) {
         self.weights[index] *= factor;
         let start = index / BLOCK * BLOCK;
@@ -59,8 +59,8 @@ fn sum(weights: &[f64]) -> f64 {
     weights.iter().fold(0.0, |sum, weight| sum + weight.max(0.0))
 }
 
-/// The index of the weight in which a way of length `left` along the weights ends; `left` becomes the rest of the
-/// way. Past the end it is the last positive weight, or index 0.
+/// Returns the index of the weight at which the cumulative sum exceeds `left`, and reduces `left` by the weights before it. Beyond the
+/// end, it is the last positive weight, or index 0.
 fn landing(weights: &[f64], left: &mut f64) -> usize {
     let mut last = 0;
     for (index, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
@@ -73,18 +73,18 @@ fn landing(weights: &[f64], left: &mut f64) -> usize {
     last
 }
 
-/// The lowest index of the largest value; `None` if there is no value.
+/// Returns the lowest index of the largest value; `None` if there is no value.
 pub fn first_largest(values: &[Option<f32>]) -> Option<usize> {
     two_largest(values)[0]
 }
 
-/// The largest value of all but the one at index `except`; 0 if there is none.
+/// Returns the largest of all values except the one at index `except`; 0 if there is none.
 pub fn largest_beside(values: &[Option<f32>], except: Option<usize>) -> f32 {
     let others = values.iter().enumerate().filter(|(index, _)| Some(*index) != except);
     others.filter_map(|(_, value)| *value).reduce(f32::max).unwrap_or(0.0)
 }
 
-/// The indices of the largest and of the second largest value, the lowest among equals; `None` where there is no value.
+/// Returns the indices of the largest and of the second largest value, the lowest among equal ones; `None` where there is no value.
 pub fn two_largest(values: &[Option<f32>]) -> [Option<usize>; 2] {
     let mut largest: [Option<(usize, f32)>; 2] = [None; 2];
     for (index, value) in values.iter().enumerate() {

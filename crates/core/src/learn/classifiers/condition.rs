@@ -1,4 +1,4 @@
-//! The condition of a rule: which bits of a situation it looks at, and what they must be.
+//! The condition of a rule: which bits of a situation matter, and which values they must have.
 //!
 //! As text a condition has one character per bit, bit 0 first: `0`, `1`, or `#` for a bit that does not matter.
 
@@ -13,39 +13,38 @@ use serde::{Deserialize, Serialize};
 use super::chance::happens;
 use crate::check::{Invalid, quoted, within};
 
-/// The allowed numbers of bits of a situation.
+/// Allowed numbers of bits of a situation.
 pub const LENGTHS: RangeInclusive<usize> = 1..=32;
 
 /// A condition over the bits of a situation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Condition {
-    /// Ones where a bit matters.
+    /// Bit mask with ones where a bit of the situation matters.
     care: u32,
-    /// The values that those bits must have; zero where a bit does not matter, so that equal conditions have equal words.
+    /// Values that the bits in `care` must have. Other bits are zero, so that equal conditions have equal words.
     value: u32,
-    /// Bits of a situation, 1 to 32.
+    /// Number of bits of a situation, 1 to 32.
     length: u8,
 }
 
 impl Condition {
-    /// The condition that the bits of `care` are as in `value`, over situations of `length` bits. Bits of `value`
-    /// outside `care` are ignored.
+    /// Creates the condition that the bits of `care` have the values in `value`, for situations of `length` bits. Bits of `value` outside
+    /// `care` are ignored.
     ///
-    /// # Errors
-    /// The length is not from 1 to 32, or `care` has bits beyond it.
+    /// Returns an error if the length is not from 1 to 32, or if `care` has bits beyond the length.
     pub fn new(care: u32, value: u32, length: usize) -> Result<Self, Invalid> {
         within("bits", length, LENGTHS)?;
         within("care", care, 0..=all_bits(length))?;
         Ok(Self { care, value: value & care, length: length as u8 })
     }
 
-    /// The condition that every situation of `length` bits meets.
+    /// Creates the condition that every situation of `length` bits meets.
     pub const fn any(length: u8) -> Self {
         Self { care: 0, value: 0, length }
     }
 
-    /// The symbol at a position: the value that the bit must have, or none for `#`.
+    /// Returns the symbol at a position: the value that the bit must have, or `None` for `#`.
     pub fn symbol(&self, position: usize) -> Option<bool> {
         let is_set = |bits: u32| bits >> position & 1 == 1;
         is_set(self.care).then_some(is_set(self.value))
@@ -58,7 +57,7 @@ impl Condition {
         self.value = self.value & others | u32::from(symbol == Some(true)) << position;
     }
 
-    /// A condition that `bits` meets, in which each bit is `#` with probability `wildcard_share`.
+    /// Draws a condition that `bits` meets. Each bit is `#` with probability `wildcard_share`.
     pub(super) fn covering(
         bits: u32,
         length: usize,
@@ -72,17 +71,17 @@ impl Condition {
         Self { care, value: bits & care, length: length as u8 }
     }
 
-    /// The bits that matter.
+    /// Returns the mask of the bits that matter.
     pub fn care(&self) -> u32 {
         self.care
     }
 
-    /// The values of the bits that matter; zero elsewhere.
+    /// Returns the values of the bits that matter; other bits are zero.
     pub fn value(&self) -> u32 {
         self.value
     }
 
-    /// Bits of a situation.
+    /// Returns the number of bits of a situation.
     pub fn length(&self) -> usize {
         usize::from(self.length)
     }
@@ -90,7 +89,7 @@ impl Condition {
     /// Checks that the condition is about situations of `length` bits.
     ///
     /// # Errors
-    /// It is about others.
+    /// Returns an error if the condition has another length.
     pub fn check_length(&self, length: usize) -> Result<(), Invalid> {
         if self.length() == length {
             return Ok(());
@@ -98,23 +97,23 @@ impl Condition {
         Err(Invalid::new("condition", self, format!("{length} characters, each 0, 1 or #")))
     }
 
-    /// Whether a situation meets the condition.
+    /// Returns whether a situation meets the condition.
     pub fn matches(&self, bits: u32) -> bool {
         (bits ^ self.value) & self.care == 0
     }
 
-    /// Whether this condition accepts every situation that `other` accepts, and more.
+    /// Returns whether this condition accepts every situation that `other` accepts, and more.
     pub fn is_more_general_than(&self, other: &Self) -> bool {
         let is_weaker = self.care & other.care == self.care && self.care != other.care;
         is_weaker && other.value & self.care == self.value
     }
 
-    /// Number of `#`.
+    /// Counts the `#`.
     pub fn wildcards(&self) -> u32 {
         u32::from(self.length) - self.care.count_ones()
     }
 
-    /// Exchanges with `other` the symbols from position `from` to before `to`.
+    /// Exchanges with `other` the symbols from position `from` to just before `to`.
     pub(super) fn exchange(&mut self, other: &mut Self, from: usize, to: usize) {
         let segment = below(to) & !below(from);
         let care = (self.care ^ other.care) & segment;
@@ -123,8 +122,8 @@ impl Condition {
         (self.value, other.value) = (self.value ^ value, other.value ^ value);
     }
 
-    /// Changes each symbol with probability `share`, within the conditions that `bits` meets: `#` becomes the bit of
-    /// the situation, and the bit becomes `#`.
+    /// Changes each symbol with probability `share`, such that `bits` still meets the condition: `#` becomes the bit of the situation, and
+    /// a bit becomes `#`.
     pub(super) fn mutate_around(&mut self, bits: u32, share: f32, rng: &mut impl Rng) {
         for bit in 0..self.length() {
             self.care ^= u32::from(happens(share, rng)) << bit;
@@ -140,7 +139,7 @@ impl Condition {
             }
             let is_first = rng.random_range(0..2) == 0;
             let (cares, is_one) = (self.care & bit != 0, self.value & bit != 0);
-            // A `#` becomes 0 or 1; a bit becomes # or its opposite.
+            // A `#` becomes 0 or 1; a bit becomes `#` or its opposite.
             let (new_care, new_one) = match (cares, is_first) {
                 (false, _) => (true, is_first),
                 (true, true) => (false, false),
@@ -152,12 +151,12 @@ impl Condition {
     }
 }
 
-/// A word whose lowest `length` bits are ones.
+/// Returns a word whose lowest `length` bits are ones.
 pub fn all_bits(length: usize) -> u32 {
     below(length)
 }
 
-/// Ones at the positions below `position`; all ones from 32.
+/// Returns a word with ones at the positions below `position`; all ones from 32 on.
 fn below(position: usize) -> u32 {
     if position >= 32 { u32::MAX } else { (1 << position) - 1 }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::condition::all_bits;
 use crate::check::{Invalid, within};
 
-/// One decision of an episode: what was seen, what was done, and what it earned until the next decision.
+/// One decision of an episode: the situation, the action, and the reward until the next decision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedDecision {
@@ -16,7 +16,7 @@ pub struct RecordedDecision {
     pub bits: u32,
     /// The chosen action.
     pub action: u16,
-    /// The reward that followed it.
+    /// Reward between this decision and the next.
     pub reward: f32,
 }
 
@@ -24,7 +24,7 @@ impl RecordedDecision {
     /// Checks a decision for a learner of `length` bits and `actions` actions.
     ///
     /// # Errors
-    /// A bit beyond the length, an unknown action, or a reward outside `rewards`.
+    /// Returns an error for a bit beyond the length, an unknown action, or a reward outside `rewards`.
     pub fn check(
         &self,
         length: usize,
@@ -40,11 +40,10 @@ impl RecordedDecision {
 /// How an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EpisodeEnd {
-    /// The task was over: nothing could follow, so the last action is worth its reward.
+    /// The task ended for good: nothing could follow, so the return of the last action is its reward.
     Terminal,
-    /// Time was up while the task went on (Pardo et al. 2018). The last action is worth its reward plus the
-    /// discounted worth of the situation it led to; if no rule matches that situation, nothing is learned from the
-    /// last action.
+    /// The time was up although the task could have continued (Pardo et al. 2018). The return of the last action is its reward plus the
+    /// discounted value of the situation to which it led. If no rule matches this situation, nothing is learned from the last action.
     TimeOut {
         /// The bits of the situation after the last action.
         bits: u32,
@@ -55,7 +54,7 @@ impl EpisodeEnd {
     /// Checks the end of an episode for a learner of `length` bits.
     ///
     /// # Errors
-    /// A bit beyond the length.
+    /// Returns an error for a bit beyond the length.
     pub fn check(&self, length: usize) -> Result<(), Invalid> {
         match *self {
             Self::Terminal => Ok(()),
@@ -67,7 +66,7 @@ impl EpisodeEnd {
 /// Checks an episode for a learner of `length` bits and `actions` actions.
 ///
 /// # Errors
-/// A decision or the end does not fit the learner, or a reward is outside `rewards`.
+/// Returns an error if a decision or the end does not fit the learner, or if a reward is outside `rewards`.
 pub fn check_episode(
     decisions: &[RecordedDecision],
     end: EpisodeEnd,
@@ -82,17 +81,17 @@ pub fn check_episode(
     end.check(length)
 }
 
-/// Counts of a replay.
+/// Counts of the decisions of a replay.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReplayReport {
-    /// Decisions replayed.
+    /// Number of decisions replayed.
     pub decisions: u32,
-    /// Decisions for which a rule was missing and had to be made.
+    /// Number of decisions for which a rule was missing and had to be made.
     pub covered: u32,
 }
 
 impl ReplayReport {
-    /// Adds another replay to the report.
+    /// Adds the counts of another replay.
     pub fn add(&mut self, other: Self) {
         self.decisions = self.decisions.saturating_add(other.decisions);
         self.covered = self.covered.saturating_add(other.covered);

@@ -1,11 +1,11 @@
 //! The conditions and actions of a rule population, laid out for matching.
 //!
-//! Every decision compares the situation with every rule. The table keeps only the words that this needs, each kind
-//! in a row, so that the processor compares several rules at a time and 2,000 rules are 16 kB of memory.
+//! Every decision compares the situation with every rule. The table keeps only the words needed for this comparison, each kind in an array
+//! of its own, so that the processor compares several rules at a time and 2,000 rules take 16 kB of memory.
 
 use super::condition::Condition;
 
-/// Rules that are first asked together whether any of them matches. Few do, so most blocks need no second look.
+/// Number of rules that are first tested together for whether any of them matches. Few rules match, so most blocks need no second test.
 const BLOCK: usize = 16;
 
 /// The masks and actions of rules, in the order of the rules.
@@ -17,7 +17,7 @@ pub struct MaskTable {
 }
 
 impl MaskTable {
-    /// The table of some rules.
+    /// Builds the table of these rules.
     pub fn of(rules: impl Iterator<Item = (Condition, u16)>) -> Self {
         let mut table = Self::default();
         rules.for_each(|(condition, action)| table.push(&condition, action));
@@ -31,20 +31,20 @@ impl MaskTable {
         self.actions.push(action);
     }
 
-    /// Removes the rules at some rising indices; the others move up.
+    /// Removes the rules at these indices, which are in ascending order. The other rules move up.
     pub fn remove_all(&mut self, indices: &[usize]) {
         remove_all(&mut self.cares, indices);
         remove_all(&mut self.values, indices);
         remove_all(&mut self.actions, indices);
     }
 
-    /// Writes the indices of the rules that match a situation, in rising order, into `matched`.
+    /// Writes the indices of the rules that match a situation into `matched`, in ascending order.
     pub fn match_into(&self, bits: u32, matched: &mut Vec<usize>) {
         matched.clear();
         let is_match = |(care, value): (&u32, &u32)| (bits ^ value) & care == 0;
         let blocks = self.cares.chunks(BLOCK).zip(self.values.chunks(BLOCK));
         for (block, (cares, values)) in blocks.enumerate() {
-            // Without a branch per rule, so that the whole block is compared at once.
+            // The test has no branch per rule, so that the processor compares a whole block at once.
             if cares.iter().zip(values).fold(false, |any, masks| any | is_match(masks)) {
                 let matches = cares.iter().zip(values).enumerate();
                 let matches = matches.filter(|&(_, masks)| is_match(masks));
@@ -53,7 +53,7 @@ impl MaskTable {
         }
     }
 
-    /// The index of the first rule of this condition and action.
+    /// Returns the index of the first rule with this condition and action; `None` if there is none.
     pub fn find(&self, condition: &Condition, action: u16) -> Option<usize> {
         let masks = self.cares.iter().zip(&self.values).zip(&self.actions);
         let sought = ((condition.care(), condition.value()), action);
@@ -66,7 +66,7 @@ impl MaskTable {
     }
 }
 
-/// Removes the items at some rising indices.
+/// Removes the items at these indices, which are in ascending order.
 fn remove_all<T>(items: &mut Vec<T>, indices: &[usize]) {
     let mut left = indices.iter().peekable();
     let mut index = 0;
@@ -77,7 +77,7 @@ fn remove_all<T>(items: &mut Vec<T>, indices: &[usize]) {
     });
 }
 
-/// Corrects a rising list of indices after the rule at `removed` is gone.
+/// Corrects an ascending list of indices after the rule at `removed` was removed.
 pub fn forget(indices: &mut Vec<usize>, removed: usize) {
     indices.retain(|&index| index != removed);
     indices.iter_mut().filter(|index| **index > removed).for_each(|index| *index -= 1);

@@ -1,12 +1,12 @@
 //! Learning classifier systems: populations of rules "if the situation looks like this, do that".
 //!
-//! A situation is a word of 1 to 32 bits, an action a small number. [`Xcs`] values a rule by how accurately it
-//! predicts the payoff (Wilson 1995), [`Zcs`] by the payoff itself (Wilson 1994). Both learn from recorded
-//! episodes with `learn_returns`, and act on what they know with `frozen_action`, which changes nothing and draws no random
-//! number. Tests hold them to the published tasks with the updates of the papers, one decision after the other.
+//! A situation is a word of 1 to 32 bits, an action a small number. [`Xcs`] rates a rule by how accurately it predicts the payoff (Wilson
+//! 1995), [`Zcs`] by the payoff itself (Wilson 1994). Both learn from recorded episodes with `learn_returns`, and act by what they have
+//! learned with `frozen_action`, which changes nothing and draws no random number. Tests compare both with the results of published tasks,
+//! with the updates of the papers, one decision after the other.
 //!
-//! Rules stand in order of birth, sums run in that order, and every random number comes from the stream that is
-//! passed in, so the same experience and the same stream give the same population on every machine.
+//! Rules are stored in order of birth, sums are computed in this order, and every random number comes from the stream that is passed in.
+//! The same experience and the same stream therefore give the same population on every machine.
 
 mod chance;
 mod condition;

@@ -1,4 +1,4 @@
-//! Learning from the recorded play of a frozen rule set, generation by generation, as the snake's learners do.
+//! Learning from the recorded play of a frozen rule set, generation by generation, as in the snake's learners.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -7,14 +7,14 @@ use super::{EpisodeEnd, RecordedDecision, Xcs, XcsSettings, Zcs, ZcsSettings};
 use crate::learn::tasks::woods::{DIRECTIONS, FOOD, MOST_STEPS, Woods};
 use crate::rng::{Purpose, stream};
 
-/// Generations, of [`ACTORS`] episodes each.
+/// Number of generations, of [`ACTORS`] episodes each.
 const GENERATIONS: u32 = 160;
 const ACTORS: u32 = 32;
-/// Runs with different random numbers.
+/// Number of runs, each with other random numbers.
 const RUNS: u64 = 5;
 
-/// The recorded episode of an actor that takes random actions with probability `random_share`, and where the frozen
-/// rules know none.
+/// Plays the episode of an actor and returns its record. The actor takes a random action with probability `random_share`, and where the
+/// frozen rules know no action.
 fn recorded(
     woods: &Woods,
     frozen: impl Fn(u32) -> Option<usize>,
@@ -39,8 +39,8 @@ fn recorded(
     (decisions, EpisodeEnd::TimeOut { bits: woods.situation(cell) })
 }
 
-/// Runs generations of actors, from one without random actions to one with nearly nothing else, and passes what each
-/// generation recorded to `learn`.
+/// Runs generations of actors, and passes the experience of each generation to `learn`. The first actor takes no random actions, the last
+/// one almost only random actions.
 fn generations<L>(
     learner: &mut L,
     run: u64,
@@ -86,8 +86,8 @@ fn xcs_learns_woods1_from_recorded_play() {
     assert!((1.6875..=1.75).contains(&(sum / RUNS as f64)), "{sum}");
 }
 
-/// ZCS is meant to act by roulette. Frozen, it may run in circles from one or two of the 16 cells, which costs three
-/// steps on average for each; a random walk takes 29.
+/// ZCS is meant to act by roulette. Frozen, it may run in circles from one or two of the 16 cells, which costs three steps on average for
+/// each. A random walk takes 29 steps.
 #[test]
 fn zcs_learns_woods1_from_recorded_play() {
     let woods = Woods::woods1();

@@ -1,4 +1,4 @@
-//! How the learners of the texts choose their actions, which the published tasks need.
+//! How the learners of the published texts choose their actions. The published tasks need it.
 
 use rand::Rng;
 use rand::RngExt;
@@ -8,15 +8,15 @@ use super::chance::first_largest;
 /// How a learner chooses its action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ActionChoice {
-    /// The action was chosen elsewhere and is learned from.
+    /// The action was chosen elsewhere; the learner only learns from it.
     Given(usize),
-    /// As the textbook explores: XCS draws any action, all equally likely, ZCS by roulette on strength.
+    /// The learner explores as in its text: XCS draws any action, all equally likely; ZCS draws by roulette on strength.
     Explore,
-    /// The best known action, a random one among equals. XCS still corrects its rules, but breeds no new ones.
+    /// The learner takes the best known action, a random one among equal ones. XCS still corrects its rules, but breeds no new ones.
     Exploit,
 }
 
-/// An index drawn uniformly among those of the largest value; `None` if there is no value.
+/// Draws an index uniformly from those of the largest value; `None` if there is no value.
 pub fn random_largest(values: &[Option<f32>], rng: &mut impl Rng) -> Option<usize> {
     let draw: u32 = rng.random_range(0..u32::MAX);
     let largest = values[first_largest(values)?];

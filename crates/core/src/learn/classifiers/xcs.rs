@@ -1,8 +1,8 @@
-//! XCS: a population of rules that each predict the payoff of an action, kept for how accurate they are.
+//! XCS: a population of rules that each predict the payoff of an action, and that are kept for the accuracy of their predictions.
 //!
-//! Wilson, "Classifier fitness based on accuracy" (Evolutionary Computation 3(2), 1995), in the form of Butz and
-//! Wilson, "An algorithmic description of XCS" (LNAI 1996, 2001). This file is the population and what can be asked
-//! of it; learning is in `xcs_returns`, the discovery of new rules in `xcs_discovery`.
+//! The method is that of Wilson, "Classifier fitness based on accuracy" (Evolutionary Computation 3(2), 1995), in the form of Butz and
+//! Wilson, "An algorithmic description of XCS" (LNAI 1996, 2001). This file contains the population and the functions that read it.
+//! `xcs_returns` contains learning, `xcs_discovery` the discovery of new rules.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,30 +16,31 @@ use super::xcs_saved::SavedXcs;
 use super::xcs_settings::XcsSettings;
 use crate::check::{Invalid, within};
 
-/// An XCS over situations of a fixed number of bits and a fixed number of actions.
+/// An XCS for situations with a fixed number of bits and a fixed number of actions.
 ///
-/// It is saved as [`SavedXcs`]; what is read is checked.
+/// It is saved as [`SavedXcs`]. A population that is read is checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SavedXcs", into = "SavedXcs")]
 pub struct Xcs {
     pub(super) settings: XcsSettings,
     pub(super) situation_bits: usize,
     pub(super) actions: usize,
-    /// Decisions learned from so far.
+    /// Number of decisions learned from so far.
     pub(super) time: u64,
-    /// The rules in order of birth.
+    /// Rules in order of birth.
     pub(super) rules: Vec<XcsRule>,
-    /// The conditions and actions of `rules`, for matching.
+    /// Conditions and actions of `rules`, laid out for matching.
     pub(super) masks: MaskTable,
-    /// The sum of the rules' numerosities.
+    /// Sum of the rules' numerosities.
     pub(super) numerosity: u32,
 }
 
 impl Xcs {
-    /// An XCS without rules.
+    /// Creates an XCS without rules.
     ///
     /// # Errors
-    /// A setting outside its range, bits not from 1 to 32, actions not from 1 to 256 or more than the population.
+    /// Returns an error if a setting is outside its range, if the bits are not from 1 to 32, or if the actions are not from 1 to 256 or
+    /// more than the population.
     pub fn new(
         settings: XcsSettings,
         situation_bits: usize,
@@ -61,33 +62,33 @@ impl Xcs {
         )
     }
 
-    /// The action of the largest predicted payoff, the lowest among equals; `None` if no rule matches. Makes no
-    /// rules and draws no random number.
+    /// Returns the action of the largest predicted payoff, the lowest among equal ones; `None` if no rule matches. It makes no rules and
+    /// draws no random number.
     pub fn frozen_action(&self, bits: u32) -> Option<usize> {
         first_largest(&self.prediction_array(bits))
     }
 
-    /// The predicted payoff of each action: the mean of its matching rules' predictions, weighted by fitness; `None`
-    /// for an action without a matching rule.
+    /// Computes the predicted payoff of each action: the mean of its matching rules' predictions, weighted by fitness; `None` for an
+    /// action without a matching rule.
     pub fn prediction_array(&self, bits: u32) -> Vec<Option<f32>> {
         self.predictions(&self.match_set(bits))
     }
 
-    /// The indices of the rules that match a situation, in order of birth.
+    /// Returns the indices of the rules that match a situation, in order of birth.
     pub fn match_set(&self, bits: u32) -> Vec<usize> {
         let mut matched = Vec::new();
         self.masks.match_into(bits, &mut matched);
         matched
     }
 
-    /// The predicted payoff of an action, from the indices of its matching rules, rising; `None` without one.
+    /// Computes the predicted payoff of an action from the ascending indices of its matching rules; `None` without a rule.
     pub(super) fn prediction(&self, matched: impl Iterator<Item = usize>) -> Option<f32> {
         let mut sum = PredictionSum::default();
         matched.for_each(|index| sum.add(&self.rules[index]));
         sum.mean()
     }
 
-    /// The prediction array of a match set.
+    /// Computes the prediction array of a match set.
     pub(super) fn predictions(&self, matched: &[usize]) -> Vec<Option<f32>> {
         let mut sums = vec![PredictionSum::default(); self.actions];
         for &index in matched {
@@ -106,7 +107,7 @@ impl Xcs {
         &self.settings
     }
 
-    /// Bits of a situation.
+    /// Returns the number of bits of a situation.
     pub fn situation_bits(&self) -> usize {
         self.situation_bits
     }
@@ -116,10 +117,10 @@ impl Xcs {
         self.actions
     }
 
-    /// Goes on with other parameters, for instance without crossover and mutation, which condenses the population.
+    /// Replaces the parameters, for instance by parameters without crossover and mutation, which condense the population.
     ///
     /// # Errors
-    /// A setting is outside its range, or the population is below the present sum of numerosities.
+    /// Returns an error if a setting is outside its range, or if the population is below the present sum of numerosities.
     pub fn set_settings(&mut self, settings: XcsSettings) -> Result<(), Invalid> {
         self.check_with(&settings)?;
         self.settings = settings;
@@ -129,7 +130,7 @@ impl Xcs {
     /// Checks the parameters and every rule.
     ///
     /// # Errors
-    /// The first fault found: field, value and allowed range.
+    /// Returns the first error found: field, value and allowed range.
     pub fn check(&self) -> Result<(), Invalid> {
         self.check_with(&self.settings)
     }
@@ -138,15 +139,15 @@ impl Xcs {
         settings.check().map_err(|error| error.inside("settings"))?;
         within("situation_bits", self.situation_bits, LENGTHS)?;
         within("actions", self.actions, 1..=MOST_ACTIONS)?;
-        // Every action of a situation has a rule, so there must be room for that.
+        // Every action of a situation has a rule, so the population must have room for one rule per action.
         within("actions", self.actions, 1..=settings.population as usize)?;
-        // No learner counts that far, but a hostile file may claim it, and then the count must not overflow.
+        // No learner reaches this count, but a hostile file may claim a larger one, and then the count must not overflow.
         within("time", self.time, 0..=1 << 62)?;
         check_rules(&self.rules, settings.population, self.situation_bits, self.actions, self.time)
     }
 }
 
-/// The sums behind the predicted payoff of one action.
+/// The sums from which the predicted payoff of one action is computed.
 #[derive(Debug, Clone, Copy, Default)]
 struct PredictionSum {
     fitness: f64,
@@ -164,7 +165,8 @@ impl PredictionSum {
         self.weighted_by_numerosity += prediction * f64::from(rule.numerosity);
     }
 
-    /// The mean prediction. Only where rounding has taken the fitness of all rules to zero do they count alike.
+    /// Returns the mean prediction, weighted by fitness. If rounding has reduced the fitness of all rules to zero, it is weighted by
+    /// numerosity; `None` without rules.
     fn mean(&self) -> Option<f32> {
         if self.fitness > 0.0 {
             Some((self.weighted_by_fitness / self.fitness) as f32)

@@ -1,20 +1,20 @@
-//! The rules of a population that its decisions need.
+//! Removes the rules of a population that none of its decisions needs.
 //!
-//! While it learns, XCS keeps many rules that change no decision: they are on trial, or say the same as others. Of a system that no
-//! longer learns and that people read, they are a burden. Several algorithms make rule sets compact after learning (Wyatt, Bull and
-//! Parmee, "Building Compact Rulesets for Describing Continuous-Valued Problem Spaces Using a Learning Classifier System"); they
-//! judge by samples. Where situations have few bits, all of them can be looked at, so nothing changes.
+//! While it learns, XCS keeps many rules that change no decision: they are new, or redundant. In a system that no longer learns and that
+//! people read, they make reading harder. Several algorithms make rule sets compact after learning (Wyatt, Bull and Parmee, "Building
+//! Compact Rulesets for Describing Continuous-Valued Problem Spaces Using a Learning Classifier System"); they judge by samples. If
+//! situations have few bits, all situations can be examined, so that no decision changes.
 
 use super::chance::two_largest;
 use super::xcs::Xcs;
 
-/// Bits of a situation up to which all situations are looked at: 4,096 of them.
+/// Number of bits of a situation up to which all situations are examined: 4,096 of them.
 const MOST_BITS: usize = 12;
 
 impl Xcs {
-    /// This system without the rules that no choice needs, the least fit of which go first. In every situation the best action stays
-    /// the best, and the second best stays so, which is what a choice beside the present action takes. Predictions change.
-    /// A system whose situations have more than twelve bits stays as it is.
+    /// Returns this system without the rules that no choice needs. The least fit rules are removed first. In every situation the best
+    /// action stays the best, and the second best the second best, which is chosen where the best is the present action. Predictions
+    /// change. A system whose situations have more than twelve bits stays as it is.
     #[must_use]
     pub fn compacted(&self) -> Self {
         if self.situation_bits > MOST_BITS {
@@ -36,7 +36,7 @@ impl Xcs {
         let mut gone = Vec::new();
         for rule in order {
             let action = self.masks.action(rule);
-            // Without a rule, only its own action has another prediction.
+            // Without a rule, only the prediction of the rule's own action changes.
             let without = |&index: &usize| {
                 let situation = &mut situations[index];
                 let others = situation.rules.iter().copied().filter(|&other| other != rule);
@@ -68,13 +68,13 @@ impl Xcs {
     }
 }
 
-/// A situation, with the rules that match it and are not removed yet.
+/// A situation with the rules that match it and are not removed yet.
 struct MatchedSituation {
-    /// Their indices, rising.
+    /// Indices of the rules, in ascending order.
     rules: Vec<usize>,
-    /// The prediction of each action.
+    /// Predicted payoff of each action; `None` without a rule.
     predictions: Vec<Option<f32>>,
-    /// The best and the second best action of all rules.
+    /// Best and second best action by all rules.
     leading: [Option<usize>; 2],
 }
 
@@ -86,7 +86,7 @@ mod tests {
     use crate::rng::{Purpose, stream};
     use rand::RngExt;
 
-    /// A system that has learned which of six bits the first two point to, from rewards that scatter.
+    /// Returns a system that has learned which of six bits the first two point to, from rewards that scatter.
     fn learned() -> Xcs {
         let settings = XcsSettings { population: 400, ..XcsSettings::default() };
         let mut xcs = Xcs::new(settings, 6, 3).expect("allowed");

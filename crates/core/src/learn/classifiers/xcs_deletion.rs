@@ -1,7 +1,7 @@
-//! How rules of XCS go: deletion from a full population, and removal from the vector of rules.
+//! How XCS loses rules: deletion from a full population, and removal from the vector of rules.
 //!
-//! A removed rule shifts the indices of those behind it, so every function that removes rules also corrects the sets
-//! of indices that are still needed.
+//! Removing a rule shifts the indices of the rules behind it. Every function that removes rules therefore also corrects the sets of
+//! indices that are still needed.
 
 use rand::Rng;
 
@@ -11,12 +11,12 @@ use super::xcs::Xcs;
 use super::xcs_rules::XcsRule;
 
 impl Xcs {
-    /// Deletes until the population is as large as allowed, each time one from the numerosity of a rule drawn by its
-    /// vote among the `deletable` oldest. Returns how many rules are gone with that. `alive` is a set of rule
-    /// indices that stays valid.
+    /// Deletes rules until the population is as large as allowed. Each deletion reduces the numerosity of one rule by one. The rule is
+    /// drawn by its vote from the `deletable` oldest. Returns how many rules disappeared. `alive` is a set of rule indices that stays
+    /// valid.
     ///
-    /// The mean fitness that votes refer to is taken once, before the first of these deletions. That saves most of
-    /// the work where a new situation needs a rule for each of many actions.
+    /// The mean fitness to which votes refer is computed once, before the first of these deletions. This saves most of the work where a
+    /// new situation needs a rule for each of many actions.
     pub(super) fn delete_surplus(
         &mut self,
         deletable: usize,
@@ -32,7 +32,7 @@ impl Xcs {
             let victim = wheel.draw(rng);
             let rule = &mut self.rules[victim];
             if rule.numerosity == 0 {
-                // Only where rounding has left nothing of all votes can a rule be drawn that is gone already.
+                // A rule that has already disappeared is drawn only if rounding has left nothing of all votes.
                 break;
             }
             let rest = f64::from(rule.numerosity - 1) / f64::from(rule.numerosity);
@@ -48,8 +48,8 @@ impl Xcs {
         gone.len()
     }
 
-    /// The deletion votes of the oldest rules: action set size, so that niches get equal room, times the factor by
-    /// which an experienced rule's fitness is far below the mean.
+    /// Returns the deletion votes of the `count` oldest rules: action set size times numerosity, so that niches get equal room. The vote
+    /// of an experienced rule whose fitness is far below the mean is multiplied by the ratio of the mean to its fitness.
     fn deletion_votes(&self, count: usize) -> Vec<f64> {
         let fitness = self.rules.iter().fold(0.0, |sum, rule| sum + f64::from(rule.fitness));
         let mean = fitness / f64::from(self.numerosity.max(1));
@@ -68,7 +68,7 @@ impl Xcs {
         self.rules.iter().take(count).map(vote).collect()
     }
 
-    /// Removes the rules without numerosity, whose indices are `gone`, rising; the sets of indices stay valid.
+    /// Removes the rules without numerosity, which are those at the ascending indices `gone`. The sets of indices stay valid.
     pub(super) fn remove_rules<const N: usize>(
         &mut self,
         gone: &[usize],
@@ -80,7 +80,7 @@ impl Xcs {
         self.rules.retain(|rule| rule.numerosity > 0);
         self.masks.remove_all(gone);
         for set in sets {
-            // From the back, so that the indices in front stay right.
+            // The removed indices are processed from the back, so that those in front stay right.
             gone.iter().rev().for_each(|&index| forget(set, index));
         }
     }
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::rng::{Purpose, stream};
 
-    /// Four rules with six in numerosity.
+    /// Returns a system of four rules whose numerosities add up to six.
     fn four_rules(population: u32) -> Xcs {
         let settings = XcsSettings { population, ..XcsSettings::default() };
         let mut xcs = Xcs::new(settings, 3, 2).unwrap();

@@ -1,4 +1,4 @@
-//! Where the rules of XCS come from: covering and the genetic algorithm.
+//! How XCS makes new rules: covering and the genetic algorithm.
 
 use rand::Rng;
 use rand::RngExt;
@@ -8,11 +8,11 @@ use super::condition::Condition;
 use super::xcs::Xcs;
 use super::xcs_rules::XcsRule;
 
-/// Share of its parents' fitness that a child starts with (Butz and Wilson 2001).
+/// Share of its parents' fitness with which a child starts (Butz and Wilson 2001).
 const CHILD_FITNESS: f32 = 0.1;
 
 impl Xcs {
-    /// A new rule that matches a situation and advises an action.
+    /// Makes a rule that matches a situation and advises an action.
     pub(super) fn covering_rule(&self, bits: u32, action: usize, rng: &mut impl Rng) -> XcsRule {
         let settings = &self.settings;
         XcsRule {
@@ -28,8 +28,8 @@ impl Xcs {
         }
     }
 
-    /// Breeds two children among the rules of an action set, for the situation of the set, if the last time is long ago.
-    /// `alive` is a set of rule indices that stays valid.
+    /// Breeds two children from the rules of an action set, for the situation of the set, if the genetic algorithm last ran among them
+    /// long enough ago. `alive` is a set of rule indices that stays valid.
     pub(super) fn evolve(
         &mut self,
         set: &[usize],
@@ -49,7 +49,7 @@ impl Xcs {
         self.delete_surplus(self.rules.len(), alive, rng);
     }
 
-    /// Mean number of decisions since the genetic algorithm last ran among some rules.
+    /// Returns the mean number of decisions since the genetic algorithm last ran among these rules.
     fn mean_age(&self, set: &[usize]) -> f64 {
         let (mut ages, mut count) = (0.0, 0.0);
         for rule in set.iter().map(|&index| &self.rules[index]) {
@@ -60,7 +60,7 @@ impl Xcs {
         ages / count
     }
 
-    /// Two children of two rules, made for a situation that both parents match.
+    /// Makes two children of two rules, for a situation that both parents match.
     fn children(&self, parents: [usize; 2], bits: u32, rng: &mut impl Rng) -> [XcsRule; 2] {
         let [mut first, mut second] = parents.map(|parent| self.copy_of_one(&self.rules[parent]));
         if happens(self.settings.crossover_share, rng) {
@@ -85,7 +85,7 @@ impl Xcs {
         })
     }
 
-    /// A copy of one of the equal rules that a rule stands for, with that one's part of the fitness.
+    /// Copies one of the equal rules that a rule stands for, with its share of the fitness.
     fn copy_of_one(&self, rule: &XcsRule) -> XcsRule {
         XcsRule {
             fitness: rule.fitness / rule.numerosity as f32,
@@ -104,7 +104,7 @@ impl Xcs {
     }
 }
 
-/// A segment of at least one symbol between two random cuts.
+/// Draws a segment of at least one symbol between two random cuts.
 fn segment(length: usize, rng: &mut impl Rng) -> (usize, usize) {
     let (one, other) = (rng.random_range(0..length), rng.random_range(1..=length));
     let (from, to) = (one.min(other), one.max(other));

@@ -1,8 +1,9 @@
-//! One episode of XCS as in its texts, decision by decision: choose, reward, and correct the rules that led here. Runs learn
-//! from whole episodes instead (`xcs_returns`); this form holds what both have in common to published results.
+//! One episode of XCS as in the published texts, decision by decision: choose an action, receive the reward, and correct the rules that
+//! led to this situation. Runs learn from whole episodes instead (`xcs_returns`). This form serves to compare the parts that both have in
+//! common with published results.
 //!
-//! The payoff of an action is known one decision later, P = r + γ · max PA, so the rules that chose it wait in a
-//! pending set.
+//! The payoff of an action, P = r + γ · max PA, is known one decision later. The rules that chose the action therefore wait in a pending
+//! set.
 
 use rand::Rng;
 use rand::RngExt;
@@ -15,13 +16,13 @@ use super::textbook::{ActionChoice, random_largest};
 use super::xcs::Xcs;
 use crate::check::Invalid;
 
-/// An episode in progress. If it is dropped instead of finished, nothing is learned from its last action.
+/// An episode in progress. If it is dropped without `finish`, nothing is learned from its last action.
 #[derive(Debug)]
 pub struct XcsEpisode<'a> {
     xcs: &'a mut Xcs,
-    /// The last action, whose payoff is still unknown.
+    /// Last action, whose payoff is still unknown.
     pending: Option<PendingActionSet>,
-    /// The match set, kept for its memory.
+    /// Match set, whose memory is reused.
     matched: Vec<usize>,
     report: ReplayReport,
 }
@@ -31,9 +32,9 @@ pub struct XcsEpisode<'a> {
 struct PendingActionSet {
     /// The situation in which the action was taken.
     bits: u32,
-    /// Indices of the rules, rising.
+    /// Indices of the rules, in ascending order.
     rules: Vec<usize>,
-    /// Reward since the action.
+    /// Sum of the rewards since the action.
     reward: f32,
     /// Whether the genetic algorithm may run among the rules.
     evolves: bool,
@@ -44,8 +45,8 @@ impl<'a> XcsEpisode<'a> {
         Self { xcs, pending: None, matched: Vec::new(), report: ReplayReport::default() }
     }
 
-    /// Takes a decision in a situation and returns the action; then learns from the action before it, whose payoff
-    /// is now known. Bits beyond those of the learner are ignored; an action given beyond the last is the last.
+    /// Takes a decision in a situation and returns the action. Then it learns from the action before, whose payoff is now known. Bits
+    /// beyond those of the learner are ignored. A given action beyond the last one counts as the last one.
     pub fn decide(&mut self, bits: u32, choice: ActionChoice, rng: &mut impl Rng) -> usize {
         let bits = bits & all_bits(self.xcs.situation_bits);
         self.xcs.time += 1;
@@ -71,7 +72,7 @@ impl<'a> XcsEpisode<'a> {
         action
     }
 
-    /// Adds a reward for the last action. It is limited to -1e6 to 1e6; NaN counts as 0.
+    /// Adds a reward for the last action. The sum is limited to -1e6 to 1e6; NaN counts as 0.
     pub fn reward(&mut self, reward: f32) {
         if let Some(pending) = &mut self.pending
             && !reward.is_nan()
@@ -80,7 +81,7 @@ impl<'a> XcsEpisode<'a> {
         }
     }
 
-    /// Learns from the last action and reports the episode.
+    /// Learns from the last action and returns the counts of the episode.
     pub fn finish(mut self, end: EpisodeEnd, rng: &mut impl Rng) -> ReplayReport {
         let next_payoff = match end {
             EpisodeEnd::Terminal => Some(0.0),
@@ -98,11 +99,12 @@ impl<'a> XcsEpisode<'a> {
 }
 
 impl Xcs {
-    /// Learns from one recorded episode: the full cycle of covering, update, discovery and deletion for every
-    /// decision, with the recorded action in place of a choice.
+    /// Learns from one recorded episode: for every decision, the full cycle of covering, update, discovery and deletion, with the recorded
+    /// action instead of a choice.
     ///
     /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
+    /// Returns an error if a decision or the end does not fit the learner, or if a reward is not from -1e6 to 1e6. Then nothing is
+    /// learned.
     pub fn learn(
         &mut self,
         decisions: &[RecordedDecision],
@@ -118,16 +120,16 @@ impl Xcs {
         Ok(episode.finish(end, rng))
     }
 
-    /// Starts an episode that is learned from one decision at a time.
+    /// Starts an episode from which the system learns one decision at a time.
     pub fn episode(&mut self) -> XcsEpisode<'_> {
         XcsEpisode::new(self)
     }
 
-    /// Writes the rules that match into `matched`, after making a rule for each action that has none. True if that
-    /// was needed. `waiting` is another set of rule indices that stays valid.
+    /// Makes a rule for each action that has none, and writes the indices of the matching rules into `matched`. Returns whether it made a
+    /// rule. `waiting` is another set of rule indices that stays valid.
     ///
-    /// Rules made for this situation cannot be deleted before it is dealt with; otherwise a small population could
-    /// delete what it has just made, for ever.
+    /// Rules made for this situation cannot be deleted before the match set is complete. Otherwise a small population could endlessly
+    /// delete the rules that it has just made.
     fn match_or_cover(
         &mut self,
         bits: u32,
@@ -137,7 +139,7 @@ impl Xcs {
     ) -> bool {
         let mut deletable = self.rules.len();
         let mut covered = false;
-        // Deletion may take the only rule of another action, so look again; each round protects at least one more.
+        // Deletion may remove the only rule of another action, so the search is repeated. Each round protects at least one more rule.
         loop {
             self.masks.match_into(bits, matched);
             let missing = self.actions_without_rule(matched);
@@ -159,7 +161,7 @@ impl Xcs {
         (0..self.actions).filter(|&action| !has_rule[action]).collect()
     }
 
-    /// Lets the most general accurate rule of an action set, the oldest among equals, absorb the more special ones.
+    /// Lets the most general accurate rule of an action set, the oldest among equal ones, absorb more special rules.
     fn subsume_within(&mut self, set: &mut Vec<usize>, alive: &mut Vec<usize>) {
         let mut subsumer: Option<usize> = None;
         for &index in set.iter().filter(|&&index| self.may_subsume(&self.rules[index])) {
@@ -178,8 +180,8 @@ impl Xcs {
         self.remove_rules(&absorbed, [set, alive]);
     }
 
-    /// Corrects the rules of an action that earned its reward and led to a situation of payoff `next_payoff`, then
-    /// lets new rules arise among them. `alive` is a set of rule indices that stays valid.
+    /// Corrects the rules of an action by its reward and the payoff `next_payoff` of the situation to which it led. Then new rules may be
+    /// bred from them. `alive` is a set of rule indices that stays valid.
     fn reinforce(
         &mut self,
         mut pending: PendingActionSet,
@@ -204,8 +206,7 @@ mod tests {
     use crate::learn::classifiers::{XcsRule, XcsSettings};
     use crate::rng::{Purpose, stream};
 
-    /// An XCS with one rule for each bit and action, in which neither crossover nor mutation nor the genetic
-    /// algorithm takes part.
+    /// Returns an XCS with one rule for each bit and action, without crossover, mutation and the genetic algorithm.
     fn quiet() -> Xcs {
         let settings =
             XcsSettings { ga_interval: 1.0e9, wildcard_share: 0.0, ..XcsSettings::default() };
@@ -222,14 +223,14 @@ mod tests {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let once = |reward| [RecordedDecision { bits: 1, action: 0, reward }];
         xcs.learn(&once(1000.0), EpisodeEnd::Terminal, &mut rng).unwrap();
-        // The first update has rate 1: the error is the whole miss, the prediction the payoff.
+        // The first update has the rate 1: the error becomes the whole deviation, the prediction the payoff.
         let rule = rule_of(&xcs, 1, 0);
         near(rule.error, 999.99);
         near(rule.prediction, 1000.0);
         near(rule.fitness, 0.01 + 0.2 * 0.99);
         assert_eq!(rule.experience, 1);
         xcs.learn(&once(0.0), EpisodeEnd::Terminal, &mut rng).unwrap();
-        // The second has rate 1/2, and misses by 1000 before the prediction moves.
+        // The second update has the rate 1/2. The deviation is 1000 before the prediction changes.
         let rule = rule_of(&xcs, 1, 0);
         near(rule.error, 999.995);
         near(rule.prediction, 500.0);

@@ -1,9 +1,9 @@
-//! How XCS learns from whole episodes, where a situation hides much of the world.
+//! How XCS learns from whole episodes, where situations show only a part of the world.
 //!
-//! The payoff of a decision is a mixture of what is predicted of the next situation and of what came later indeed, the
-//! λ-return, so that a wrong prediction is not passed on (see `q_table::returns`). Textbook XCS only takes the
-//! prediction, and covers all actions of a situation; here a rule is only made for the recorded action, which leaves the
-//! population to what was tried.
+//! The payoff of a decision is a mixture of the prediction for the next situation and of what was actually earned later: the λ-return. A
+//! wrong prediction is then not passed on in full (see `q_table::returns`). Textbook XCS only uses the prediction, and covers all actions
+//! of a situation. In this form, a rule is only made for the recorded action, so that the population only contains actions that were
+//! tried.
 
 use rand::Rng;
 
@@ -13,11 +13,11 @@ use super::xcs::Xcs;
 use crate::check::Invalid;
 
 impl Xcs {
-    /// Learns from a recorded episode backwards in time. `trace` is the share of what came later in a payoff, from 0
-    /// (only the prediction counts) to 1 (only what came). Unless it `may_repeat`, no action is expected to follow itself.
+    /// Learns from a recorded episode backwards in time. `trace` is the share of later rewards in a payoff, from 0 (only the prediction
+    /// counts) to 1 (only later rewards count). Unless `may_repeat` is set, no action is expected to follow itself.
     ///
-    /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from -1e6 to 1e6. Nothing is learned then.
+    /// Returns an error if a decision or the end does not fit the learner, or if a reward is not from -1e6 to 1e6. Then nothing is
+    /// learned.
     pub fn learn_returns(
         &mut self,
         decisions: &[RecordedDecision],
@@ -47,8 +47,8 @@ impl Xcs {
         Ok(report)
     }
 
-    /// Corrects the rules that advise a recorded action, after making one if there is none, and lets new rules arise
-    /// among them. True if a rule was made.
+    /// Corrects the rules that advise a recorded action, after making one if there is none. Then new rules may be bred from them. Returns
+    /// whether a rule was made for the action.
     fn learn_payoff(
         &mut self,
         decision: &RecordedDecision,
@@ -72,7 +72,7 @@ impl Xcs {
         is_covered
     }
 
-    /// The indices of the rules that match a situation and advise an action, rising.
+    /// Returns the indices of the rules that match a situation and advise an action, in ascending order.
     fn action_set(&self, bits: u32, action: usize) -> Vec<usize> {
         let mut matched = self.match_set(bits);
         matched.retain(|&index| self.masks.action(index) == action);

@@ -1,4 +1,4 @@
-//! A rule of XCS, and checks of rule sets that come from outside.
+//! A rule of XCS, and checks of rule sets that were read from files.
 
 use std::collections::BTreeSet;
 
@@ -8,31 +8,30 @@ use super::condition::Condition;
 use super::limits::MOST_RULES;
 use crate::check::{Invalid, within};
 
-/// Largest prediction and error in size, in units of reward: the largest reward, again at every decision for ever,
-/// at the largest discount.
+/// Largest absolute value of a prediction, in units of reward: the sum of the largest reward at every decision, at the largest discount.
 const MOST_PAYOFF: f32 = 1.0e9;
 
-/// A rule of XCS: a macro-rule in the words of the field, which stands for `numerosity` equal rules.
+/// A rule of XCS. In terms of the field it is a macro-rule, which stands for `numerosity` equal rules.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct XcsRule {
-    /// The situations that the rule is about.
+    /// Condition on the situations to which the rule applies.
     pub condition: Condition,
-    /// The action whose payoff it predicts.
+    /// Action whose payoff the rule predicts.
     pub action: u16,
     /// p: predicted payoff, in units of reward.
     pub prediction: f32,
-    /// ε: mean size of the prediction's error, in units of reward.
+    /// ε: mean absolute error of the prediction, in units of reward.
     pub error: f32,
-    /// F: accuracy relative to the rules that act with it, 0 to 1.
+    /// F: accuracy relative to the rules in the same action sets, 0 to 1.
     pub fitness: f32,
-    /// exp: number of updates.
+    /// exp: number of updates of the rule.
     pub experience: u32,
     /// ts: the decision at which the genetic algorithm last ran in a set with this rule.
     pub time_stamp: u64,
-    /// as: mean numerosity of the action sets it was in.
+    /// as: mean numerosity of the action sets that contained the rule.
     pub action_set_size: f32,
-    /// n: number of equal rules that it stands for.
+    /// n: number of equal rules for which the rule stands.
     pub numerosity: u32,
 }
 
@@ -40,7 +39,7 @@ impl XcsRule {
     /// Checks the rule for a learner of `length` bits and `actions` actions at decision `time`.
     ///
     /// # Errors
-    /// A condition of another length, an unknown action, or a number that learning cannot produce.
+    /// Returns an error for a condition of another length, an unknown action, or a number that learning cannot produce.
     pub fn check(&self, length: usize, actions: usize, time: u64) -> Result<(), Invalid> {
         self.condition.check_length(length)?;
         within("action", usize::from(self.action), 0..=actions.saturating_sub(1))?;
@@ -48,7 +47,7 @@ impl XcsRule {
         within("error", self.error, 0.0..=2.0 * MOST_PAYOFF)?;
         within("fitness", self.fitness, 0.0..=1.0)?;
         within("time_stamp", self.time_stamp, 0..=time)?;
-        // A set has at least the rule itself; rounding is given some room.
+        // An action set contains at least the rule itself. The range allows for rounding.
         within("action_set_size", self.action_set_size, 0.5..=2.0 * MOST_RULES as f32)?;
         within("numerosity", self.numerosity, 1..=MOST_RULES)
     }
@@ -57,7 +56,7 @@ impl XcsRule {
 /// Checks a whole rule set: its size, each rule, and that no two rules have the same condition and action.
 ///
 /// # Errors
-/// The first fault found.
+/// Returns the first error found.
 pub fn check_rules(
     rules: &[XcsRule],
     population: u32,
@@ -85,7 +84,7 @@ pub(super) mod samples {
     use super::super::{SavedXcs, XcsSettings};
     use super::XcsRule;
 
-    /// A rule that is accurate and experienced enough to subsume others.
+    /// Returns a rule that is accurate and experienced enough to subsume others.
     pub fn experienced(condition: &str, action: u16) -> XcsRule {
         XcsRule {
             condition: condition.parse().unwrap(),
@@ -100,18 +99,18 @@ pub(super) mod samples {
         }
     }
 
-    /// A rule of this prediction and fitness.
+    /// Returns a rule with this prediction and fitness.
     pub fn rule(condition: &str, action: u16, prediction: f32, fitness: f32) -> XcsRule {
         XcsRule { prediction, fitness, ..experienced(condition, action) }
     }
 
-    /// A system of up to ten rules over three bits and three actions, after five decisions.
+    /// Returns a system of up to ten rules over three bits and three actions, after five decisions.
     pub fn saved(rules: Vec<XcsRule>) -> SavedXcs {
         let settings = XcsSettings { population: 10, ..XcsSettings::default() };
         SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
     }
 
-    /// Checks a number that was computed by hand.
+    /// Checks a number against a value computed by hand.
     pub fn near(value: f32, expected: f32) {
         let off = (value - expected).abs();
         assert!(off <= 1e-4 * expected.abs().max(1.0), "{value} is not {expected}");

@@ -1,4 +1,4 @@
-//! The saved form of XCS, apart from the form in memory, which has tables for matching besides.
+//! The saved form of XCS. The form in memory also has tables for matching.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,15 +12,15 @@ use crate::check::Invalid;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedXcs {
-    /// The parameters.
+    /// Parameters of the system.
     pub settings: XcsSettings,
-    /// Bits of a situation, 1 to 32.
+    /// Number of bits of a situation, 1 to 32.
     pub situation_bits: usize,
     /// Number of actions, 1 to 256.
     pub actions: usize,
-    /// Decisions learned from so far.
+    /// Number of decisions learned from so far.
     pub time: u64,
-    /// The rules in order of birth.
+    /// Rules in order of birth.
     pub rules: Vec<XcsRule>,
 }
 

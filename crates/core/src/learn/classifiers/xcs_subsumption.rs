@@ -1,10 +1,11 @@
-//! Subsumption: an accurate rule stands for the more special ones that say the same.
+//! Subsumption: an accurate rule replaces more special rules with the same action.
 
 use super::xcs::Xcs;
 use super::xcs_rules::XcsRule;
 
 impl Xcs {
-    /// Adds a child to a parent that says the same in general, to an equal rule, or to the population.
+    /// Adds a child to the population. It only increases the numerosity of a more general parent with the same action, or of an equal
+    /// rule, if there is one.
     pub(super) fn settle(&mut self, child: XcsRule, parents: [usize; 2]) {
         let subsumes = |&parent: &usize| {
             let parent = &self.rules[parent];
@@ -22,7 +23,7 @@ impl Xcs {
         }
     }
 
-    /// Whether a rule is accurate and experienced enough to replace more special ones.
+    /// Returns whether a rule is accurate and experienced enough to replace more special ones.
     pub(super) fn may_subsume(&self, rule: &XcsRule) -> bool {
         rule.experience > self.settings.subsumption_experience
             && rule.error < self.settings.error_threshold
@@ -53,7 +54,7 @@ mod tests {
         assert_eq!(settles(&|xcs| xcs.rules[0].experience = 20), (2, 1, 2));
         assert_eq!(settles(&|xcs| xcs.rules[0].action = 1), (2, 1, 2));
         assert_eq!(settles(&|xcs| xcs.settings.ga_subsumption = false), (2, 1, 2));
-        // An equal rule is never added twice, accurate or not.
+        // A rule equal to another is never added, whether it is accurate or not.
         let mut xcs = empty(XcsSettings::default());
         xcs.add(XcsRule { error: 500.0, ..experienced("10#", 0) });
         xcs.settle(experienced("10#", 0), [0, 0]);

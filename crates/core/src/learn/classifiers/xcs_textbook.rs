@@ -1,4 +1,4 @@
-//! XCS held against the tasks that its authors published: multiplexers and grid worlds.
+//! XCS compared with the published results of its authors: multiplexers and grid worlds.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -24,7 +24,7 @@ fn explore_multiplexer(xcs: &mut Xcs, task: Multiplexer, problems: u32, rng: &mu
     }
 }
 
-/// Share of right answers in frozen play, over all situations or, if there are many, 10,000 random ones.
+/// Returns the share of right answers in frozen play, over all situations or, with 20 bits, over 10,000 random ones.
 fn share_right(xcs: &Xcs, task: Multiplexer, rng: &mut ChaCha8Rng) -> f64 {
     let all = 1 << task.bits();
     let asked: Vec<u32> = match task.bits() {
@@ -49,8 +49,8 @@ fn mean_share_right(task: Multiplexer, settings: &XcsSettings, problems: u32, co
     right
 }
 
-/// One run of six still errs somewhere after 2,500 problems, so the mean of 20 runs varies by half a per cent from one set of
-/// streams to the next; that of 100 runs does not depend on luck.
+/// One run of six still makes errors after 2,500 problems, so the mean of 20 runs varies by half a per cent between sets of streams. The
+/// mean of 100 runs does not depend on luck.
 #[test]
 fn the_6_multiplexer_is_solved_by_2500_problems() {
     let settings = XcsSettings { population: 400, ..XcsSettings::default() };
@@ -88,7 +88,7 @@ fn condensation_leaves_the_smallest_complete_rule_set() {
     assert!(minimal >= 18);
 }
 
-/// Plays one episode and returns its steps.
+/// Plays one episode and returns its number of steps.
 fn find_food(xcs: &mut Xcs, woods: &Woods, choice: ActionChoice, rng: &mut ChaCha8Rng) -> u32 {
     let mut cell = woods.draw(rng);
     let mut episode = xcs.episode();
@@ -106,8 +106,8 @@ fn find_food(xcs: &mut Xcs, woods: &Woods, choice: ActionChoice, rng: &mut ChaCh
     MOST_STEPS
 }
 
-/// Alternates 2,000 explore and 2,000 exploit problems; returns the mean steps of the last 200 exploit problems,
-/// which only correct the rules that exist.
+/// Alternates 2,000 explore and 2,000 exploit problems. Returns the mean number of steps of the last 200 exploit problems, in which XCS
+/// only corrects existing rules.
 fn mean_steps_to_food(woods: &Woods, settings: &XcsSettings, count: u32) -> f64 {
     let (mut steps, mut frozen, mut rules) = (0, 0.0, 0);
     for mut rng in runs(count) {

@@ -1,7 +1,7 @@
 //! How the rules of an action set learn from its payoff.
 //!
-//! Texts differ in the order of updates. Here the error is updated before the prediction, so both refer to the old
-//! prediction; then the action set size, and the fitness last.
+//! Texts differ in the order of updates. In this program the error is updated before the prediction, so both refer to the old prediction.
+//! Then come the action set size, and last the fitness.
 
 use super::xcs::Xcs;
 
@@ -14,7 +14,7 @@ impl Xcs {
         for &index in set {
             let rule = &mut self.rules[index];
             rule.experience = rule.experience.saturating_add(1);
-            // The first updates are plain means, so that a young rule soon knows the size of its payoff.
+            // The first updates compute plain means, so that a new rule soon predicts the right order of magnitude.
             let young = 1.0 / rule.experience as f32;
             let step = if young > rate { young } else { rate };
             let miss = payoff - rule.prediction;
@@ -44,7 +44,7 @@ impl Xcs {
         }
     }
 
-    /// κ: 1 below the error threshold, and a power law that falls from α above it.
+    /// Returns κ, the accuracy at this error: 1 below the error threshold; above it, a power law that falls from α.
     fn accuracy(&self, error: f32) -> f64 {
         let settings = &self.settings;
         if error < settings.error_threshold {
@@ -81,7 +81,7 @@ mod tests {
     fn fitness_follows_relative_accuracy() {
         let mut xcs = with_rules([("1", 5.0, 0.5, 1), ("#", 20.0, 0.5, 3)]);
         xcs.update(&[0, 1], 0.0);
-        // Errors 4 and 16; accuracies 1 and 0.1 · 1.6⁻⁵, of which the second counts three times.
+        // The errors are 4 and 16, the accuracies 1 and 0.1 · 1.6⁻⁵. The second counts three times.
         let other = 3.0 * 0.1 * 0.095_367_43;
         near(xcs.rules[0].fitness, 0.5 + 0.2 * (1.0 / (1.0 + other) - 0.5));
         near(xcs.rules[1].fitness, 0.5 + 0.2 * (other / (1.0 + other) - 0.5));

@@ -1,8 +1,7 @@
-//! ZCS: a population of rules that share out the payoff of the actions they advise.
+//! ZCS: a population of rules that share the payoff of the actions that they advise.
 //!
-//! Wilson, "ZCS: a zeroth level classifier system" (Evolutionary Computation 2(1), 1994). ZCS acts by roulette on
-//! strength while it learns. Frozen play needs no random numbers: it takes the action whose rules are strongest
-//! together.
+//! The method is that of Wilson, "ZCS: a zeroth level classifier system" (Evolutionary Computation 2(1), 1994). ZCS acts by roulette on
+//! strength while it learns. Frozen play needs no random numbers: it takes the action whose rules have the largest total strength.
 
 use rand::Rng;
 use rand::RngExt;
@@ -16,18 +15,18 @@ use super::mask_table::MaskTable;
 use super::zcs_rules::{ZcsRule, ZcsSettings};
 use crate::check::{Invalid, within};
 
-/// A ZCS over situations of a fixed number of bits and a fixed number of actions.
+/// A ZCS for situations with a fixed number of bits and a fixed number of actions.
 ///
-/// It is saved as [`SavedZcs`]; what is read is checked.
+/// It is saved as [`SavedZcs`]. A population that is read is checked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SavedZcs", into = "SavedZcs")]
 pub struct Zcs {
     pub(super) settings: ZcsSettings,
     pub(super) situation_bits: usize,
     pub(super) actions: usize,
-    /// The rules in order of birth.
+    /// Rules in order of birth.
     pub(super) rules: Vec<ZcsRule>,
-    /// The conditions and actions of `rules`, for matching.
+    /// Conditions and actions of `rules`, laid out for matching.
     pub(super) masks: MaskTable,
 }
 
@@ -35,21 +34,21 @@ pub struct Zcs {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedZcs {
-    /// The parameters.
+    /// Parameters of the system.
     pub settings: ZcsSettings,
-    /// Bits of a situation, 1 to 32.
+    /// Number of bits of a situation, 1 to 32.
     pub situation_bits: usize,
     /// Number of actions, 1 to 256.
     pub actions: usize,
-    /// The rules in order of birth.
+    /// Rules in order of birth.
     pub rules: Vec<ZcsRule>,
 }
 
 impl Zcs {
-    /// A ZCS with a full population of random rules.
+    /// Creates a ZCS with a full population of random rules.
     ///
     /// # Errors
-    /// A setting outside its range, bits not from 1 to 32, or actions not from 1 to 256.
+    /// Returns an error if a setting is outside its range, if the bits are not from 1 to 32, or if the actions are not from 1 to 256.
     pub fn new(
         settings: ZcsSettings,
         situation_bits: usize,
@@ -75,25 +74,25 @@ impl Zcs {
         check_episode(decisions, end, [self.situation_bits, self.actions], 0.0..=MOST_REWARD)
     }
 
-    /// The action whose matching rules are strongest together, the lowest among equals; `None` if no rule matches.
-    /// Makes no rules and draws no random number.
+    /// Returns the action whose matching rules have the largest total strength, the lowest among equal ones; `None` if no rule matches. It
+    /// makes no rules and draws no random number.
     pub fn frozen_action(&self, bits: u32) -> Option<usize> {
         first_largest(&self.strength_array(bits))
     }
 
-    /// The summed strength of each action's matching rules; `None` for an action without one.
+    /// Computes the total strength of each action's matching rules; `None` for an action without a matching rule.
     pub fn strength_array(&self, bits: u32) -> Vec<Option<f32>> {
         self.strengths(&self.match_set(bits))
     }
 
-    /// The indices of the rules that match a situation, in order of birth.
+    /// Returns the indices of the rules that match a situation, in order of birth.
     pub fn match_set(&self, bits: u32) -> Vec<usize> {
         let mut matched = Vec::new();
         self.masks.match_into(bits, &mut matched);
         matched
     }
 
-    /// The strength array of a match set.
+    /// Computes the strength array of a match set.
     pub(super) fn strengths(&self, matched: &[usize]) -> Vec<Option<f32>> {
         let mut sums: Vec<Option<f64>> = vec![None; self.actions];
         for &index in matched {
@@ -114,7 +113,7 @@ impl Zcs {
         &self.rules
     }
 
-    /// Bits of a situation.
+    /// Returns the number of bits of a situation.
     pub fn situation_bits(&self) -> usize {
         self.situation_bits
     }
@@ -124,10 +123,10 @@ impl Zcs {
         self.actions
     }
 
-    /// Goes on with other parameters.
+    /// Replaces the parameters.
     ///
     /// # Errors
-    /// A setting is outside its range, or the population is below the present number of rules.
+    /// Returns an error if a setting is outside its range, or if the population is below the present number of rules.
     pub fn set_settings(&mut self, settings: ZcsSettings) -> Result<(), Invalid> {
         self.check_with(&settings)?;
         self.settings = settings;
@@ -137,7 +136,7 @@ impl Zcs {
     /// Checks the parameters and every rule.
     ///
     /// # Errors
-    /// The first fault found: field, value and allowed range.
+    /// Returns the first error found: field, value and allowed range.
     pub fn check(&self) -> Result<(), Invalid> {
         self.check_with(&self.settings)
     }

@@ -1,4 +1,4 @@
-//! Where the rules of ZCS come from and go, and how strength moves between them.
+//! How ZCS makes and deletes rules, and how strength moves between them.
 
 use rand::Rng;
 use rand::RngExt;
@@ -9,12 +9,12 @@ use super::mask_table::forget;
 use super::zcs::Zcs;
 use super::zcs_rules::{MOST_STRENGTH, ZcsRule};
 
-/// Strength below which rules are all deleted alike, so that weights of deletion stay finite.
+/// Strength below which the probability of deletion no longer grows, so that its weight stays finite.
 const LEAST_STRENGTH: f64 = 1.0e-6;
 
 impl Zcs {
-    /// Finds the rules that match a situation, and makes one if they are none or weak, or if none advises a `given` action.
-    /// Returns them, and whether a rule was made. `alive` is a set of rule indices that stays valid.
+    /// Finds the rules that match a situation. Makes a rule if no rule matches, if the matching rules are weak, or if none advises a
+    /// `given` action. Returns their indices, and whether a rule was made. `alive` is a set of rule indices that stays valid.
     pub(super) fn match_or_cover(
         &mut self,
         bits: u32,
@@ -39,12 +39,13 @@ impl Zcs {
         (self.match_set(bits), true)
     }
 
-    /// Of some rules, those that advise an action, and the others.
+    /// Divides rules into those that advise an action and the others.
     pub(super) fn advisers(&self, matched: &[usize], action: usize) -> (Vec<usize>, Vec<usize>) {
         matched.iter().partition(|&&index| self.masks.action(index) == action)
     }
 
-    /// Takes the tax of the rules whose action was not taken, and breeds. `alive` is a set of rule indices that stays valid.
+    /// Ends a decision: taxes the rules whose action was not taken, and breeds with the rate of the genetic algorithm. `alive` is a set of
+    /// rule indices that stays valid.
     pub(super) fn end_decision(
         &mut self,
         others: &[usize],
@@ -57,7 +58,7 @@ impl Zcs {
         }
     }
 
-    /// Mean strength of all rules; that of a first rule if there is none.
+    /// Returns the mean strength of all rules; the initial strength if there are no rules.
     fn mean_strength(&self) -> f64 {
         if self.rules.is_empty() {
             return f64::from(self.settings.initial_strength);
@@ -66,7 +67,7 @@ impl Zcs {
         sum / self.rules.len() as f64
     }
 
-    /// Takes a share of the strength of some rules and returns the sum.
+    /// Takes a share of the strength of these rules and returns the sum.
     pub(super) fn collect(&mut self, set: &[usize], share: f32) -> f32 {
         let mut bucket = 0.0;
         for &index in set {
@@ -78,7 +79,7 @@ impl Zcs {
         bucket
     }
 
-    /// Gives some rules equal parts of an amount.
+    /// Divides an amount equally among these rules.
     pub(super) fn share_out(&mut self, set: &[usize], amount: f32) {
         let part = amount / set.len().max(1) as f32;
         for &index in set {
@@ -87,8 +88,8 @@ impl Zcs {
         }
     }
 
-    /// Breeds two children of two rules of the whole population, drawn by strength. Each parent gives half of its
-    /// strength to its copy. `alive` is a set of rule indices that stays valid.
+    /// Breeds two children of two rules of the whole population, drawn by strength. Each parent gives half of its strength to its copy.
+    /// `alive` is a set of rule indices that stays valid.
     fn evolve(&mut self, alive: &mut Vec<usize>, rng: &mut impl Rng) {
         if self.rules.is_empty() {
             return;
@@ -116,7 +117,7 @@ impl Zcs {
         }
     }
 
-    /// Deletes rules, weak ones more readily, until `count` more have room.
+    /// Deletes rules, weak ones with a higher probability, until there is room for `count` more.
     fn make_room(&mut self, count: usize, alive: &mut Vec<usize>, rng: &mut impl Rng) {
         while !self.rules.is_empty() && self.rules.len() + count > self.settings.population as usize
         {

@@ -1,8 +1,9 @@
-//! One episode of ZCS as in its text, decision by decision: choose, pay the rules that led here, and breed. Runs learn from
-//! whole episodes instead (`zcs_returns`); this form holds what both have in common to published results.
+//! One episode of ZCS as in its text, decision by decision: choose an action, pay the rules that led to this situation, and breed. Runs
+//! learn from whole episodes instead (`zcs_returns`). This form serves to compare the parts that both have in common with published
+//! results.
 //!
-//! Strength moves backwards in time by the bucket brigade: the rules whose action is taken pay a share, which goes to the
-//! rules of the action before; a reward goes to the rules that just acted.
+//! Strength moves backwards in time by the bucket brigade: the rules whose action is taken pay a share of their strength, which goes to
+//! the rules of the action before. A reward goes to the rules that have just acted.
 
 use rand::Rng;
 
@@ -18,21 +19,20 @@ use crate::check::Invalid;
 #[derive(Debug)]
 pub struct ZcsEpisode<'a> {
     zcs: &'a mut Zcs,
-    /// Indices of the rules of the last action, rising.
+    /// Indices of the rules of the last action, in ascending order.
     last_set: Vec<usize>,
     report: ReplayReport,
 }
 
 impl Zcs {
-    /// Learns from one recorded episode: the full cycle for every decision, with the recorded action in place of
-    /// the roulette.
+    /// Learns from one recorded episode: the full cycle for every decision, with the recorded action instead of the roulette.
     ///
-    /// Where no rule advises the recorded action, one is made. Payments between rules follow the recorded actions,
-    /// which an older population may have chosen.
+    /// If no rule advises the recorded action, one is made. Payments between rules follow the recorded actions, which an older population
+    /// may have chosen.
     ///
     /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from 0 to 1e6: strengths are the weights
-    /// of a roulette. Nothing is learned then.
+    /// Returns an error if a decision or the end does not fit the learner, or if a reward is not from 0 to 1e6: strengths are the weights
+    /// of a roulette and must not be negative. Then nothing is learned.
     pub fn learn(
         &mut self,
         decisions: &[RecordedDecision],
@@ -48,15 +48,15 @@ impl Zcs {
         Ok(episode.finish(end))
     }
 
-    /// Starts an episode that is learned from one decision at a time.
+    /// Starts an episode from which the system learns one decision at a time.
     pub fn episode(&mut self) -> ZcsEpisode<'_> {
         ZcsEpisode { zcs: self, last_set: Vec::new(), report: ReplayReport::default() }
     }
 }
 
 impl ZcsEpisode<'_> {
-    /// Takes a decision in a situation, returns the action, and pays the rules of the action before. Bits beyond
-    /// those of the learner are ignored; an action given beyond the last is the last.
+    /// Takes a decision in a situation, returns the action, and pays the rules of the action before. Bits beyond those of the learner are
+    /// ignored. A given action beyond the last one counts as the last one.
     pub fn decide(&mut self, bits: u32, choice: ActionChoice, rng: &mut impl Rng) -> usize {
         let bits = bits & all_bits(self.zcs.situation_bits);
         let given = match choice {
@@ -83,14 +83,14 @@ impl ZcsEpisode<'_> {
         action
     }
 
-    /// Pays a reward to the rules of the last action. It is limited to 0 to 1e6; NaN counts as 0.
+    /// Pays a reward to the rules of the last action. The reward is limited to 0 to 1e6; NaN counts as 0.
     pub fn reward(&mut self, reward: f32) {
         let reward = if reward.is_nan() { 0.0 } else { reward.clamp(0.0, MOST_REWARD) };
         self.zcs.share_out(&self.last_set, self.zcs.settings.learning_rate * reward);
     }
 
-    /// Ends and reports the episode. After a time-out the last rules are paid as if the strongest action of the next
-    /// situation were taken, but the rules of that action pay nothing.
+    /// Ends the episode and returns its counts. After a time-out the last rules are paid as if the strongest action of the next situation
+    /// were taken, but the rules of this action pay nothing.
     pub fn finish(self, end: EpisodeEnd) -> ReplayReport {
         if let EpisodeEnd::TimeOut { bits } = end {
             let best = largest_beside(&self.zcs.strength_array(bits), None);
@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::rng::{Purpose, stream};
 
-    /// A ZCS of three bits and two actions whose rules neither breed nor are weak.
+    /// Returns a ZCS of three bits and two actions whose rules do not breed and are not weak.
     fn quiet(rules: &[(&str, u16, f32)]) -> Zcs {
         let settings = ZcsSettings {
             population: 9,
@@ -137,12 +137,12 @@ mod tests {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let first = RecordedDecision { bits: 0b000, action: 0, reward: 10.0 };
         zcs.learn(&[first], EpisodeEnd::Terminal, &mut rng).unwrap();
-        // Two rules pay a fifth and share a fifth of the reward; the third is taxed a tenth; the fourth is silent.
+        // Two rules pay a fifth of their strength and share a fifth of the reward. The third is taxed a tenth; the fourth does not match.
         assert_eq!(strengths(&zcs), [81.0, 41.0, 36.0, 200.0]);
         let mut zcs = quiet(&rules);
         let second = RecordedDecision { bits: 0b001, action: 1, reward: 0.0 };
         zcs.learn(&[first, second], EpisodeEnd::Terminal, &mut rng).unwrap();
-        // The fourth rule pays 40, of which 71 % reach the two rules before.
+        // The fourth rule pays 40, of which the two rules of the decision before get 71 %.
         let expected = [95.2, 55.2, 36.0, 160.0];
         for (strength, expected) in strengths(&zcs).into_iter().zip(expected) {
             assert!((strength - expected).abs() < 1e-4, "{strength} is not {expected}");

@@ -1,9 +1,8 @@
-//! How ZCS learns from whole episodes, where a situation hides much of the world.
+//! How ZCS learns from whole episodes, where situations show only a part of the world.
 //!
-//! Wilson's bucket brigade hands a share of each payment to the rules of the decision before, so that a reward takes as
-//! many episodes to reach the beginning as it is decisions away, and passes through whatever looks alike on the way. Here
-//! the rules of a decision are paid at once from what came later, mixed with the strength of the next rules (see
-//! `q_table::returns`).
+//! Wilson's bucket brigade passes a share of each payment to the rules of the decision before. A reward therefore takes as many episodes
+//! to reach the beginning as it is decisions away, and on the way it also reaches situations that only look alike. In this form, the rules
+//! of a decision are paid at once from later rewards, mixed with the strength of the next rules (see `q_table::returns`).
 
 use rand::Rng;
 
@@ -13,12 +12,11 @@ use super::zcs::Zcs;
 use crate::check::Invalid;
 
 impl Zcs {
-    /// Learns from a recorded episode backwards in time. `trace` is the share of what came later in a payment, from 0
-    /// (only the strength of the next rules counts) to 1 (only what came). No action is expected to follow itself.
+    /// Learns from a recorded episode backwards in time. `trace` is the share of later rewards in a payment, from 0 (only the strength of
+    /// the next rules counts) to 1 (only later rewards count). No action is expected to follow itself.
     ///
-    /// # Errors
-    /// A decision or the end does not fit the learner, or a reward is not from 0 to 1e6: strengths are the weights of a
-    /// roulette. Nothing is learned then.
+    /// Returns an error if a decision or the end does not fit the learner, or if a reward is not from 0 to 1e6: strengths are the weights
+    /// of a roulette and must not be negative. Then nothing is learned.
     pub fn learn_returns(
         &mut self,
         decisions: &[RecordedDecision],
@@ -47,8 +45,8 @@ impl Zcs {
         Ok(report)
     }
 
-    /// Pays the rules that advise a recorded action in a situation, after making one if there is none, and breeds. The
-    /// rules pay a share of their strength first, which is lost: what came later is in `payoff`. True if a rule was made.
+    /// Pays the rules that advise a recorded action in a situation, after making one if there is none, and breeds. The rules first pay a
+    /// share of their strength. It is not passed on, because `payoff` already contains the later rewards. Returns whether a rule was made.
     fn pay(&mut self, bits: u32, action: usize, payoff: f32, rng: &mut impl Rng) -> bool {
         let (matched, is_covered) = self.match_or_cover(bits, Some(action), &mut Vec::new(), rng);
         let (mut set, others) = self.advisers(&matched, action);
@@ -70,9 +68,9 @@ mod tests {
         RecordedDecision { bits, action, reward }
     }
 
-    /// The summed strength of an action after many episodes of two decisions, of which the second earns 1000.
+    /// Returns the total strength of an action after many episodes of two decisions, of which the second earns 1000.
     fn strength_of_the_first(trace: f32, episodes: u32) -> f32 {
-        // Without the tax, which also takes from rules that match both situations.
+        // The tax is 0, because it would also be taken from rules that match both situations.
         let settings =
             ZcsSettings { ga_rate: 0.0, population: 30, tax: 0.0, ..ZcsSettings::default() };
         let mut rng = stream(1, 0, 0, Purpose::Birth);

@@ -1,4 +1,4 @@
-//! The parameters and rules of ZCS, and checks of those that come from outside.
+//! The parameters and rules of ZCS, and checks of those that were read from files.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,23 +7,22 @@ use super::limits::{MOST_REWARD, MOST_RULES};
 use crate::check::{Invalid, within};
 use crate::learn::parameters::parameters;
 
-/// Largest strength of a rule, in units of reward. A small action set that is paid by a large one can exceed the
-/// largest reward by far.
+/// Largest strength of a rule, in units of reward. A small action set that a large one pays can exceed the largest reward by far.
 pub const MOST_STRENGTH: f32 = 1.0e12;
 
 parameters! {
-    /// The parameters of [`Zcs`](super::Zcs). The Greek letters are those of Wilson (1994), and so are the defaults, for a
-    /// food reward of 1000.
+    /// The parameters of [`Zcs`](super::Zcs). The Greek letters are those of Wilson (1994). So are the defaults, for a food reward of
+    /// 1000.
     pub struct ZcsSettings {
-        /// N: number of rules.
+        /// N: greatest number of rules.
         population: u32 = 400, 2..=MOST_RULES;
-        /// P#: probability that a bit does not matter in a random rule, and in one made for a new situation.
+        /// P#: probability that a bit does not matter in a random rule, and in a rule made for a new situation.
         wildcard_share: f32 = 0.33, 0.0..=1.0;
         /// S₀: strength of the first rules, in units of reward.
         initial_strength: f32 = 20.0, 1.0e-6..=MOST_REWARD;
-        /// β: share of its strength that a rule pays when its action is taken, and with which a reward counts.
+        /// β: share of its strength that a rule pays when its action is taken. It is also the factor with which a reward counts.
         learning_rate: f32 = 0.2, 0.001..=1.0;
-        /// γ: share of that payment which reaches the rules of the action before.
+        /// γ: share of a payment that reaches the rules of the action before.
         discount: f32 = 0.71, 0.0..=0.999;
         /// τ: share of its strength that a matching rule loses when another action is taken.
         tax: f32 = 0.1, 0.0..=1.0;
@@ -33,7 +32,7 @@ parameters! {
         mutation_share: f32 = 0.002, 0.0..=1.0;
         /// ρ: probability that the genetic algorithm runs after a decision.
         ga_rate: f32 = 0.25, 0.0..=1.0;
-        /// φ: share of the mean strength below which the matching rules together count as none.
+        /// φ: share of the mean strength of a rule. If the matching rules together are weaker, they count as no rule.
         covering_share: f32 = 0.5, 0.0..=1.0;
     }
 }
@@ -42,11 +41,11 @@ parameters! {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZcsRule {
-    /// The situations that the rule is about.
+    /// Condition on the situations to which the rule applies.
     pub condition: Condition,
-    /// The action that it advises.
+    /// Action that the rule advises.
     pub action: u16,
-    /// S: its share of the payoff of the actions that it advised, in units of reward.
+    /// S: share of the rule in the payoff of the actions that it advised, in units of reward.
     pub strength: f32,
 }
 
@@ -54,7 +53,7 @@ impl ZcsRule {
     /// Checks the rule for a learner of `length` bits and `actions` actions.
     ///
     /// # Errors
-    /// A condition of another length, an unknown action, or a strength that is not a number from 0 to 1e12.
+    /// Returns an error for a condition of another length, an unknown action, or a strength that is not a number from 0 to 1e12.
     pub fn check(&self, length: usize, actions: usize) -> Result<(), Invalid> {
         self.condition.check_length(length)?;
         within("action", usize::from(self.action), 0..=actions.saturating_sub(1))?;

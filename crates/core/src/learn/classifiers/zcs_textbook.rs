@@ -1,4 +1,4 @@
-//! ZCS held against the task that its author published.
+//! ZCS compared with the published result of its author.
 
 use super::experience::EpisodeEnd;
 use super::textbook::ActionChoice;

@@ -1,11 +1,11 @@
-//! The distance between two genomes, and their links side by side.
+//! The distance between two genomes, and the alignment of their links.
 
 use super::genome::{LinkGene, NetworkGenome};
 use super::rules::NeatRules;
 
-/// The distance c₁ E / N + c₂ D / N + c₃ W of two genomes: E excess and D disjoint links, W the mean difference of
-/// the weights of matching links, N the number of links of the larger genome, or 1 if both are small. (Stanley &
-/// Miikkulainen 2002.) Parameters do not count.
+/// Returns the distance c₁ E / N + c₂ D / N + c₃ W of two genomes: E is the number of excess and D of disjoint links, W the mean
+/// difference of the weights of matching links, N the number of links of the larger genome, or 1 if both are small (Stanley & Miikkulainen
+/// 2002). Parameters do not count.
 pub fn distance(rules: &NeatRules, a: &NetworkGenome, b: &NetworkGenome) -> f64 {
     let last = |genome: &NetworkGenome| genome.links.last().map(|link| link.innovation);
     let (last_a, last_b) = (last(a), last(b));
@@ -31,14 +31,14 @@ pub fn distance(rules: &NeatRules, a: &NetworkGenome, b: &NetworkGenome) -> f64 
         + rules.weight_coefficient * mean
 }
 
-/// Two lists of links in the order of their innovation numbers, matching ones together.
+/// Two lists of links in the order of their innovation numbers, with matching links together.
 pub struct Aligned<'a> {
     a: &'a [LinkGene],
     b: &'a [LinkGene],
 }
 
 impl<'a> Aligned<'a> {
-    /// Aligns lists that are in ascending order.
+    /// Aligns two lists that are in ascending order of innovation numbers.
     pub fn new(a: &'a [LinkGene], b: &'a [LinkGene]) -> Self {
         Self { a, b }
     }
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_distance_is_the_one_computed_by_hand() {
-        // Matching: 0 and 2, with differences 1 and 3. Disjoint: 1 and 3. Excess: 6 and 7.
+        // Links 0 and 2 match, with differences 1 and 3. Links 1 and 3 are disjoint, 6 and 7 excess.
         let a = genome(vec![link(0, 3, 1.0, 0), link(1, 3, 0.0, 1), link(2, 3, -1.0, 2)]);
         let mut a_and_more = a.clone();
         a_and_more.links.extend([link(0, 4, 0.0, 6), link(4, 3, 0.0, 7)]);

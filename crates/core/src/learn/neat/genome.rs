@@ -1,4 +1,4 @@
-//! The genome of a network: its links, and real parameters beside them.
+//! The genome of a network: its links, and real parameters.
 
 use std::collections::BTreeSet;
 
@@ -7,49 +7,49 @@ use serde::{Deserialize, Serialize};
 use super::rules::NeatRules;
 use crate::check::{Invalid, within};
 
-/// The largest allowed number of links of a genome.
+/// Greatest allowed number of links of a genome.
 pub const MOST_LINKS: u32 = 10_000;
-/// The largest allowed number of hidden nodes of a genome.
+/// Greatest allowed number of hidden nodes of a genome.
 pub const MOST_HIDDEN: u32 = 2_000;
-/// The largest allowed number of inputs, of outputs, and of parameters.
+/// Greatest allowed number of inputs, of outputs, and of parameters.
 pub const MOST_ENDS: u16 = 1_000;
-/// The largest allowed id of a node and innovation number. Numbers are handed out in order, a few per generation.
+/// Greatest allowed id of a node and innovation number. Numbers are assigned in order, a few per generation.
 pub const LARGEST_NUMBER: u32 = 1 << 30;
 
 /// The genome of a network.
 ///
-/// Nodes have ids: first the inputs, then the outputs, then the hidden nodes. Hidden nodes are those at the ends of
-/// links, because links are switched off but never removed. A constant input (bias) is an input like others.
+/// Nodes have ids: first the inputs, then the outputs, then the hidden nodes. A node is hidden if its id is none of the first two and a
+/// link begins or ends at it. Links can be switched off, but are never removed. A constant input (bias) is an input like the others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkGenome {
-    /// Number of inputs, with the constant one if there is any.
+    /// Number of inputs, including a constant one.
     pub inputs: u16,
     /// Number of outputs.
     pub outputs: u16,
-    /// Numbers in 0 to 1 that evolve together with the network; the caller gives them a meaning.
+    /// Numbers from 0 to 1 that evolve together with the network. The caller determines their meaning.
     pub parameters: Vec<f32>,
-    /// The links in ascending order of their innovation numbers.
+    /// Links in ascending order of their innovation numbers.
     pub links: Vec<LinkGene>,
 }
 
-/// A link from one node to another. It is saved as a tuple in the order of the fields, which is short.
+/// A link from one node to another. It is saved as a tuple in the order of the fields, to keep saves short.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LinkTuple", into = "LinkTuple")]
 pub struct LinkGene {
-    /// Id of the node where it begins.
+    /// Id of the node where the link begins.
     pub from: u32,
-    /// Id of the node where it ends; never an input.
+    /// Id of the node where the link ends; never an input.
     pub to: u32,
-    /// Factor of the signal.
+    /// Factor on the signal.
     pub weight: f32,
-    /// Whether the network has this link; if not, the genome only remembers it.
+    /// Whether the network has this link. If not, only the genome contains it.
     pub enabled: bool,
-    /// The historical marking: links of equal number descend from the same mutation.
+    /// Innovation number, the historical marking: links with the same number descend from the same mutation.
     pub innovation: u32,
 }
 
-/// A link as it is saved; whether it is enabled is 0 or 1.
+/// A link as it is saved. The fourth number is 1 for a link that is enabled, otherwise 0.
 type LinkTuple = (u32, u32, f32, u8, u32);
 
 impl TryFrom<LinkTuple> for LinkGene {
@@ -68,33 +68,33 @@ impl From<LinkGene> for LinkTuple {
 }
 
 impl NetworkGenome {
-    /// The id of the first hidden node, and the number of nodes that every genome has.
+    /// Returns the id of the first hidden node, which is also the number of inputs and outputs.
     pub fn first_hidden(&self) -> u32 {
         u32::from(self.inputs) + u32::from(self.outputs)
     }
 
-    /// The ids of the hidden nodes, ascending.
+    /// Returns the ids of the hidden nodes, in ascending order.
     pub fn hidden(&self) -> Vec<u32> {
         let ends = self.links.iter().flat_map(|link| [link.from, link.to]);
         let hidden: BTreeSet<u32> = ends.filter(|&id| id >= self.first_hidden()).collect();
         hidden.into_iter().collect()
     }
 
-    /// Number of links that are on.
+    /// Counts the links that are enabled.
     pub fn enabled_links(&self) -> usize {
         self.links.iter().filter(|link| link.enabled).count()
     }
 
-    /// Whether some link, on or off, leads from one node to the other.
+    /// Returns whether a link, enabled or not, leads from one node to the other.
     pub fn joins(&self, from: u32, to: u32) -> bool {
         self.links.iter().any(|link| link.from == from && link.to == to)
     }
 
-    /// Checks a genome that comes from outside.
+    /// Checks a genome that was read from a file.
     ///
     /// # Errors
-    /// There are too many inputs, outputs, parameters, links or hidden nodes; a number is not finite or out of its
-    /// range; an id is none of a node; the links are not in order, or two are the same.
+    /// Returns an error if there are too many inputs, outputs, parameters, links or hidden nodes; if a number is not finite or out of its
+    /// range; if an id belongs to no node; or if the links are not in order, or two are equal.
     pub fn check(&self, rules: &NeatRules) -> Result<(), Invalid> {
         within("inputs", self.inputs, 1..=MOST_ENDS)?;
         within("outputs", self.outputs, 1..=MOST_ENDS)?;
@@ -132,7 +132,7 @@ impl LinkGene {
     }
 }
 
-/// A link that is on, for tests.
+/// Returns a link that is enabled, for tests.
 #[cfg(test)]
 pub fn link(from: u32, to: u32, weight: f32, innovation: u32) -> LinkGene {
     LinkGene { from, to, weight, enabled: true, innovation }

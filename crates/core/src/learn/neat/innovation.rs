@@ -1,7 +1,7 @@
 //! Historical markings: the numbers of new links and nodes.
 //!
-//! A structural novelty gets the same numbers wherever it arises within a generation. Children are therefore
-//! made without numbers and get them when all are there, in their order: threads cannot change them.
+//! Equal structural changes get the same numbers wherever they occur within a generation. Children are therefore made without numbers, and
+//! get them in their order when all children of the generation exist. Threads cannot change the numbers.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::genome::{LARGEST_NUMBER, LinkGene, NetworkGenome};
 use crate::check::{Invalid, within};
 
-/// The next free numbers.
+/// The next numbers for new links and nodes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Innovations {
@@ -18,36 +18,36 @@ pub struct Innovations {
     next_node: u32,
 }
 
-/// A child whose novelty has no numbers yet.
+/// A child whose structural change has no numbers yet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Newborn {
-    /// The genome without its novelty.
+    /// Genome without the structural change.
     pub genome: NetworkGenome,
-    /// The change that [`Innovations::settle`] will add to it.
+    /// Structural change that [`Innovations::settle`] will add to the genome; `None` without one.
     pub novelty: Option<StructuralNovelty>,
 }
 
 /// A change of a network's structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StructuralNovelty {
-    /// A link between two nodes of the genome.
+    /// A new link between two nodes of the genome.
     Link {
-        /// Id of the node where it begins.
+        /// Id of the node where the link begins.
         from: u32,
-        /// Id of the node where it ends.
+        /// Id of the node where the link ends.
         to: u32,
-        /// Its weight.
+        /// Weight of the link.
         weight: f32,
     },
-    /// A node in the middle of the link with this innovation number, which is switched off. The link into the node has
-    /// weight 1, and the one out of it the old weight, so the function of the network changes little.
+    /// A new node in the middle of the link with this innovation number, which is switched off. The link into the node has the weight 1,
+    /// and the link out of it the old weight, so the function of the network changes little.
     Split {
         /// Innovation number of the split link.
         innovation: u32,
     },
 }
 
-/// The identity of a novelty: those of a generation with equal keys get equal numbers.
+/// The identity of a structural change. Within a generation, changes with equal keys get equal numbers.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum NoveltyKey {
     Link(u32, u32),
@@ -55,13 +55,13 @@ enum NoveltyKey {
 }
 
 impl Innovations {
-    /// The numbers after those that every first genome has: one link from each input to each output.
+    /// Returns the numbers after those of every genome of a first generation, which has one link from each input to each output.
     pub fn first(inputs: u16, outputs: u16) -> Self {
         let (inputs, outputs) = (u32::from(inputs), u32::from(outputs));
         Self { next_link: inputs * outputs, next_node: inputs + outputs }
     }
 
-    /// The numbers after those of one genome.
+    /// Returns the numbers after those of a genome.
     pub fn after(genome: &NetworkGenome) -> Self {
         let first = Self::first(genome.inputs, genome.outputs);
         let next_link = genome.links.last().map_or(0, |link| link.innovation.saturating_add(1));
@@ -72,12 +72,12 @@ impl Innovations {
         }
     }
 
-    /// Adds the novelties of one generation to its children and numbers them, in the order of the children.
+    /// Adds the structural changes of one generation to its children and numbers them, in the order of the children.
     pub fn settle(&mut self, children: &mut [Newborn]) {
         let mut numbers = BTreeMap::new();
         for child in children {
             let Some(novelty) = child.novelty.take() else { continue };
-            // There are enough numbers for 100 million generations; without any, genomes stay as they are.
+            // The numbers are sufficient for 100 million generations. If none are left, genomes keep their structure.
             if self.next_link >= LARGEST_NUMBER - 1 || self.next_node >= LARGEST_NUMBER {
                 continue;
             }
@@ -90,10 +90,10 @@ impl Innovations {
         }
     }
 
-    /// Whether a genome has only numbers that were handed out.
+    /// Checks that all numbers of a genome have been assigned.
     ///
     /// # Errors
-    /// A number was not handed out yet.
+    /// Returns the first number that has not been assigned.
     pub fn check(&self, genome: &NetworkGenome) -> Result<(), Invalid> {
         within("innovations.next_link", self.next_link, 1..=LARGEST_NUMBER)?;
         within("innovations.next_node", self.next_node, genome.first_hidden()..=LARGEST_NUMBER)?;
@@ -105,7 +105,7 @@ impl Innovations {
         Ok(())
     }
 
-    /// The number of the first new link, and the id of the new node if there is one.
+    /// Returns the number of the first new link, and the id of a new node, and advances the counters by what the change needs.
     fn hand_out(&mut self, novelty: StructuralNovelty) -> (u32, u32) {
         let numbers = (self.next_link, self.next_node);
         match novelty {
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn equal_novelty_of_a_generation_gets_equal_numbers_whatever_the_order_of_children() {
         let kinds = [split(0), None, split(1), split(0)];
-        // The number of the first new link of each kind, by the place of the first child that has it.
+        // For each child: number of the first new link, which depends on the first child with this change.
         for (order, expected) in [
             ([0, 1, 2, 3], [2, 0, 4, 2]),
             ([2, 3, 0, 1], [2, 4, 4, 0]),

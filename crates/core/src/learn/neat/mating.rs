@@ -7,10 +7,10 @@ use super::genome::{LinkGene, NetworkGenome};
 use super::mutation::chance;
 use super::rules::NeatRules;
 
-/// The child of two genomes of the same shape. Matching links have the weight of a random parent or the mean of both;
-/// all others are those of the fitter parent, so the child has its structure. Parameters are inherited like weights.
+/// Returns the child of two genomes of the same shape. Matching links have the weight of a random parent, or the mean of both. All other
+/// links are those of the fitter parent, whose structure the child inherits. Parameters are inherited like weights.
 ///
-/// Of equally fit parents the one with fewer links should be called the fitter: it keeps networks small.
+/// If both parents are equally fit, the one with fewer links should be passed as the fitter, to keep networks small.
 pub fn mated(
     fitter: &NetworkGenome,
     other: &NetworkGenome,
@@ -50,7 +50,7 @@ fn is_enabled(
     is_on_in_both || !chance(rng, rules.disabled_share)
 }
 
-/// Draws a member of a list that is not empty; `None` if it is.
+/// Draws an element of a list; `None` if the list is empty.
 pub fn drawn<'a, T>(list: &'a [T], rng: &mut impl Rng) -> Option<&'a T> {
     if list.is_empty() { None } else { list.get(rng.random_range(0..list.len())) }
 }

@@ -1,9 +1,8 @@
 //! NEAT, the evolution of networks that grow: Stanley & Miikkulainen 2002, "Evolving Neural Networks through
 //! Augmenting Topologies", Evolutionary Computation 10(2).
 //!
-//! Nothing here depends on threads or on the order of evaluation. A generation is made from the last one and its
-//! fitness alone, every child draws from a stream of its own, and innovation numbers are handed out after all children
-//! are made, in their order.
+//! Nothing depends on threads or on the order of evaluation. A generation is made from the last generation and its fitness alone. Every
+//! child draws from a stream of its own. Innovation numbers are assigned after all children are made, in their order.
 
 mod distance;
 mod genome;

@@ -1,4 +1,4 @@
-//! Mutation of a genome: one new node, or one new link, or other weights.
+//! Mutation of a genome: a new node, a new link, or other weights.
 
 use std::collections::BTreeSet;
 
@@ -9,10 +9,10 @@ use super::innovation::{Newborn, StructuralNovelty};
 use super::mating::drawn;
 use super::rules::NeatRules;
 
-/// How often a pair of nodes is drawn until one is found that may be linked.
+/// Number of attempts to draw a pair of nodes that may be linked.
 const TRIES_FOR_A_LINK: u32 = 20;
 
-/// A mutant of a genome. A new structure keeps the weights, because it is tested best beside what was good.
+/// Returns a mutant of a genome. A mutant with a new structure keeps its weights, so that selection tests the structure alone.
 pub fn mutated(mut genome: NetworkGenome, rules: &NeatRules, rng: &mut impl Rng) -> Newborn {
     let novelty = if chance(rng, rules.add_node) {
         new_node(&genome, rules, rng)
@@ -27,17 +27,17 @@ pub fn mutated(mut genome: NetworkGenome, rules: &NeatRules, rng: &mut impl Rng)
     Newborn { genome, novelty }
 }
 
-/// Whether an event of a probability happens. One number is drawn in any case.
+/// Returns true with this probability. It always draws one number.
 pub fn chance(rng: &mut impl Rng, probability: f64) -> bool {
     rng.random_range(0.0..1.0) < probability
 }
 
-/// A uniformly distributed number in -size to size.
+/// Draws a number uniformly from -`size` to `size`.
 pub fn symmetric(rng: &mut impl Rng, size: f32) -> f32 {
     rng.random_range(-1.0..=1.0_f32) * size
 }
 
-/// Shifts most weights and parameters and draws the others anew.
+/// Shifts most weights and parameters, and draws the others anew.
 fn change_numbers(genome: &mut NetworkGenome, rules: &NeatRules, rng: &mut impl Rng) {
     for link in &mut genome.links {
         let weight = if chance(rng, rules.shifted_share) {
@@ -57,7 +57,7 @@ fn change_numbers(genome: &mut NetworkGenome, rules: &NeatRules, rng: &mut impl 
     }
 }
 
-/// A node in a random link that is on; `None` if there is no such link or the genome is full.
+/// Chooses a random enabled link to split by a new node; `None` if there is no such link or the genome is full.
 fn new_node(
     genome: &NetworkGenome,
     rules: &NeatRules,
@@ -70,7 +70,7 @@ fn new_node(
     Some(StructuralNovelty::Split { innovation: split.innovation })
 }
 
-/// A link between two random nodes that have none; `None` if no pair is found or the genome is full.
+/// Draws a link between two random nodes that are not linked yet; `None` if no pair is found or the genome is full.
 fn new_link(
     genome: &NetworkGenome,
     rules: &NeatRules,
@@ -93,7 +93,7 @@ fn new_link(
     None
 }
 
-/// Whether links, on or off, lead from one node to the other, or both are the same.
+/// Returns whether links, enabled or not, lead from one node to the other, or both nodes are the same.
 fn is_reached(genome: &NetworkGenome, from: u32, to: u32) -> bool {
     let mut reached = BTreeSet::from([from]);
     loop {
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(child.genome, genome());
         assert!(matches!(child.novelty, Some(StructuralNovelty::Split { .. })));
         let child = mutated(genome(), &only(0.0, 1.0, 1.0), rng);
-        // The only pair without a link is the output with itself.
+        // The only pair without a link is that of the output with itself.
         assert!(matches!(child.novelty, Some(StructuralNovelty::Link { from: 2, to: 2, .. })));
         let child = mutated(genome(), &only(0.0, 0.0, 1.0), rng);
         assert_eq!(child.novelty, None);

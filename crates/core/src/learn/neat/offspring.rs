@@ -1,11 +1,11 @@
-//! Numbers of offspring: each species gets its part of the next generation.
+//! Numbers of offspring: how many members of the next generation each species produces.
 
-/// Whole numbers in proportion to `shares` that add up to `total`, by the method of the largest remainder; of equal
-/// remainders the first gets more. Shares below 0 or not finite count as 0. If all are 0, all are equal.
+/// Divides `total` into whole numbers in proportion to `shares`, by the method of the largest remainder. Of equal remainders the first
+/// gets more. Shares that are negative or not finite count as 0. If all shares are 0, the numbers are equal.
 pub fn offspring_numbers(shares: &[f64], total: usize) -> Vec<usize> {
     let clean = |share: &f64| if share.is_finite() { share.max(0.0) } else { 0.0 };
     let mut shares: Vec<f64> = shares.iter().map(clean).collect();
-    // Divided by the largest first: the sum of finite numbers may be infinite.
+    // The shares are first divided by the largest, because the sum of finite numbers may be infinite.
     let largest = shares.iter().fold(0.0, |largest: f64, &share| largest.max(share));
     shares.iter_mut().for_each(|share| *share = if largest > 0.0 { *share / largest } else { 1.0 });
     let sum = shares.iter().fold(0.0, |sum, share| sum + share);
@@ -23,8 +23,8 @@ pub fn offspring_numbers(shares: &[f64], total: usize) -> Vec<usize> {
     numbers
 }
 
-/// Fitness values as numbers in 0 to 1 that can be shared: divided by the largest, after the smallest was subtracted
-/// if it is negative. Values that are not finite count as the smallest.
+/// Scales fitness values to numbers from 0 to 1 that can be shared: subtracts the smallest if it is negative, and divides by the largest.
+/// Values that are not finite count as the smallest.
 pub fn sharable(fitness: &[f64]) -> Vec<f64> {
     let finite = comparable(fitness);
     let smallest = finite.iter().fold(0.0, |smallest: f64, &x| smallest.min(x));
@@ -33,8 +33,8 @@ pub fn sharable(fitness: &[f64]) -> Vec<f64> {
     finite.iter().map(scaled).collect()
 }
 
-/// Fitness values that can be compared: those that are not finite become the smallest of the others, or 0. All
-/// are limited to ±1e300, so that neither a difference nor a sum is infinite.
+/// Makes fitness values comparable. Values that are not finite become the smallest of the others, or 0. All are limited to ±1e300, so that
+/// neither a difference nor a sum is infinite.
 pub fn comparable(fitness: &[f64]) -> Vec<f64> {
     let finite = fitness.iter().copied().filter(|x| x.is_finite());
     let smallest = finite.min_by(f64::total_cmp).unwrap_or(0.0);

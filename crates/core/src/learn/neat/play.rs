@@ -1,46 +1,46 @@
-//! A network at work.
+//! The computation of a network's outputs.
 
 use super::genome::NetworkGenome;
 
-/// The steepness of the activation 1 / (1 + exp(-4.9 x)) of Stanley & Miikkulainen 2002.
+/// Steepness of the activation 1 / (1 + exp(-4.9 x)) of Stanley & Miikkulainen 2002.
 pub const STEEPNESS: f64 = 4.9;
 
 /// A network with its activations.
 ///
-/// In each tick every node is computed from the inputs of this tick and the other nodes' values of the last one, so
-/// cycles are allowed and the order of nodes does not matter. A signal through d links needs d ticks.
+/// In each tick every node is computed from the inputs of this tick and the values of the other nodes in the last tick. Cycles are
+/// therefore allowed, and the order of nodes does not matter. A signal through d links needs d ticks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NetworkPlay {
     inputs: usize,
     outputs: usize,
-    /// Ids of all nodes, ascending: inputs, outputs, hidden nodes.
+    /// Ids of all nodes, in ascending order: inputs, outputs, hidden nodes.
     nodes: Vec<u32>,
-    /// For each node that is no input, the place of its first link in `sources`; one entry more at the end.
+    /// For each node that is not an input, the index of its first link in `sources`, and at the end the length of `sources`.
     starts: Vec<usize>,
-    /// The links that are on, by the node where they end and then by innovation number: place of the node where they
-    /// begin, and weight.
+    /// The enabled links, ordered by the node where they end and then by innovation number: the index of the node where they begin, and
+    /// the weight.
     sources: Vec<(usize, f64)>,
-    /// The activation of each node.
+    /// Activation of each node.
     values: Vec<f64>,
-    /// Room for the next activations of the nodes that are no inputs.
+    /// Memory for the next activations of the nodes that are not inputs.
     next: Vec<f64>,
 }
 
 impl NetworkPlay {
-    /// The network of a genome, at rest.
+    /// Builds the network of a genome, with all activations 0.
     pub fn new(genome: &NetworkGenome) -> Self {
         let mut nodes: Vec<u32> = (0..genome.first_hidden()).collect();
         nodes.extend(genome.hidden());
         let inputs = usize::from(genome.inputs);
         let (mut starts, mut sources) = (vec![0], Vec::new());
-        // Sorted by the end of the link; the sort is stable, so links into a node stay in order.
+        // The links are sorted by their end. The sort is stable, so links into the same node stay in order.
         let mut links: Vec<_> = genome.links.iter().filter(|link| link.enabled).collect();
         links.sort_by_key(|link| link.to);
         let mut links = links.into_iter().skip_while(|link| link.to < u32::from(genome.inputs));
         let mut waiting = links.next();
         for &node in nodes.iter().skip(inputs) {
             while let Some(link) = waiting.filter(|link| link.to == node) {
-                // Every end of a link is among the nodes.
+                // The node where a link begins is always among the nodes.
                 if let Ok(from) = nodes.binary_search(&link.from) {
                     sources.push((from, f64::from(link.weight)));
                 }
@@ -59,13 +59,13 @@ impl NetworkPlay {
         }
     }
 
-    /// Puts the network at rest: all activations are 0.
+    /// Sets all activations to 0.
     pub fn reset(&mut self) {
         self.values.fill(0.0);
     }
 
-    /// Computes every node once and returns the outputs, each in 0 to 1. Inputs that are not given stay as they are,
-    /// and those beyond the last are ignored.
+    /// Computes every node once and returns the outputs, each from 0 to 1. Inputs that are missing stay as they are, and inputs beyond the
+    /// last are ignored.
     pub fn tick(&mut self, inputs: &[f64]) -> &[f64] {
         for (value, input) in self.values.iter_mut().take(self.inputs).zip(inputs) {
             *value = *input;
@@ -79,12 +79,12 @@ impl NetworkPlay {
         self.outputs()
     }
 
-    /// The outputs after the last tick.
+    /// Returns the outputs of the last tick.
     pub fn outputs(&self) -> &[f64] {
         &self.values[self.inputs..self.inputs + self.outputs]
     }
 
-    /// The ids of all nodes with their activations, ascending: inputs, outputs, hidden nodes.
+    /// Returns the ids of all nodes with their activations, in ascending order: inputs, outputs, hidden nodes.
     pub fn activations(&self) -> impl Iterator<Item = (u32, f64)> {
         self.nodes.iter().copied().zip(self.values.iter().copied())
     }
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn a_signal_passes_one_link_per_tick() {
         let off = LinkGene { enabled: false, ..link(1, 2, 9.0, 1) };
-        // A hidden node of a large id, as in an old population.
+        // The hidden node has a large id, as in an old population.
         let mut play =
             play(vec![link(0, 2, 0.5, 0), off, link(0, 900, 2.0, 5), link(900, 2, 1.0, 6)]);
         assert_eq!(play.tick(&[1.0, 1.0]), [sigmoid(0.5)]);

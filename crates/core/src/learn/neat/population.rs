@@ -1,4 +1,4 @@
-//! A population of networks, and the next one.
+//! A population of networks, and the next generation.
 
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
@@ -14,33 +14,34 @@ use super::species::{FitnessProgress, SpeciesRecord, SpeciesSummary, assigned};
 use crate::check::{Invalid, within};
 use crate::rng::{Purpose, stream};
 
-/// The largest number of genomes.
+/// Greatest number of genomes of a population.
 pub const LARGEST_NEAT_POPULATION: usize = 10_000;
 
-/// A generation of networks that waits for its fitness: the whole state, from which the search continues bit for bit.
+/// A generation of networks before its evaluation. It contains the whole state, from which the search continues bit for bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NeatPopulation {
     pub(super) rules: NeatRules,
     pub(super) innovations: Innovations,
     pub(super) next_species: u32,
-    /// The threshold of the distance, which differs from that of the rules if it is adjusted.
+    /// Threshold of the distance between members of a species. It differs from that of the rules if it is adjusted.
     pub(super) threshold: f64,
     pub(super) progress: FitnessProgress,
-    /// The species of this generation in ascending order of id; each has members.
+    /// Species of this generation, in ascending order of id. Each has members.
     pub(super) records: Vec<SpeciesRecord>,
-    /// The species of the last generation, with its fitness.
+    /// Species of the last generation, with their fitness.
     pub(super) evaluated: Vec<SpeciesSummary>,
-    /// The species' id of each genome.
+    /// Id of the species of each genome.
     pub(super) memberships: Vec<u32>,
     pub(super) genomes: Vec<NetworkGenome>,
 }
 
 impl NeatPopulation {
-    /// The first generation: every input linked to every output, no hidden nodes, random weights and parameters.
+    /// Creates the first generation: every input is linked to every output, there are no hidden nodes, and weights and parameters are
+    /// random.
     ///
     /// # Errors
-    /// A setting or number is out of its range, or the rules do not allow that many links.
+    /// Returns an error if a setting or number is out of its range, or if the rules do not allow as many links.
     pub fn first(
         rules: NeatRules,
         inputs: u16,
@@ -63,10 +64,10 @@ impl NeatPopulation {
         Self::founded(rules.clone(), Innovations::first(inputs, outputs), size, genome)
     }
 
-    /// A first generation that descends from one genome: the genome itself, and mutants of its weights and parameters.
+    /// Creates a first generation that descends from one genome: the genome itself, and mutants of its weights and parameters.
     ///
     /// # Errors
-    /// The genome, a setting or the size is not allowed.
+    /// Returns an error if the genome, a setting or the size is not allowed.
     pub fn descended(
         rules: NeatRules,
         founder: &NetworkGenome,
@@ -90,24 +91,24 @@ impl NeatPopulation {
         &self.genomes
     }
 
-    /// The species' id of each genome.
+    /// Returns the id of the species of each genome.
     pub fn memberships(&self) -> &[u32] {
         &self.memberships
     }
 
-    /// The rules.
+    /// Returns the settings of NEAT.
     pub fn rules(&self) -> &NeatRules {
         &self.rules
     }
 
-    /// The species of the last generation, the one that this descends from; empty in the first generation.
+    /// Returns the species of the last generation, from which this one descends; empty in the first generation.
     pub fn species(&self) -> &[SpeciesSummary] {
         &self.evaluated
     }
 
-    /// The next generation, from the fitness of each genome of this one. Larger is better; fitness that is missing or
-    /// not finite counts as the smallest of the others. `seed` and `generation`, the number of the new generation, name
-    /// the streams of random numbers.
+    /// Creates the next generation from the fitness of each genome of this one. Larger is better. Fitness that is missing or not finite
+    /// counts as the smallest of the others. `seed`, and `generation`, the number of the new generation, select the streams of random
+    /// numbers.
     pub fn next(&self, fitness: &[f64], seed: u64, generation: u32) -> Self {
         let mut fitness = fitness.to_vec();
         fitness.resize(self.genomes.len(), f64::NAN);
@@ -121,7 +122,7 @@ impl NeatPopulation {
         for (record, ranking) in records.iter_mut().zip(&rankings) {
             record.progress = record.progress.after(best(ranking));
         }
-        // Best species first; the sort is stable, so of equal ones the older.
+        // The best species comes first. The sort is stable, so of equal species the older comes first.
         let mut order: Vec<usize> = (0..rankings.len()).collect();
         order.retain(|&place| !rankings[place].places.is_empty());
         order.sort_by(|&a, &b| best(&rankings[b]).total_cmp(&best(&rankings[a])));
@@ -142,7 +143,7 @@ impl NeatPopulation {
         innovations.settle(&mut children);
         let genomes: Vec<_> = children.into_iter().map(|child| child.genome).collect();
         let threshold = self.adjusted_threshold();
-        // The stream after those of the children.
+        // This stream follows those of the children.
         let last = u32::try_from(self.genomes.len()).unwrap_or(u32::MAX);
         let mut rng = stream(seed, generation, last, Purpose::Mutation);
         let representatives = rankings.iter().filter_map(|ranking| {

@@ -8,10 +8,10 @@ use super::species::{FitnessProgress, SpeciesSummary};
 use crate::check::{Invalid, within};
 
 impl NeatPopulation {
-    /// Checks a population that comes from outside.
+    /// Checks a population that was read from a file.
     ///
     /// # Errors
-    /// A setting, genome or species is not allowed, or they do not belong together.
+    /// Returns an error if a setting, genome or species is not allowed, or if they do not belong together.
     pub fn check(&self) -> Result<(), Invalid> {
         self.rules.check().map_err(|error| error.inside("rules"))?;
         within("genomes", self.genomes.len(), 1..=LARGEST_NEAT_POPULATION)?;
@@ -28,7 +28,7 @@ impl NeatPopulation {
             let NetworkGenome { inputs, outputs, parameters, .. } = genome;
             format!("{inputs} inputs, {outputs} outputs, {} parameters", parameters.len())
         };
-        // An innovation number must mean the same link everywhere.
+        // An innovation number must mean the same link in every genome.
         let mut ends = BTreeMap::new();
         for (place, genome) in self.genomes.iter().enumerate() {
             let inside = |error: Invalid| error.inside(&format!("genomes[{place}]"));

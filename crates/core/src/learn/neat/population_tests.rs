@@ -6,7 +6,7 @@ use super::genome::{LinkGene, NetworkGenome};
 use super::population::NeatPopulation;
 use super::rules::NeatRules;
 
-/// Fitness that prefers large weights and many links, so that populations have a direction.
+/// Returns fitness that prefers large weights and many links, so that populations have a direction.
 fn fitness(population: &NeatPopulation) -> Vec<f64> {
     let links = |genome: &NetworkGenome| genome.links.clone();
     let value = |link: LinkGene| f64::from(link.weight) * if link.enabled { 1.0 } else { 0.5 };
@@ -47,7 +47,7 @@ fn every_generation_passes_its_own_check_and_keeps_its_size() {
     let rules = NeatRules { most_links: 25, most_hidden: 8, species_goal: 6, ..growing() };
     let mut population = NeatPopulation::first(rules, 3, 2, 1, 50, 7).unwrap();
     for generation in 1..=80 {
-        // Some fitness is no number, some is missing.
+        // Some fitness values are NaN, some are missing.
         let mut fitness = fitness(&population);
         fitness[generation as usize % 50] = f64::NAN;
         fitness.truncate(49);
@@ -77,7 +77,7 @@ fn the_champion_of_a_species_of_more_than_five_is_kept() {
 
 #[test]
 fn a_species_without_progress_has_no_offspring() {
-    // Every genome that differs is a species of its own.
+    // With this threshold, each genome that differs makes a species of its own.
     let rules = NeatRules {
         species_threshold: 1e-9,
         champion_species_size: 0,
@@ -86,7 +86,7 @@ fn a_species_without_progress_has_no_offspring() {
     };
     let mut population = NeatPopulation::first(rules, 2, 1, 0, 10, 7).unwrap();
     for generation in 1..=4 {
-        // The first species is the best, all are as good as ever.
+        // The first species is the best; no species improves.
         let value = |&id: &u32| if id == 1 { 2.0 } else { 1.0 };
         let values: Vec<f64> = population.memberships().iter().map(value).collect();
         population = population.next(&values, 7, generation);
@@ -112,7 +112,7 @@ fn only_the_two_best_species_have_offspring_after_a_standstill() {
         let mut old = population.memberships().to_vec();
         old.retain(|&id| id <= 10);
         old.dedup();
-        // Of equal species the older ones are first.
+        // Of equal species, the older ones come first.
         assert_eq!(old == [3, 4], generation == 3, "generation {generation}: {old:?}");
     }
 }
@@ -161,7 +161,7 @@ fn a_population_of_large_networks_takes_less_than_a_mebibyte() {
     population = after(population, 1..=3);
     for genome in &mut population.genomes {
         assert!(genome.links.len() >= 200);
-        // Ids and innovation numbers as long as those of an old population.
+        // The ids and innovation numbers have as many digits as those of an old population.
         genome.links.iter_mut().for_each(|link| link.innovation += 10_000);
         genome.links.iter_mut().for_each(|link| link.from += 1_000);
     }

@@ -7,7 +7,7 @@ use super::rules::NeatRules;
 use crate::learn::tasks::double_pole::{self, DoublePole, SOLVED_ACTIONS};
 use crate::learn::tasks::xor::{self, XorScore};
 
-/// The first genome that solves a task and the number of evaluations up to it, or `None` after `generations`.
+/// Returns the first genome that solves a task, and the number of evaluations up to it; `None` if there is none within `generations`.
 fn solver(
     mut population: NeatPopulation,
     seed: u64,
@@ -30,7 +30,7 @@ fn solver(
     None
 }
 
-/// Feed-forward networks of a few hidden nodes settle within eight ticks.
+/// Scores a network. Feed-forward networks with a few hidden nodes settle within eight ticks.
 fn xor_score(genome: &NetworkGenome) -> XorScore {
     let mut play = NetworkPlay::new(genome);
     xor::score(|[a, b]| {

@@ -10,16 +10,16 @@ use super::population::NeatPopulation;
 use super::species::SpeciesRecord;
 use crate::rng::{Purpose, stream};
 
-/// The places of the members of a species, best first.
+/// The indices of a species' members in the population, best first.
 pub struct Ranking {
     /// Id of the species.
     pub id: u32,
-    /// Places of its members in the population.
+    /// Indices of the species' members in the population.
     pub places: Vec<usize>,
 }
 
 impl NeatPopulation {
-    /// The members of each species, best first, and of equal ones in their order.
+    /// Ranks the members of each species, best first. Equal members keep their order.
     pub(super) fn rankings(&self, values: &[f64]) -> Vec<Ranking> {
         let ranking = |record: &SpeciesRecord| {
             let members = self
@@ -35,8 +35,8 @@ impl NeatPopulation {
         self.records.iter().map(ranking).collect()
     }
 
-    /// As many children as there are genomes, species after species. Fitness is shared: the sum over a species of each
-    /// member's fitness divided by the number of members is their mean.
+    /// Makes as many children as there are genomes, species after species. Fitness is shared: each member's fitness is divided by the
+    /// number of members, so the sum over a species is their mean.
     pub(super) fn children(
         &self,
         fertile: &[&Ranking],
@@ -94,7 +94,7 @@ impl NeatPopulation {
 }
 
 impl Ranking {
-    /// The mean of the members' values, summed in the order of the ranking.
+    /// Returns the mean of the members' values, summed in the order of the ranking.
     pub fn mean(&self, values: &[f64]) -> f64 {
         let sum = self.places.iter().fold(0.0, |sum, &place| sum + values[place]);
         sum / self.places.len().max(1) as f64

@@ -1,4 +1,4 @@
-//! Species: genomes that are near each other compete among themselves.
+//! Species: genomes at a small distance from each other compete among themselves.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,13 +6,13 @@ use super::distance::distance;
 use super::genome::NetworkGenome;
 use super::rules::NeatRules;
 
-/// A species as it is remembered from one generation to the next.
+/// The data of a species that are kept from one generation to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpeciesRecord {
-    /// Number of the species; ascending in the order of appearance.
+    /// Id of the species, ascending in the order of appearance.
     pub id: u32,
-    /// How its best fitness went on.
+    /// Course of the best fitness of the species.
     pub progress: FitnessProgress,
 }
 
@@ -20,9 +20,9 @@ pub struct SpeciesRecord {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitnessProgress {
-    /// Number of generations that were evaluated.
+    /// Number of evaluated generations.
     pub age: u32,
-    /// The best fitness ever of a member.
+    /// Best fitness that a member has ever had; `None` before the first evaluation.
     pub best: Option<f64>,
     /// Number of generations since the best fitness was reached.
     pub unimproved: u32,
@@ -32,20 +32,20 @@ pub struct FitnessProgress {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpeciesSummary {
-    /// Number of the species; ascending in the order of appearance.
+    /// Id of the species, ascending in the order of appearance.
     pub id: u32,
-    /// Number of members.
+    /// Number of members of the species.
     pub size: u32,
-    /// The best fitness of a member in this generation.
+    /// Best fitness of a member in this generation.
     pub best_fitness: f64,
-    /// The mean fitness of the members.
+    /// Mean fitness of the members in this generation.
     pub mean_fitness: f64,
-    /// Number of generations since its first, which has age 1.
+    /// Number of generations of the species; it is 1 in its first generation.
     pub age: u32,
 }
 
 impl FitnessProgress {
-    /// The progress after one more generation, in which the best member had this fitness.
+    /// Returns the progress after one more generation, in which the best member had this fitness.
     pub fn after(&self, best: f64) -> Self {
         let is_better = self.best.is_none_or(|record| best > record);
         Self {
@@ -56,9 +56,9 @@ impl FitnessProgress {
     }
 }
 
-/// Puts each genome, in order, into the first species whose representative is nearer than the threshold, or into a new
-/// one that it represents. `old` are the ids and representatives of species so far. Returns the species' id of each
-/// genome and the next free id.
+/// Assigns each genome, in order, to the first species whose representative is nearer than the threshold, or to a new species with the
+/// genome as representative. `old` contains the ids and representatives of the species so far. Returns the id of each genome's species,
+/// and the next free id.
 pub fn assigned<'a>(
     genomes: &'a [NetworkGenome],
     old: Vec<(u32, &'a NetworkGenome)>,
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_genome_joins_the_first_species_that_is_near_or_founds_one() {
-        // The distance is 0.4 times the difference of the weights, the threshold a difference of 2.
+        // The distance is 0.4 times the difference of the weights, so the threshold is a difference of 2.
         let genomes = [0.0, 2.5, 1.5, 4.0, -1.0].map(genome);
         let (ids, next) = assigned(&genomes, vec![], 7, 0.8, &NeatRules::default());
         assert_eq!((ids, next), (vec![7, 8, 7, 8, 7], 9));

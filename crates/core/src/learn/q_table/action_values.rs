@@ -1,7 +1,7 @@
-//! The table: what each action in each state has proved to be worth.
+//! The table: the learned value of each action in each state.
 //!
-//! Every method accepts any numbers. A state or an action outside the table is no reason to end a
-//! program that is reading an old save; such a transition teaches nothing.
+//! Every method accepts any numbers. A state or an action outside the table must not end a program that reads an old save. Nothing is
+//! learned from such a transition.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,48 +10,48 @@ use super::sparse_values::SparseValues;
 use super::transition::{Next, Transition};
 use crate::check::Invalid;
 
-/// The largest size of a value. Values are held within it, so that a table that was learned can always be
-/// read back, also where rewards without discount grow without limit.
+/// Largest absolute value of an entry. Values are clamped to it, so that a table can always be read back, even if rewards without discount
+/// grow without limit.
 pub const LARGEST_VALUE: f32 = 1e9;
 
-/// The values of all actions in all states, all 0 at first, with the number of visits of each pair.
+/// The values of all actions in all states, with the number of visits of each pair. All values are 0 at first.
 ///
-/// A save contains only the states that were visited ([`SparseValues`]).
+/// A save contains only the visited states ([`SparseValues`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "SparseValues", try_from = "SparseValues")]
 pub struct ActionValues {
     pub(super) states: usize,
     pub(super) actions: usize,
-    /// State by state, one per action.
+    /// Values state by state, one per action.
     pub(super) values: Vec<f32>,
-    /// The number of experiences with each pair; it stays at its maximum once there.
+    /// Number of experiences with each pair of state and action. It stays at its maximum once it is reached.
     pub(super) visits: Vec<u16>,
 }
 
 impl ActionValues {
-    /// A table without experience. The caller keeps `states` times `actions` within
-    /// [`MOST_PAIRS`](super::MOST_PAIRS); a larger table could not be read back from a save.
+    /// Creates a table without experience. The caller keeps `states` times `actions` within [`MOST_PAIRS`](super::MOST_PAIRS), because a
+    /// larger table could not be read back from a save.
     pub fn new(states: usize, actions: usize) -> Self {
         let pairs = states.saturating_mul(actions);
         Self { states, actions, values: vec![0.0; pairs], visits: vec![0; pairs] }
     }
 
-    /// The number of states.
+    /// Returns the number of states.
     pub fn states(&self) -> usize {
         self.states
     }
 
-    /// The number of actions in each state.
+    /// Returns the number of actions in each state.
     pub fn actions(&self) -> usize {
         self.actions
     }
 
-    /// The values of all actions in a state; empty if there is no such state.
+    /// Returns the values of all actions in a state; empty if there is no such state.
     pub fn values(&self, state: usize) -> &[f32] {
         row(&self.values, state, self.actions)
     }
 
-    /// The visits of all actions in a state; empty if there is no such state.
+    /// Returns the visits of all actions in a state; empty if there is no such state.
     pub fn visits(&self, state: usize) -> &[u16] {
         row(&self.visits, state, self.actions)
     }
@@ -60,7 +60,7 @@ impl ActionValues {
     ///
     /// # Errors
     ///
-    /// The number that differs.
+    /// Returns the number that differs.
     pub fn check(&self, states: usize, actions: usize) -> Result<(), Invalid> {
         for (field, count, expected) in
             [("states", self.states, states), ("actions", self.actions, actions)]
@@ -72,9 +72,9 @@ impl ActionValues {
         Ok(())
     }
 
-    /// Moves the value of a transition's pair towards its outcome and counts the visit, unless the value would not be finite.
-    /// The outcome is the reward and, discounted, what `worth` says of the next state. Returns the outcome; none if the
-    /// transition does not fit the table.
+    /// Moves the value of a transition's pair towards its outcome and counts the visit, unless the value would not be finite. The outcome
+    /// is the reward plus the discounted value that `worth` returns for the next state. Returns the outcome; `None` if the transition does
+    /// not fit the table.
     pub(super) fn learn(
         &mut self,
         transition: &Transition,
@@ -98,7 +98,7 @@ impl ActionValues {
     }
 }
 
-/// The entries of one state; empty if there is no such state.
+/// Returns the entries of one state; empty if there is no such state.
 fn row<T>(entries: &[T], state: usize, actions: usize) -> &[T] {
     let start = state.saturating_mul(actions);
     entries.get(start..start.saturating_add(actions)).unwrap_or_default()
@@ -121,7 +121,7 @@ mod tests {
         let mut table = ActionValues::new(3, 2);
         table.update(&transition(1, 0, 8.0, Next::Terminal), &HALF);
         assert_eq!(table.values(1), [4.0, 0.0]);
-        // Two ticks at 0.5 each: the target is 1 + 0.25 · 4 = 2, and half of it is learned.
+        // Two ticks are discounted by 0.5 each: the target is 1 + 0.25 · 4 = 2, and half of it is learned.
         table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF);
         assert_eq!(table.values(0), [0.0, 1.0]);
         table.update(&transition(0, 1, 1.0, Next::State(1)), &HALF);
@@ -136,7 +136,7 @@ mod tests {
     fn the_rate_of_an_update_is_that_of_the_visits_before_it() {
         let rule = QRule { rate_power: 1.0, rate_scale: 1.0, ..HALF };
         let mut table = ActionValues::new(1, 1);
-        // With rates 1, 1/2, 1/3 the value is the mean of the rewards.
+        // With the rates 1, 1/2, 1/3, the value is the mean of the rewards.
         for (reward, mean) in [(6.0, 6.0), (2.0, 4.0), (1.0, 3.0)] {
             table.update(&transition(0, 0, reward, Next::Terminal), &rule);
             assert!((table.values(0)[0] - mean).abs() < 1e-6, "{:?}", table.values(0));

@@ -1,5 +1,4 @@
-//! Why actors learn in a copy of the table while they act, and why many small generations are better than
-//! few large ones.
+//! Tests why actors learn in a copy of the table while they act, and why many small generations are better than few large ones.
 
 use super::grid_episode::{explore, greedy_moves, table_for};
 use super::q_rule::QRule;
@@ -8,30 +7,30 @@ use crate::learn::tasks::grid::{GridWorld, shortest_path};
 use crate::learn::tasks::windy::Windy;
 use crate::rng::{Purpose, stream};
 
-/// Independent repetitions of a task.
+/// Number of independent repetitions of a task.
 const REPETITIONS: u64 = 100;
-/// Episodes of all generations together.
+/// Number of episodes of all generations together.
 const EPISODES: u32 = 512;
-/// The most moves of an episode.
+/// Greatest number of moves of an episode.
 const CAP: usize = 300;
-/// The share of random actions of every actor.
+/// Share of random actions of every actor.
 const EPSILON: f32 = 0.1;
 
-/// The use that actors make of their copy of the table.
+/// How actors use their copy of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ActorTable {
-    /// Actors act by their copy, which stays as it was.
+    /// Actors act by their copy, which does not change.
     Frozen,
     /// Actors learn in their copy while they act.
     Learning,
 }
 
-/// The outcome of some repetitions.
+/// The outcome of the repetitions of a task.
 #[derive(Debug, Clone, Copy)]
 struct TaskOutcome {
-    /// The mean number of moves in all episodes.
+    /// Mean number of moves over all episodes.
     moves: f64,
-    /// The repetitions whose table leads to the goal on a shortest way.
+    /// Number of repetitions after which the table leads to the goal on a shortest path.
     shortest: u32,
 }
 
@@ -49,7 +48,7 @@ fn learn_in_generations<W: GridWorld>(actors: u32, kind: ActorTable) -> TaskOutc
             };
             let experience: Vec<_> = (0..actors).map(episode).collect();
             moves += experience.iter().map(Vec::len).sum::<usize>();
-            // Forwards in time and then backwards, which carries a reward back to the start of its episode.
+            // The table learns forwards in time and then backwards, which carries a reward back to the start of its episode.
             let transitions = experience.iter().flatten();
             for transition in transitions.clone().chain(transitions.rev()) {
                 master.update(transition, &rule);

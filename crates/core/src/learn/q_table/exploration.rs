@@ -1,37 +1,37 @@
-//! How boldly each actor of a generation explores.
+//! How much each actor of a generation explores.
 
-/// The exploration ladder: the shares of random actions fall from generation to generation, and within a generation from
-/// actor 1 to the last. All shares are from 0 to 1.
+/// The exploration ladder: the shares of random actions decrease from generation to generation, and within a generation from actor 1 to
+/// the last. All shares are from 0 to 1.
 ///
-/// It is a ladder of powers after Horgan and others ("Distributed prioritized experience replay", ICLR 2018), with a base that
-/// falls over the generations.
+/// The shares are powers, after Horgan and others ("Distributed prioritized experience replay", ICLR 2018), of a base that decreases over
+/// the generations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExplorationLadder {
-    /// The share of the boldest actor in generation 0.
+    /// Share of random actions of the boldest actor in generation 0.
     pub first: f32,
-    /// The factor of the boldest actor's share per generation.
+    /// Factor on the boldest actor's share per generation.
     pub decay: f32,
-    /// The least share of the boldest actor of any generation.
+    /// Least share of the boldest actor in any generation.
     pub least_of_boldest: f32,
 }
 
-/// The least share of any exploring actor. Without any exploration an actor whose table does not change can stay in a loop for
-/// a whole episode.
+/// Least share of random actions of an exploring actor. Without exploration, an actor whose table does not change can stay in a loop for a
+/// whole episode.
 const LEAST: f32 = 0.02;
-/// The share of the last actor is that of the boldest to the power of 1 + this.
+/// The share of the last actor is the share of the boldest to the power of 1 + `SPREAD`.
 const SPREAD: f64 = 3.0;
 
-/// The share of random actions, 0 to 1, of actor `actor` of `actors`, both from 0.
+/// Returns the share of random actions, from 0 to 1, of actor number `actor` (from 0) of `actors` in generation number `generation` (from
+/// 0).
 ///
-/// Actor 0 is greedy: it shows what the table can do. Actor i from 1 has
-/// max([`LEAST`], e^(1 + [`SPREAD`] · (i - 1) / (`actors` - 2))) with
-/// e = max(`least_of_boldest`, `first` · `decay`^`generation`).
+/// Actor 0 is greedy, to show how well the table acts. Actor i from 1 has the share max([`LEAST`], e^(1 + [`SPREAD`] · (i - 1) / (`actors`
+/// - 2))) with e = max(`least_of_boldest`, `first` · `decay`^`generation`).
 pub fn epsilon(generation: u32, actor: u32, actors: u32, ladder: &ExplorationLadder) -> f32 {
     let Some(rung) = actor.checked_sub(1) else { return 0.0 };
     let fallen =
         f64::from(ladder.first) * libm::pow(f64::from(ladder.decay), f64::from(generation));
     let boldest = fallen.max(f64::from(ladder.least_of_boldest));
-    // A single explorer is the boldest.
+    // A single explorer has the share of the boldest.
     let last_rung = actors.saturating_sub(2).max(1);
     let height = f64::from(rung) / f64::from(last_rung);
     let share = libm::pow(boldest, 1.0 + SPREAD * height);
@@ -54,14 +54,14 @@ mod tests {
         let shares: Vec<f32> = (0..32).map(|actor| epsilon(0, actor, 32, &LADDER)).collect();
         assert_eq!(shares[0], 0.0);
         assert!(close(shares[1], 0.6), "{shares:?}");
-        // 0.6^(1 + 3 · 15/30) and 0.6^4.
+        // The expected shares are 0.6^(1 + 3 · 15/30) and 0.6^4.
         assert!(close(shares[16], 0.278_854_8) && close(shares[31], 0.129_6), "{shares:?}");
         assert!(shares[1..].windows(2).all(|pair| pair[0] > pair[1]), "{shares:?}");
     }
 
     #[test]
     fn shares_fall_over_the_generations_to_their_least() {
-        // 0.6 · 0.985^50.
+        // The expected share is 0.6 · 0.985^50.
         assert!(close(epsilon(50, 1, 32, &LADDER), 0.281_814_4), "{}", epsilon(50, 1, 32, &LADDER));
         for generation in [200, u32::MAX] {
             assert!(close(epsilon(generation, 1, 32, &LADDER), 0.1));

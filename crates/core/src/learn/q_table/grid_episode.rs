@@ -7,14 +7,14 @@ use super::q_rule::QRule;
 use super::transition::{Next, Transition};
 use crate::learn::tasks::grid::GridWorld;
 
-/// A table for a world, without experience.
+/// Creates a table for a world, without experience.
 pub fn table_for<W: GridWorld>() -> ActionValues {
     ActionValues::new(W::STATES as usize, usize::from(W::ACTIONS))
 }
 
 impl ActionValues {
-    /// Learns from one transition as Watkins does, and counts the visit: the outcome is the reward, and after it the largest
-    /// value of the next state. A transition that [`Transition::check`] refuses changes nothing.
+    /// Learns from one transition as Watkins does, and counts the visit. The outcome is the reward plus the discounted largest value of
+    /// the next state. A transition that [`Transition::check`] refuses changes nothing.
     pub fn update(&mut self, transition: &Transition, rule: &QRule) {
         self.learn(transition, rule, |table, next| {
             table.values(next).iter().copied().reduce(f32::max).unwrap_or(0.0)
@@ -22,7 +22,7 @@ impl ActionValues {
     }
 }
 
-/// The action of the largest value in a state, of equal ones the first.
+/// Returns the action of the largest value in a state; of equal values, the first.
 fn greedy(table: &ActionValues, state: u32) -> u16 {
     let values = table.values(state as usize).iter().zip(0..);
     let best =
@@ -30,8 +30,8 @@ fn greedy(table: &ActionValues, state: u32) -> u16 {
     best.expect("a state of the table").1
 }
 
-/// Any action with probability `epsilon` (0 to 1), otherwise one of the largest value in a state, a random one of equal ones: with
-/// the first of equal values a table that learns would try the same action again and again wherever it knows nothing.
+/// Draws any action with probability `epsilon` (0 to 1), otherwise one of the largest value in a state, a random one of equal ones. With
+/// the first of equal values, a table that learns would try the same action again and again wherever it has no experience.
 fn epsilon_greedy(table: &ActionValues, state: u32, epsilon: f32, random: &mut impl Rng) -> u16 {
     let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let mut below = |count: usize| ((u128::from(random.next_u64()) * count as u128) >> 64) as usize;
@@ -45,8 +45,8 @@ fn epsilon_greedy(table: &ActionValues, state: u32, epsilon: f32, random: &mut i
     ties[below(ties.len())]
 }
 
-/// Plays from the start until the goal or for at most `cap` moves, and returns what happened. The table
-/// learns from every move if there is a rule.
+/// Plays from the start until the goal, or for at most `cap` moves, and returns the transitions. With a rule, the table learns from every
+/// move.
 pub fn explore<W: GridWorld>(
     table: &mut ActionValues,
     rule: Option<&QRule>,
@@ -73,8 +73,7 @@ pub fn explore<W: GridWorld>(
     experience
 }
 
-/// The moves from start to goal without exploration or learning; `None` if they do not arrive within
-/// `cap` moves.
+/// Counts the moves from start to goal without exploration or learning; `None` if they do not reach the goal within `cap` moves.
 pub fn greedy_moves<W: GridWorld>(table: &ActionValues, cap: usize) -> Option<usize> {
     let mut state = W::state(W::START);
     for moves in 1..=cap {
@@ -86,7 +85,7 @@ pub fn greedy_moves<W: GridWorld>(table: &ActionValues, cap: usize) -> Option<us
     None
 }
 
-/// The sum of the rewards of an episode.
+/// Returns the sum of the rewards of an episode.
 pub fn online_return(experience: &[Transition]) -> f64 {
     experience.iter().map(|transition| f64::from(transition.reward)).sum()
 }

@@ -1,14 +1,11 @@
-//! Q-learning with a table: one value per state and action, learned from the outcome of actions that
-//! last one or more ticks.
+//! Q-learning with a table: one value per state and action, learned from the outcome of actions that last one or more ticks.
 //!
-//! The rule is that of Watkins & Dayan ("Q-learning", Machine Learning 8, 1992), and for actions that
-//! last several ticks that of Sutton, Precup & Singh ("Between MDPs and semi-MDPs", Artificial
-//! Intelligence 112, 1999). This module knows neither snakes nor physics: states and actions are numbers,
-//! and the caller says what they mean.
+//! The rule is that of Watkins & Dayan ("Q-learning", Machine Learning 8, 1992), and for actions that last several ticks that of Sutton,
+//! Precup & Singh ("Between MDPs and semi-MDPs", Artificial Intelligence 112, 1999). This module depends neither on snakes nor on physics:
+//! states and actions are numbers, whose meaning the caller determines.
 //!
-//! A generation works on one master table. Each actor learns in a copy of it while it acts; the copies are thrown away, and
-//! the master table learns from the experience of all actors, in their order ([`ActionValues::learn_returns`]). The result
-//! depends on no thread.
+//! A generation uses one master table. Each actor learns in a copy of it while it acts. The copies are discarded, and the master table
+//! learns from the experience of all actors, in their order ([`ActionValues::learn_returns`]). The result does not depend on threads.
 
 mod action_values;
 mod exploration;

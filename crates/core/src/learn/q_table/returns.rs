@@ -1,20 +1,20 @@
-//! How a table learns from whole episodes, where a situation hides much of the world.
+//! How a table learns from whole episodes, where situations show only a part of the world.
 //!
-//! Two situations that look alike may be worth different amounts. What is known of the next situation is then a poor
-//! guess, and an update that relies on it alone passes the mistake on. So an outcome is a mixture of that guess and of
-//! what came later indeed: the λ-return (Watkins, "Learning from delayed rewards", 1989), here without a cut at random
-//! actions (Peng and Williams, "Incremental multi-step Q-learning", Machine Learning 22, 1996).
+//! Two situations that look alike may have different values. The estimate for the next situation is then poor, and an update that relies
+//! on it alone passes its error on. An outcome is therefore a mixture of this estimate and of the rewards that actually came later: the
+//! λ-return (Watkins, "Learning from delayed rewards", 1989), without a cut at random actions (Peng and Williams, "Incremental multi-step
+//! Q-learning", Machine Learning 22, 1996).
 //!
-//! Here no action follows itself: a decision always takes another action than the one before.
+//! No action follows itself: a decision always takes another action than the one before.
 
 use super::action_values::ActionValues;
 use super::q_rule::QRule;
 use super::transition::Transition;
 
 impl ActionValues {
-    /// Learns from all episodes in the order of their actors, from each episode backwards in time, so that a reward
-    /// reaches the beginning of its episode at once. `trace` is the share of what came later in an outcome, from 0
-    /// (only the guess counts) to 1 (only what came).
+    /// Learns from all episodes in the order of their actors, from each episode backwards in time, so that a reward reaches the beginning
+    /// of its episode at once. `trace` is the share of later rewards in an outcome, from 0 (only the estimate counts) to 1 (only later
+    /// rewards count).
     pub fn learn_returns(&mut self, experience: &[Vec<Transition>], rule: &QRule, trace: f32) {
         for episode in experience {
             let mut later = None;
@@ -24,13 +24,13 @@ impl ActionValues {
         }
     }
 
-    /// Learns from one transition while the episode goes on, as if nothing were known of what comes later.
+    /// Learns from one transition while the episode continues, without later rewards.
     pub fn learn_next(&mut self, transition: &Transition, rule: &QRule) {
         self.learn_return(transition, rule, None, 0.0);
     }
 
-    /// Learns from one transition and returns its outcome. `later` is the outcome of the transition that followed. None if the
-    /// transition teaches nothing.
+    /// Learns from one transition and returns its outcome; `None` if nothing can be learned from the transition. `later` is the outcome of
+    /// the transition that followed.
     fn learn_return(
         &mut self,
         transition: &Transition,
@@ -44,7 +44,7 @@ impl ActionValues {
         })
     }
 
-    /// The largest value in a state of the actions other than `action`; 0 if there is none.
+    /// Returns the largest value in a state of the actions other than `action`; 0 if there is none.
     fn largest_beside(&self, state: usize, action: usize) -> f32 {
         let others = self.values(state).iter().enumerate().filter(|(other, _)| *other != action);
         others.map(|(_, value)| *value).reduce(f32::max).unwrap_or(0.0)
@@ -63,14 +63,14 @@ mod tests {
         Transition { state, action, reward, ticks: 1, next }
     }
 
-    /// Two steps, of which the second earns 8.
+    /// Returns an episode of two steps, of which the second earns 8.
     fn episode() -> Vec<Transition> {
         vec![step(0, 0, 1.0, Next::State(1)), step(1, 1, 8.0, Next::Terminal)]
     }
 
     #[test]
     fn an_outcome_mixes_what_came_later_with_the_guess() {
-        // The guess in state 1 is 20: that of action 2, which an older episode knows.
+        // The estimate in state 1 is 20, the value of action 2 from an earlier episode.
         for (trace, expected) in [(0.0, 11.0), (0.5, 1.0 + 0.5 * 14.0), (1.0, 5.0)] {
             let mut table = ActionValues::new(2, 3);
             table.learn_next(&step(1, 2, 20.0, Next::Terminal), &RULE);

@@ -1,12 +1,11 @@
 //! Potential-based shaping: a reward for approaching the goal that leaves the best behaviour as it is.
 
-/// A reward plus `discount` · `next_potential` - `potential` (Ng, Harada & Russell, "Policy invariance under
-/// reward transformations", ICML 1999).
+/// Returns a reward plus `discount` · `next_potential` - `potential` (Ng, Harada & Russell, "Policy invariance under reward
+/// transformations", ICML 1999).
 ///
-/// `discount` is that of the whole action ([`QRule::discount`](super::QRule::discount) of its ticks). The
-/// best policy stays the same only if the potential is a function of the state alone, and if the
-/// potential of every terminal state is 0. An episode whose time is up has not ended: its last state
-/// keeps its potential.
+/// `discount` is that of the whole action ([`QRule::discount`](super::QRule::discount) of its ticks). The best policy stays the same only
+/// if the potential depends on the state alone, and if the potential of every terminal state is 0. An episode whose time is up has not
+/// ended in this sense: its last state keeps its potential.
 pub fn shaped(reward: f32, potential: f32, next_potential: f32, discount: f32) -> f32 {
     reward + discount * next_potential - potential
 }
@@ -20,23 +19,24 @@ mod tests {
 
     const STATES: usize = 30;
     const ACTIONS: usize = 4;
-    /// Successors of each pair, with probabilities.
+    /// Number of successors of each pair of state and action.
     const BRANCHES: usize = 3;
     const DISCOUNT_PER_TICK: f32 = 0.97;
-    /// Sweeps of value iteration: 0.97 to this power is below 1e-9.
+    /// Number of sweeps of value iteration: 0.97 to this power is below 1e-9.
     const SWEEPS: u32 = 700;
 
-    /// An outcome of a pair: probability, next state or the end, ticks, and reward.
+    /// An outcome of a pair of state and action: probability, next state or `None` for the end, ticks, and reward.
     type Outcome = (f64, Option<usize>, u16, f32);
 
-    /// Adds a bonus to a reward, given the state before, the state after (or the end) and the discount.
+    /// A function that adds a bonus to a reward, given the potentials, the state before, the state after (`None` for the end) and the
+    /// discount.
     type Bonus = fn(f32, &[f32], usize, Option<usize>, f32) -> f32;
 
     fn uniform(random: &mut impl Rng) -> f32 {
         random.next_u32() as f32 / u32::MAX as f32
     }
 
-    /// The outcomes of every pair, state by state.
+    /// Returns the outcomes of every pair, state by state.
     fn random_process(random: &mut impl Rng) -> Vec<Vec<Outcome>> {
         let outcome = |random: &mut _| {
             let next = (uniform(random) * 1.1 * STATES as f32) as usize;
@@ -54,7 +54,7 @@ mod tests {
         process
     }
 
-    /// The best action of every state by value iteration, with a bonus added to each reward.
+    /// Computes the best action of every state by value iteration, with a bonus added to each reward.
     fn best_policy(process: &[Vec<Outcome>], potential: &[f32], bonus: Bonus) -> Vec<usize> {
         let mut values = vec![0.0; STATES];
         let mut policy = vec![0; STATES];
@@ -86,7 +86,7 @@ mod tests {
         let by_potential: Bonus = |reward, potential, state, next, discount| {
             shaped(reward, potential[state], next.map_or(0.0, |next| potential[next]), discount)
         };
-        // Paying for the height of the next state without taking anything back is farmed.
+        // A bonus for the potential of the next state alone, from which nothing is subtracted, can be collected again and again.
         let unpaid: Bonus = |reward, potential, _, next, discount| {
             shaped(reward, 0.0, next.map_or(0.0, |next| potential[next]), discount)
         };

@@ -1,7 +1,7 @@
-//! The form in which a table is saved: only the states that were visited.
+//! The form in which a table is saved: only the visited states.
 //!
-//! A snake visits perhaps a tenth of its states, so most of a table is zeros. There is exactly one form for
-//! a table: rows in rising order, none without a visit. Equal tables are therefore equal as text.
+//! A snake visits perhaps a tenth of its states, so most of a table is zeros. Each table has exactly one saved form: rows in ascending
+//! order, none without a visit. Equal tables are therefore equal as text.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,23 +10,23 @@ use super::transition::check_index;
 use crate::check::Invalid;
 use crate::check::within;
 
-/// The most pairs of state and action of a table that is read: 6 MiB. A save is a few numbers of text, and
-/// must not be able to demand any amount of memory.
+/// Greatest number of pairs of state and action of a table that is read, which takes 6 MiB. Without a limit, a short text could request
+/// any amount of memory.
 pub const MOST_PAIRS: usize = 1 << 20;
 
 /// A table as it is saved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SparseValues {
-    /// The number of states of the whole table.
+    /// Number of states of the whole table.
     pub states: usize,
-    /// The number of actions in each state.
+    /// Number of actions in each state.
     pub actions: usize,
-    /// The visited states, in rising order.
+    /// Visited states, in ascending order.
     pub rows: Vec<SparseRow>,
 }
 
-/// A visited state: its number, and the values and visits of all its actions. A value without a visit is 0.
+/// A visited state: its number, the values and the visits of all its actions. A value without a visit is 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SparseRow(pub usize, pub Vec<f32>, pub Vec<u16>);
 
@@ -35,7 +35,7 @@ impl SparseValues {
     ///
     /// # Errors
     ///
-    /// The first number that is not allowed.
+    /// Returns the first number that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
         within("actions", self.actions, 1..=usize::from(u16::MAX) + 1)?;
         within("states", self.states, 1..=MOST_PAIRS / self.actions)?;
@@ -192,7 +192,7 @@ mod tests {
             let mut hostile = saved();
             damage(&mut hostile);
             assert_eq!(ActionValues::try_from(hostile.clone()).unwrap_err().to_string(), message);
-            // Reading a text takes the same way.
+            // Reading the table from text makes the same check.
             let text = ron::to_string(&hostile).unwrap();
             let error = ron::from_str::<ActionValues>(&text).unwrap_err().to_string();
             assert!(error.contains(message), "{error}");

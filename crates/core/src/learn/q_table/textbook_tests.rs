@@ -1,5 +1,4 @@
-//! The learner on the tasks of Sutton & Barto ("Reinforcement Learning", 2nd edition, 2018), held against
-//! the figures there.
+//! The learner on the tasks of Sutton & Barto ("Reinforcement Learning", 2nd edition, 2018), compared with the figures of the book.
 
 use super::grid_episode::{explore, greedy_moves, online_return, table_for};
 use super::q_rule::QRule;
@@ -8,11 +7,11 @@ use crate::learn::tasks::dyna_maze::DynaMaze;
 use crate::learn::tasks::windy::Windy;
 use crate::rng::{Purpose, stream};
 
-/// Independent repetitions of a task.
+/// Number of independent repetitions of a task.
 const REPETITIONS: u32 = 100;
-/// The share of random actions in all tasks.
+/// Share of random actions in all tasks.
 const EPSILON: f32 = 0.1;
-/// More moves than any episode needs.
+/// Limit of the moves of an episode, more than any episode needs.
 const CAP: usize = 100_000;
 
 #[test]
@@ -76,6 +75,6 @@ fn the_maze_is_nearly_solved_after_thirty_episodes_without_planning() {
     let last = last as f64 / (20.0 * f64::from(REPETITIONS));
     println!("Dyna maze: episode 1 {first:.0} moves; episodes 31 to 50 {last:.2} moves");
     assert!(last <= 19.0, "{last}");
-    // Without learning an episode is a random walk.
+    // The first episode, without learning, is a random walk.
     assert!(first > 20.0 * last, "{first}");
 }

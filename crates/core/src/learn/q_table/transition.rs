@@ -1,38 +1,37 @@
-//! The experience of an actor with one action: the unit from which a table learns.
+//! The experience of an actor with one action, from which a table learns.
 
 use serde::{Deserialize, Serialize};
 
 use crate::check::Invalid;
 use crate::check::within;
 
-/// The largest size of a reward that [`Transition::check`] accepts.
+/// Largest absolute value of a reward that [`Transition::check`] accepts.
 pub const LARGEST_REWARD: f32 = 1e6;
 
 /// One action with its outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Transition {
-    /// The state in which the action was chosen, from 0.
+    /// State in which the action was chosen, from 0.
     pub state: u32,
-    /// The action, from 0.
+    /// Number of the action, from 0.
     pub action: u16,
-    /// The sum of the rewards of all ticks of the action, that of tick i (from 0) times the discount per
-    /// tick to the power of i.
+    /// Sum of the rewards of all ticks of the action. The reward of tick i (from 0) is multiplied by the discount per tick to the power of
+    /// i.
     pub reward: f32,
-    /// The duration of the action in ticks, at least 1.
+    /// Duration of the action in ticks, at least 1.
     pub ticks: u16,
-    /// The state that followed, or the end.
+    /// State that followed, or the end of the episode.
     pub next: Next,
 }
 
 /// The state after an action, or the end of the episode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Next {
-    /// The state in which the next action is chosen, from 0. This is also the end of an episode whose time
-    /// is up: the world would have gone on, so the value of the state still counts. As an end in itself
-    /// it would teach that time is a danger, although the state does not contain the time (Pardo and
-    /// others, "Time limits in reinforcement learning", ICML 2018).
+    /// The state in which the next action is chosen, from 0. It also stands for the end of an episode whose time is up: the world would
+    /// have continued, so the value of the state still counts. If the end of time counted as an end, the table would learn that time is a
+    /// danger, although the state does not contain the time (Pardo and others, "Time limits in reinforcement learning", ICML 2018).
     State(u32),
-    /// The episode has ended for good, as by success or disqualification: nothing is to be gained any more.
+    /// The episode ended for good, as by success or disqualification: no more rewards are possible.
     Terminal,
 }
 
@@ -40,8 +39,7 @@ impl Transition {
     /// Checks every number against a table of `states` times `actions`.
     ///
     /// # Errors
-    ///
-    /// The first field that is not allowed.
+    /// Returns the first field that is not allowed.
     pub fn check(&self, states: usize, actions: usize) -> Result<(), Invalid> {
         check_index("state", self.state as usize, states)?;
         check_index("action", usize::from(self.action), actions)?;
@@ -54,7 +52,7 @@ impl Transition {
     }
 }
 
-/// Accepts an index of one of `count` things.
+/// Checks that an index is below `count`.
 pub(super) fn check_index(field: &str, index: usize, count: usize) -> Result<(), Invalid> {
     match count.checked_sub(1) {
         Some(last) => within(field, index, 0..=last),

@@ -1,15 +1,14 @@
-//! The cliff (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 6.6): the shortest way
-//! to the goal runs along a cliff, and a fall costs 100 and leads back to the start.
+//! The cliff (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 6.6): the shortest path to the goal leads along a
+//! cliff, and a fall costs 100 and leads back to the start.
 
 use super::grid::GridWorld;
 
-/// The cliff between start and goal, in the lowest row. Every move costs 1. A fall does not end the
-/// episode.
+/// The world with a cliff between start and goal, in the lowest row. Every move costs 1. A fall does not end the episode.
 pub struct Cliff;
 
-/// The reward of a move.
+/// Reward of a move.
 const MOVE: f32 = -1.0;
-/// The reward of a move over the cliff.
+/// Reward of a move over the cliff.
 const FALL: f32 = -100.0;
 
 impl GridWorld for Cliff {

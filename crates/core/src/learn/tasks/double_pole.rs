@@ -1,4 +1,4 @@
-//! Two poles on one cart, the benchmark of Wieland (1991): a force on the cart keeps both upright.
+//! Two poles on one cart, the benchmark of Wieland (1991): a force on the cart has to keep both poles upright.
 //!
 //! Equations and numbers are those of Wieland's model as most published comparisons use it, from Gruau, Whitley &
 //! Pyeatt (1996) to Gomez, Schmidhuber & Miikkulainen (2008).
@@ -8,7 +8,7 @@ pub const SOLVED_ACTIONS: usize = 100_000;
 
 const GRAVITY_M_S2: f64 = 9.8;
 const CART_KG: f64 = 1.0;
-/// Half-length in m and mass in kg of the long and the short pole.
+/// Half-length in m and mass in kg of the long and of the short pole.
 const POLES: [(f64, f64); 2] = [(0.5, 0.1), (0.05, 0.01)];
 /// Friction of a pole's hinge, in N m s.
 const HINGE_FRICTION: f64 = 2e-6;
@@ -17,31 +17,31 @@ const STEP_S: f64 = 0.01;
 const STEPS_PER_ACTION: u32 = 2;
 const TRACK_M: f64 = 2.4;
 const LARGEST_ANGLE_RAD: f64 = 36.0 * std::f64::consts::PI / 180.0;
-/// The usual scale of each number of the state for a controller.
+/// Usual scale of each number of the state for a controller.
 const SCALES: [f64; 6] = [4.8, 2.0, 0.52, 2.0, 0.52, 2.0];
 
 /// The cart and its poles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DoublePole {
-    /// Place of the cart in m and its speed in m/s; angle from upright in rad and its rate in rad/s, of the long pole,
-    /// then of the short one.
+    /// Position of the cart in m and its speed in m/s, then for the long and for the short pole the angle from upright in rad and its rate
+    /// in rad/s.
     pub state: [f64; 6],
 }
 
 impl DoublePole {
-    /// At rest in the middle of the track, the long pole leaning by 0.07 rad.
+    /// Returns the usual start: at rest in the middle of the track, with the long pole leaning by 0.07 rad.
     pub fn usual() -> Self {
         Self { state: [0.0, 0.0, 0.07, 0.0, 0.0, 0.0] }
     }
 
-    /// The observation of a controller: the state, scaled to about -1 to 1.
+    /// Returns the observation of a controller: the state, scaled to about -1 to 1.
     pub fn observation(&self) -> [f64; 6] {
         let mut observation = self.state;
         observation.iter_mut().zip(SCALES).for_each(|(x, scale)| *x /= scale);
         observation
     }
 
-    /// Whether the cart is on its track and no pole has fallen.
+    /// Returns whether the cart is on its track and no pole has fallen.
     pub fn is_balanced(&self) -> bool {
         let [place, _, long, _, short, _] = self.state;
         place.abs() <= TRACK_M
@@ -49,7 +49,7 @@ impl DoublePole {
             && short.abs() <= LARGEST_ANGLE_RAD
     }
 
-    /// Pushes the cart for 0.02 s with `action` times 10 N; the action is clamped to -1 to 1.
+    /// Pushes the cart for 0.02 s with `action` times 10 N. The action is clamped to -1 to 1.
     pub fn push(&mut self, action: f64) {
         let force = FORCE_N * action.clamp(-1.0, 1.0);
         for _ in 0..STEPS_PER_ACTION {
@@ -58,8 +58,8 @@ impl DoublePole {
     }
 }
 
-/// Number of actions, at most `max_actions`, after which a controller still balanced the poles from a start. The controller
-/// gets the scaled state and answers with an action in -1 to 1.
+/// Counts the actions, up to `max_actions`, during which a controller balances the poles from a start. The controller gets the scaled
+/// state and returns an action from -1 to 1.
 pub fn balance(
     mut pole: DoublePole,
     mut controller: impl FnMut(&[f64; 6]) -> f64,
@@ -74,7 +74,7 @@ pub fn balance(
     max_actions
 }
 
-/// The derivative of the state under a force on the cart, in N.
+/// Returns the derivative of the state under a force on the cart, in N.
 fn derivative(state: &[f64; 6], force: f64) -> [f64; 6] {
     let (mut forces, mut mass) = (force, CART_KG);
     let mut torques = [(0.0, 0.0); 2];
@@ -92,7 +92,7 @@ fn derivative(state: &[f64; 6], force: f64) -> [f64; 6] {
     [state[1], acceleration, state[3], angular(0), state[5], angular(1)]
 }
 
-/// The state 0.01 s later, by the classical method of fourth order.
+/// Computes the state 0.01 s later, by the classical Runge-Kutta method of fourth order.
 fn runge_kutta(state: &[f64; 6], force: f64) -> [f64; 6] {
     let moved = |slope: &[f64; 6], time: f64| {
         let mut moved = *state;

@@ -1,12 +1,11 @@
-//! The Dyna maze (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 8.1): the only reward
-//! is at the goal, behind walls.
+//! The Dyna maze (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 8.1): the only reward is at the goal, behind walls.
 
 use super::grid::GridWorld;
 
-/// A maze with three walls. A move into a wall goes nowhere; reaching the goal is worth 1.
+/// A maze with three walls. A move into a wall leads nowhere; reaching the goal has the reward 1.
 pub struct DynaMaze;
 
-/// The cells that are walls.
+/// Rows and columns of the cells that are walls.
 const WALLS: [(u32, u32); 7] = [(1, 2), (2, 2), (3, 2), (4, 5), (0, 7), (1, 7), (2, 7)];
 
 impl GridWorld for DynaMaze {

@@ -1,51 +1,51 @@
-//! Features that all grid worlds of the tests share: cells as states, and four moves as actions.
+//! Common properties of all grid worlds of the tests: cells as states, and four moves as actions.
 
-/// The moves, in the order of their numbers: up, right, down, left, as (rows, columns).
+/// Moves in the order of their numbers: up, right, down, left, as (rows, columns).
 const MOVES: [(i32, i32); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
 
-/// A rectangular world. The state is the number of the cell, row by row from the upper left.
+/// A rectangular world. The state is the number of the cell, counted row by row from the upper left.
 pub trait GridWorld {
-    /// The number of rows.
+    /// Number of rows.
     const ROWS: u32;
-    /// The number of columns.
+    /// Number of columns.
     const COLUMNS: u32;
-    /// The number of cells, which are the states.
+    /// Number of cells, which are the states.
     const STATES: u32 = Self::ROWS * Self::COLUMNS;
-    /// The number of actions.
+    /// Number of actions.
     const ACTIONS: u16 = 4;
-    /// The row and column at which an episode starts.
+    /// Row and column at which an episode starts.
     const START: (u32, u32);
-    /// The row and column at which it ends.
+    /// Row and column at which an episode ends.
     const GOAL: (u32, u32);
 
-    /// The row and column after a move from a cell, and the reward.
+    /// Returns the row and column after a move from a cell, and the reward.
     fn outcome(cell: (u32, u32), action: u16) -> ((u32, u32), f32);
 
-    /// The state of a cell.
+    /// Returns the state of a cell.
     fn state((row, column): (u32, u32)) -> u32 {
         row * Self::COLUMNS + column
     }
 
-    /// The state after an action, `None` for the goal, and the reward.
+    /// Returns the state after an action, `None` for the goal, and the reward.
     fn act(state: u32, action: u16) -> (Option<u32>, f32) {
         let (cell, reward) = Self::outcome((state / Self::COLUMNS, state % Self::COLUMNS), action);
         ((cell != Self::GOAL).then(|| Self::state(cell)), reward)
     }
 
-    /// The cell beside a cell; at the edge of the world the cell itself.
+    /// Returns the cell next to a cell in the direction of the action; at the edge of the world, the cell itself.
     fn beside(cell: (u32, u32), action: u16) -> (u32, u32) {
         let (rows, columns) = MOVES[usize::from(action)];
         Self::shifted(cell, rows, columns)
     }
 
-    /// The cell some rows and columns away, held within the world.
+    /// Returns the cell this many rows and columns away, clamped to the world.
     fn shifted((row, column): (u32, u32), rows: i32, columns: i32) -> (u32, u32) {
         let row = row.saturating_add_signed(rows).min(Self::ROWS - 1);
         (row, column.saturating_add_signed(columns).min(Self::COLUMNS - 1))
     }
 }
 
-/// The least number of actions from start to goal, by breadth-first search.
+/// Computes the least number of actions from start to goal, by breadth-first search.
 pub fn shortest_path<W: GridWorld>() -> u32 {
     let mut distance = vec![None; W::STATES as usize];
     let mut queue = vec![W::state(W::START)];

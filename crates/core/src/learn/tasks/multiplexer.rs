@@ -1,6 +1,6 @@
-//! The Boolean multiplexer: k address bits select one of 2ᵏ data bits, and the right action is that bit.
+//! The Boolean multiplexer: k address bits select one of 2ᵏ data bits, and the right action is the selected bit.
 //!
-//! It has been the standard test of classifier systems since Wilson (1987): no bit alone says anything, and the
+//! The multiplexer has been the standard test of classifier systems since Wilson (1987): no single bit determines the answer, and the
 //! smallest complete set of accurate rules has 4 · 2ᵏ members, each with k + 1 bits that matter.
 
 use rand::Rng;
@@ -15,34 +15,34 @@ pub struct Multiplexer {
 }
 
 impl Multiplexer {
-    /// The multiplexer with this number of address bits.
+    /// Creates the multiplexer with this number of address bits.
     pub fn new(address_bits: usize) -> Self {
         Self { address_bits }
     }
 
-    /// Address and data bits together.
+    /// Returns the number of address and data bits together.
     pub fn bits(self) -> usize {
         self.address_bits + (1 << self.address_bits)
     }
 
-    /// A random situation.
+    /// Draws a random situation.
     pub fn draw(self, rng: &mut impl Rng) -> u32 {
         rng.random_range(0..1 << self.bits())
     }
 
-    /// The right action. The address comes first, its most significant bit at position 0.
+    /// Returns the right action. The address comes first, with its most significant bit at position 0.
     pub fn answer(self, bits: u32) -> usize {
         let address =
             (0..self.address_bits).fold(0, |address, i| address << 1 | (bits >> i & 1) as usize);
         (bits >> (self.address_bits + address) & 1) as usize
     }
 
-    /// 1000 for the right action, 0 for the wrong one.
+    /// Returns the reward of an action: 1000 for the right one, 0 for the wrong one.
     pub fn reward(self, bits: u32, action: usize) -> f32 {
         if action == self.answer(bits) { 1000.0 } else { 0.0 }
     }
 
-    /// Whether a condition is one of the smallest complete set: all address bits and the data bit they select.
+    /// Returns whether a condition belongs to the smallest complete set: it has all address bits and the data bit that they select.
     pub fn is_optimal(self, condition: &Condition) -> bool {
         let address = (1_u32 << self.address_bits) - 1;
         let data = condition.care() & !address;

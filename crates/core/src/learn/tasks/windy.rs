@@ -1,12 +1,12 @@
-//! The windy grid world (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 6.5): a
-//! crosswind shifts every move upwards, so the way to the goal leads past and around it.
+//! The windy grid world (Sutton & Barto, "Reinforcement Learning", 2nd edition, 2018, example 6.5): a crosswind shifts every move upwards,
+//! so the path to the goal leads past the goal and around it.
 
 use super::grid::GridWorld;
 
 /// A world with a crosswind in its middle columns. Every move costs 1.
 pub struct Windy;
 
-/// The rows by which the wind of each column shifts a move that starts there.
+/// Number of rows by which the wind of each column shifts a move that starts in the column.
 const WIND: [i32; 10] = [0, 0, 0, 1, 1, 1, 2, 2, 1, 0];
 
 impl GridWorld for Windy {
@@ -33,10 +33,10 @@ mod tests {
 
     #[test]
     fn the_wind_is_that_of_the_column_in_which_a_move_starts() {
-        // To the right: from a calm column into the wind, and from a strong wind into a weaker one.
+        // Moves to the right: from a calm column into the wind, and from a strong wind into a weaker one.
         assert_eq!(Windy::outcome((3, 2), 1), ((3, 3), -1.0));
         assert_eq!(Windy::outcome((5, 7), 1), ((3, 8), -1.0));
-        // Down against a wind of two rows, and up at the upper edge.
+        // A move down against a wind of two rows, and a move up at the upper edge.
         assert_eq!(Windy::outcome((3, 6), 2), ((2, 6), -1.0));
         assert_eq!(Windy::outcome((0, 6), 0), ((0, 6), -1.0));
     }

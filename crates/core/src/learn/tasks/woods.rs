@@ -1,23 +1,22 @@
 //! Grid worlds of the "woods" family: an animat among obstacles sees its eight neighbour cells and looks for food.
 //!
-//! Woods1 is from Wilson, "ZCS: a zeroth level classifier system" (1994), Woods2 from Wilson, "Classifier fitness
-//! based on accuracy" (1995), and Maze4 from Lanzi's studies of XCS (1997, 1999). Actions 0 to 7 go north,
-//! northeast and so on clockwise; a move against an obstacle changes nothing but costs its step. Worlds without a
-//! wall around them are tori.
+//! Woods1 is from Wilson, "ZCS: a zeroth level classifier system" (1994), Woods2 from Wilson, "Classifier fitness based on accuracy"
+//! (1995), and Maze4 from Lanzi's studies of XCS (1997, 1999). Actions 0 to 7 go north, northeast and so on clockwise. A move against an
+//! obstacle changes nothing but counts as a step. Worlds without a wall around them are tori.
 
 use rand::Rng;
 use rand::RngExt;
 
-/// Steps after which an episode is given up.
+/// Number of steps after which an episode ends.
 pub const MOST_STEPS: u32 = 50;
-/// The reward of food.
+/// Reward of food.
 pub const FOOD: f32 = 1000.0;
 /// Number of actions.
 pub const DIRECTIONS: usize = 8;
 
 const WOODS1: [&str; 5] = [".....", ".OOF.", ".OOO.", ".OOO.", "....."];
 
-/// Two kinds of food, F and G, and two kinds of rock, O and Q, which behave alike.
+/// Woods2 has two kinds of food, F and G, and two kinds of rock, O and Q, which behave alike.
 const WOODS2: [&str; 15] = [
     "..............................",
     ".QQF..QQF..OQF..QQG..OQG..OQF.",
@@ -40,27 +39,27 @@ const MAZE4: [&str; 8] = [
     "OOOOOOOO", "O..O..FO", "OO..O..O", "OO.O..OO", "O......O", "OO.O...O", "O....O.O", "OOOOOOOO",
 ];
 
-/// A grid world.
+/// A grid world of cells that are free, food or rock.
 #[derive(Debug, Clone)]
 pub struct Woods {
     width: usize,
     cells: Vec<u8>,
-    /// Bits with which a cell is seen.
+    /// Number of bits by which a neighbouring cell is described.
     cell_bits: usize,
 }
 
 impl Woods {
-    /// A 5 by 5 torus with one food and eight rocks.
+    /// Returns the 5 by 5 torus with one food and eight rocks.
     pub fn woods1() -> Self {
         Self::new(&WOODS1, 2)
     }
 
-    /// A 30 by 15 torus with two kinds of food and of rocks.
+    /// Returns the 30 by 15 torus with two kinds of food and of rocks.
     pub fn woods2() -> Self {
         Self::new(&WOODS2, 3)
     }
 
-    /// Lanzi's maze of 26 free cells.
+    /// Returns Lanzi's maze of 26 free cells.
     pub fn maze4() -> Self {
         Self::new(&MAZE4, 2)
     }
@@ -69,24 +68,24 @@ impl Woods {
         Self { width: rows[0].len(), cells: rows.concat().into_bytes(), cell_bits }
     }
 
-    /// Bits of a situation.
+    /// Returns the number of bits of a situation.
     pub fn bits(&self) -> usize {
         DIRECTIONS * self.cell_bits
     }
 
-    /// The cells in which an episode may start.
+    /// Returns the cells in which an episode may start.
     pub fn free_cells(&self) -> Vec<usize> {
         (0..self.cells.len()).filter(|&cell| self.cells[cell] == b'.').collect()
     }
 
-    /// A random free cell.
+    /// Draws a random free cell.
     pub fn draw(&self, rng: &mut impl Rng) -> usize {
         let free = self.free_cells();
         free[rng.random_range(0..free.len())]
     }
 
-    /// The situation in a cell: its neighbours clockwise from the north, each with its bits. The first bit of a
-    /// cell says food, the second not empty, and the third, where there is one, which kind.
+    /// Returns the situation in a cell: its neighbours clockwise from the north, each with its bits. The first bit of a neighbour is set
+    /// for food, the second if the neighbour is not empty. The third, where there is one, tells the kind.
     pub fn situation(&self, cell: usize) -> u32 {
         let code = |neighbour: usize| match self.cells[neighbour] {
             b'.' => 0b000,
@@ -100,7 +99,7 @@ impl Woods {
         })
     }
 
-    /// The cell after an action, and whether food is there.
+    /// Returns the cell after an action, and whether food is there.
     pub fn after(&self, cell: usize, action: usize) -> (usize, bool) {
         let next = self.neighbour(cell, action);
         match self.cells[next] {
@@ -117,7 +116,7 @@ impl Woods {
         (cell / width + down) % height * width + (cell % width + right) % width
     }
 
-    /// Sum of the shortest ways to food from all free cells, and the number of these cells, by breadth-first search.
+    /// Returns the sum of the shortest distances to food from all free cells, and the number of these cells, by breadth-first search.
     pub fn optimum(&self) -> (u32, u32) {
         let mut distances: Vec<Option<u32>> =
             self.cells.iter().map(|cell| b"FG".contains(cell).then_some(0)).collect();
@@ -137,7 +136,7 @@ impl Woods {
         (free.iter().filter_map(|&cell| distances[cell]).sum(), free.len() as u32)
     }
 
-    /// Mean steps to food from every free cell with a fixed way of acting, each at most [`MOST_STEPS`].
+    /// Returns the mean number of steps to food from every free cell with a fixed policy, each at most [`MOST_STEPS`].
     pub fn mean_steps(&self, act: impl Fn(u32) -> usize) -> f64 {
         let steps = |start: usize| {
             let mut cell = start;

@@ -1,14 +1,13 @@
-//! Exclusive or: the smallest task that a network without hidden nodes cannot do.
+//! Exclusive or: the smallest task that a network without hidden nodes cannot solve.
 
-/// The inputs and the wanted output of each pattern.
+/// Inputs and wanted output of each pattern.
 pub const PATTERNS: [([f64; 2], f64); 4] =
     [([0.0, 0.0], 0.0), ([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([1.0, 1.0], 0.0)];
 
 /// How well a function computes exclusive or.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct XorScore {
-    /// (4 - e)², e being the sum of the absolute errors of the four outputs: 16 is the best. (Stanley & Miikkulainen
-    /// 2002.)
+    /// (4 - e)², where e is the sum of the absolute errors of the four outputs; 16 is the best (Stanley & Miikkulainen 2002).
     pub fitness: f64,
     /// Whether every output is on the right side of 0.5.
     pub is_solved: bool,
