@@ -1,11 +1,10 @@
 //! The snake as a physical plan: box-shaped parts, the universal joints between limbs, and the springs within soft limbs.
 //!
-//! A **part** is one body of the engine. A rigid **limb** is one part; a soft limb is several in a row, held together by
+//! A **part** is one body of the physics engine. A rigid **limb** is one part; a soft limb is several parts in a row, held together by
 //! springs.
 //!
-//! The built body is the only source of facts about limbs and joints: their number, sizes, masses and
-//! torque limits, and which part represents the whole. It is made from the trial's agent settings and one
-//! genome, because either may determine any of these numbers.
+//! The built body is the only source of facts about limbs and joints: their number, sizes, masses and torque limits, and which part
+//! represents the whole. It is made from the trial's agent settings and one genome, because either may determine each of these numbers.
 
 use std::ops::Range;
 
@@ -14,12 +13,12 @@ use super::{Mount, Pose, Rotation, Vector};
 /// The whole body. Part 0 is the head, or the foremost part of a soft head: the part nearest to the stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyPlan {
-    /// The parts, limb by limb from the head. The world inserts them in this order and lays them out in a row, unless joints
-    /// have mounts.
+    /// Parts of the body, limb by limb from the head. The world inserts them in this order and lays them out in a row, unless joints have
+    /// mounts.
     pub parts: Vec<PartPlan>,
-    /// The joints between limbs, which the controller drives, from the head. A joint's parent comes before its child.
+    /// Joints between limbs, from the head, which the controller drives. A joint's parent comes before its child.
     pub joints: Vec<JointPlan>,
-    /// The springs within soft limbs, from the head; empty if all limbs are rigid.
+    /// Springs within soft limbs, from the head; empty if all limbs are rigid.
     pub springs: Vec<SpringPlan>,
     /// Pairs of limbs that pass through each other, the front limb first: neighbours of a short limb, and joined limbs of which at least
     /// one is soft. Joined rigid limbs always pass through each other and are not listed.
@@ -32,7 +31,7 @@ pub struct BodyPlan {
     pub holding_w_per_n2m2: f32,
 }
 
-/// One box-shaped part: a rigid limb, or a piece of a soft one.
+/// One box-shaped part of the body: a rigid limb, or a piece of a soft limb.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartPlan {
     /// Index of the limb to which the part belongs; the head is 0.
@@ -57,16 +56,16 @@ pub struct JointPlan {
     pub child: usize,
     /// Where the joint holds its child on its parent. `None`: at the rear face of the parent, with the child straight behind it.
     pub mount: Option<Mount>,
-    /// Largest bend to either side, in radians.
+    /// Largest bend of the joint to either side, in radians.
     pub bend_limit_rad: f32,
-    /// Largest twist to either side, in radians.
+    /// Largest twist of the joint to either side, in radians.
     pub twist_limit_rad: f32,
     /// Largest torque on the bend axis, in N·m. A stronger command is clamped.
     pub max_bend_torque_nm: f32,
     /// Largest torque on the twist axis, in N·m. A stronger command is clamped.
     pub max_twist_torque_nm: f32,
-    /// Torque that resists bend and twist, per joint rate, in N·m·s/rad. Integrated implicitly by
-    /// the solver, so that large values stay stable.
+    /// Torque that resists bend and twist, per joint rate, in N·m·s/rad. The solver integrates it implicitly, so that large values stay
+    /// stable.
     pub damping_nms_per_rad: f32,
     /// Factor on the allowed distance between the joint's two anchors: 1, or for a body from the genome the smallest side of both limbs in
     /// metres, so that the anchors of small limbs may only come apart in proportion to their size.
@@ -113,7 +112,7 @@ impl PartPlan {
         self.size_m().into_iter().fold(f32::INFINITY, f32::min)
     }
 
-    /// Mass of the part, in kg.
+    /// Returns the mass of the part, in kg.
     pub fn mass_kg(&self) -> f32 {
         self.width_m * self.length_m * self.height_m * self.density_kg_m3
     }
@@ -129,7 +128,7 @@ impl BodyPlan {
         self.parts.iter().map(|part| part.length_m).sum()
     }
 
-    /// Number of limbs.
+    /// Returns the number of limbs.
     pub fn limbs(&self) -> usize {
         self.parts.last().map_or(0, |last| last.limb + 1)
     }
@@ -159,12 +158,12 @@ impl BodyPlan {
         self.springs.iter().find(|spring| parts.contains(&spring.parent))
     }
 
-    /// Density of a limb, in kg/m³.
+    /// Returns the density of a limb, in kg/m³.
     pub fn limb_density_kg_m3(&self, limb: usize) -> f32 {
         self.parts[self.parts_of(limb).start].density_kg_m3
     }
 
-    /// Mass of a limb, in kg.
+    /// Returns the mass of a limb, in kg.
     pub fn limb_mass_kg(&self, limb: usize) -> f32 {
         self.parts[self.parts_of(limb)].iter().map(PartPlan::mass_kg).sum()
     }
@@ -187,12 +186,12 @@ impl BodyPlan {
         (0..self.limbs()).map(limb).collect()
     }
 
-    /// Width of the widest limb, in metres.
+    /// Returns the width of the widest limb, in metres.
     pub fn width_m(&self) -> f32 {
         self.parts.iter().map(|part| part.width_m).fold(0.0, f32::max)
     }
 
-    /// Mass of the whole body, in kg.
+    /// Returns the mass of the whole body, in kg.
     pub fn mass_kg(&self) -> f32 {
         self.parts.iter().map(PartPlan::mass_kg).sum()
     }
@@ -211,7 +210,7 @@ impl BodyPlan {
         before + self.parts.get(self.middle_part).map_or(0.0, |part| part.length_m / 2.0)
     }
 
-    /// Volume of the whole body, in m³.
+    /// Returns the volume of the whole body, in m³.
     pub fn volume_m3(&self) -> f32 {
         self.parts.iter().map(|part| part.size_m().into_iter().product::<f32>()).sum()
     }
@@ -226,7 +225,7 @@ impl BodyPlan {
         parts.len() / 2
     }
 
-    /// Index of the part in which the centre of mass of the straight body lies.
+    /// Returns the index of the part in which the centre of mass of the straight body lies.
     pub fn middle_by_mass(parts: &[PartPlan]) -> usize {
         let (mut mass_kg, mut moment_kg_m, mut end_m) = (0.0, 0.0, 0.0);
         for part in parts {

@@ -24,7 +24,7 @@ struct BouncingCorner {
     direction: Vector,
     /// Required speed of the corner after the bounce, in m/s.
     leaving_m_s: f32,
-    /// Total impulse on the corner in this step so far, in N·s. It never becomes negative: a surface does not pull.
+    /// Total impulse on the corner in this step so far, in N·s. It never becomes negative, because a surface does not pull.
     impulse_ns: f32,
 }
 
@@ -71,7 +71,7 @@ pub(super) fn finish_bounce(
     body.set_angvel(angular, false);
 }
 
-/// The corners of a contact pair to which the engine has just applied restitution.
+/// Returns the corners of a contact pair to which the engine has just applied restitution.
 fn bouncing(
     pair: &ContactPair,
     limb_is_first: bool,

@@ -8,7 +8,7 @@ use super::Stairs;
 /// Millimetres of a real staircase that correspond to one metre of the simulated stairs.
 pub const TRUE_MM_PER_M: f32 = 350.0;
 
-/// Rules for the rises and treads of stairs. All lengths are in millimetres of real stairs.
+/// Rules of a building code for the rises and treads of stairs. All lengths are in millimetres of real stairs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildingCode {
     /// Kind of building and country to which the code applies.

@@ -99,8 +99,8 @@ impl ContactSoftness {
 /// CFM that the engine manual of the report calls hard, in m/s per N.
 const HARD_CFM_M_S_PER_N: f32 = 1.0e-5;
 
-/// Rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is
-/// `1 - (1 - erp)^(s / ERP_TIME_S)` in each substep of length s.
+/// Returns rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is `1 - (1 -
+/// erp)^(s / ERP_TIME_S)` in each substep of length s.
 ///
 /// Rapier has `erp = dt·w / (dt·w + 2z)` for the angular frequency w and the damping ratio z; a large z
 /// makes the contact's compliance vanish.
@@ -137,12 +137,12 @@ fn soft_coefficients(
     // If the motion is over within one substep, the exponential would overflow.
     let lost = (kd_ns_per_m * substep_s / moved_kg).min(1.0);
     let stronger = if lost > 1.0e-3 { libm::expm1f(lost) / lost } else { 1.0 };
-    // Without any damping (an ERP of 1) rapier would divide by zero.
+    // Without any damping (with an ERP of 1), rapier would divide by zero.
     let damper = (stronger * kd_ns_per_m).max(LEAST_DAMPING * kp_n_per_m * ERP_TIME_S);
     let turned_rad = substep_s * (kp_n_per_m / moved_kg).sqrt();
     let taken = (2.0 - 2.0 * turned_rad).clamp(0.0, 1.0);
     let damper = damper - taken * substep_s * kp_n_per_m;
-    // Near zero rapier would divide zero by zero, or lose precision.
+    // With values near zero, rapier would divide zero by zero, or lose precision.
     let least = LEAST_RATIO * substep_s * kp_n_per_m;
     let damper = if damper.abs() < least { least } else { damper };
     let angular_frequency = (kp_n_per_m / effective_kg).sqrt();
@@ -152,8 +152,8 @@ fn soft_coefficients(
     }
 }
 
-/// Rapier's softness for a joint between limbs with these masses, in kg: exact for a pull along the
-/// snake, where the effective mass is the reduced mass of the pair. ERP is [`JOINT_ERP`].
+/// Returns rapier's softness for a joint between limbs with these masses, in kg. It is exact for a pull along the snake, where the
+/// effective mass is the reduced mass of the pair. The ERP is [`JOINT_ERP`].
 pub(super) fn joint_coefficients(
     cfm_m_s_per_n: f32,
     substep_s: f32,
@@ -278,14 +278,12 @@ impl ContactHooks<'_> {
 
 /// A contact patch that creeps with the speed slip times its tangential force. The creep is made by a lower friction.
 ///
-/// Inside the cone the patch should behave as a viscous contact, F = v / slip. The solver can only
-/// stop a contact or let it slide, so it is told to stop it with no more than the viscous force
-/// that the end of this step will call for: with u = h / mass and the sliding velocity that the
-/// patch would have without friction, v + u F (from the last step's F),
-/// `F' = |v + u F| / (slip + u)`. A steady push P then creeps at slip · P; the roots of
-/// `x² - x + u / (slip + u)`, the deviations' growth per step, lie within the unit circle for every
-/// slip. Friction never does more than stop a motion, so it cannot add energy, even where the
-/// estimates are poor, as in a fall.
+/// Inside the friction cone the patch should behave as a viscous contact, F = v / slip. The solver can only stop a contact or let it
+/// slide. Its friction is therefore limited to the viscous force that will act at the end of this step: with u = h / mass and the sliding
+/// velocity that the patch would have without friction, v + u F (from the last step's F), `F' = |v + u F| / (slip + u)`. A steady push P
+/// then makes the patch creep at slip · P. The roots of `x² - x + u / (slip + u)`, the growth of deviations per step, lie within the unit
+/// circle for every slip. Friction never does more than stop a motion, so it cannot add energy, even where the estimates are poor, as in a
+/// fall.
 pub(super) struct SlippingPatch {
     /// Sum over the patch's points of their friction in the last substep, in N·s, on the body whose sliding is given. The engine gives
     /// each point the friction of the whole patch.

@@ -2,7 +2,7 @@
 
 use super::{BodyPlan, WorldPlan};
 
-/// Why a running world cannot continue under another plan.
+/// The reason why a running world cannot continue under another plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Discontinuity {
     /// The other snake has another number, size or arrangement of limbs.

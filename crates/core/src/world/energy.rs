@@ -7,7 +7,7 @@ use rapier3d::prelude::*;
 pub(super) struct EnergyBalance {
     /// Mechanical energy at the start of the trial, in J.
     pub start_j: f64,
-    /// Work of the joint torques, in J: positive where they drive, negative where they brake.
+    /// Work of the joint torques, in J: positive where the torques drive, negative where they brake.
     pub joint_work_j: f64,
     /// Energy that the joints spent on motion, in J. Driving and braking both count as spent.
     pub motion_j: f32,
@@ -24,7 +24,7 @@ const GAIN_SHARE: f32 = 0.05;
 /// Unexplained gain of energy that is tolerated in addition to `GAIN_SHARE`, in J, because contacts settle at the start.
 const GAIN_J: f32 = 1.0;
 
-/// Rotation of a limb before a step.
+/// Rotation and angular velocity of a limb before a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LimbTurn {
     /// Rotation of the limb in the world.

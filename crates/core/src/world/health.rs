@@ -16,7 +16,7 @@ pub enum Disqualification {
     JointBroke,
     /// A limb was faster than allowed.
     TooFast,
-    /// The agent left the arena.
+    /// The agent left the arena sideways, backwards or forwards, or fell through the ground.
     LeftArena,
     /// The agent gained mechanical energy that its joints had not supplied.
     EnergyFromNothing,
@@ -27,7 +27,7 @@ pub enum Disqualification {
 }
 
 impl Disqualification {
-    /// The reason in words, to follow "disqualified: ".
+    /// Returns the reason in words, to follow "disqualified: ".
     pub fn words(self) -> &'static str {
         match self {
             Self::NotFinite => "invalid numbers in its simulation",
@@ -62,7 +62,7 @@ setting_group! {
                 .hint("A snake is disqualified if a limb is faster than this, which only an unstable simulation reaches")
                 .slider(1.0, 100.0);
 
-        /// Largest |x| of a limb's centre, in metres.
+        /// Largest |x| of a limb's centre within the arena, in metres.
         arena_half_width_m: f32 = 12.0,
             number("Sideways limit", 1.0..=1000.0).advanced()
                 .unit("m")

@@ -99,7 +99,7 @@ impl BodyPlan {
         parts.map(around).collect()
     }
 
-    /// Extent of a branching body along y before its trial, in metres.
+    /// Returns the extent of a branching body along y before its trial, in metres.
     pub(super) fn branching_length_m(&self) -> f32 {
         // The front of the body lies at y = 0.
         -self.rest_boxes_m().into_iter().map(|[rear, _]| rear.y).fold(0.0, f32::min)

@@ -40,9 +40,9 @@ setting_group! {
         /// The engine that computes the motion.
         #[serde(default, skip_serializing_if = "is_default")]
         engine: PhysicsEngine = PhysicsEngine::Rapier;
-        /// Physics steps per simulated second, in Hz. Every step has the same length.
+        /// Number of physics steps per simulated second, in Hz. Every step has the same length.
         steps_per_s: u32 = 60;
-        /// Solver substeps within one step.
+        /// Number of solver substeps within one step.
         substeps: u32 = 2;
         /// Solver iterations within one substep. Engine version 2 had one.
         #[serde(default = "one_iteration")]
@@ -94,7 +94,7 @@ pub const TESTED_RATES: [(u32, u32); 7] =
     [(60, 4), (120, 4), (240, 4), (60, 2), (60, 8), (120, 2), (240, 2)];
 
 impl PhysicsSettings {
-    /// Length of one physics step, in seconds.
+    /// Returns the length of one physics step, in seconds.
     pub fn step_s(&self) -> f32 {
         1.0 / self.steps_per_s as f32
     }
@@ -110,7 +110,7 @@ impl PhysicsSettings {
         substeps / (substeps + 1.0)
     }
 
-    /// Length of one substep, in seconds.
+    /// Returns the length of one substep, in seconds.
     pub fn substep_s(&self) -> f32 {
         self.step_s() / self.substeps.max(1) as f32
     }

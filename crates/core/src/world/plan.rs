@@ -7,7 +7,7 @@ use super::{BodyPlan, HealthLimits, PhysicsSettings, Skin, Stairs, Surface};
 pub struct WorldPlan {
     /// Settings of the physics: step length, substeps, gravity.
     pub physics: PhysicsSettings,
-    /// The staircase.
+    /// Shape and position of the staircase.
     pub stairs: Stairs,
     /// The material of the stairs.
     pub surface: Surface,
@@ -25,8 +25,7 @@ pub struct WorldPlan {
     pub start_y_m: f32,
     /// Position of the middle of the straight snake on the x axis at the start, in metres; 0 is in front of the middle of the stairs.
     pub start_x_m: f32,
-    /// Turn of the snake at the start, in radians, counterclockwise seen from above; at 0 it heads for the
-    /// stairs.
+    /// Turn of the snake about the vertical axis at the start, in radians, counterclockwise seen from above; at 0 it heads for the stairs.
     pub start_turn_rad: f32,
 }
 

@@ -9,7 +9,7 @@ use crate::check::{Invalid, within};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shove {
-    /// Index of the limb; the head is 0.
+    /// Index of the shoved limb; the head is 0.
     pub limb: usize,
     /// Time of the shove, in s from the start. It acts before the step that begins at this time.
     pub at_s: f32,
@@ -19,7 +19,7 @@ pub struct Shove {
 }
 
 impl Shove {
-    /// Checks every value.
+    /// Checks that every value is in the range that exams draw from.
     ///
     /// # Errors
     /// Returns the first value outside the range that exams draw from.

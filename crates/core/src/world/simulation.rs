@@ -53,7 +53,7 @@ pub struct Simulation {
     applied: Vec<AppliedTorque>,
     effort: Effort,
     balance: EnergyBalance,
-    /// The user's pull on a limb, and whether there was one in the last step.
+    /// The user's pull on a part, or `None`. `was_pulled` tells whether there was a pull in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
     /// Forces on each part in another engine, if this world mirrors one; empty otherwise.
@@ -174,7 +174,7 @@ impl Simulation {
         &self.body
     }
 
-    /// The effort of the healthy steps so far.
+    /// Returns the effort of the healthy steps so far.
     pub fn effort(&self) -> Effort {
         self.effort
     }

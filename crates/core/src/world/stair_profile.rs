@@ -10,7 +10,7 @@ use crate::schema::PerPart;
 #[derive(Debug, Clone, PartialEq)]
 pub struct StairProfile {
     first_riser_y_m: f32,
-    /// Where the flat parts of the treads begin.
+    /// Places where the flat parts of the treads begin.
     treads: Treads,
     mean_tread_m: f32,
     half_width_m: f32,
@@ -21,7 +21,7 @@ pub struct StairProfile {
     edges_m: Vec<[f32; 2]>,
 }
 
-/// Where the flat parts of the treads begin, on the y axis, in metres.
+/// Places where the flat parts of the treads begin, on the y axis, in metres.
 #[derive(Debug, Clone, PartialEq)]
 enum Treads {
     /// All treads have this depth, in metres, and vertical risers.
@@ -39,7 +39,7 @@ pub struct NextStep {
     pub top_z_m: f32,
 }
 
-/// The progress of the middle limb up the stairs.
+/// The progress of a limb up the stairs, usually of the middle limb.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClimbProgress {
     /// Number of steps under the limb.
@@ -126,12 +126,12 @@ impl StairProfile {
         }
     }
 
-    /// Half the width of the stairs, in metres.
+    /// Returns half the width of the stairs, in metres.
     pub fn half_width_m(&self) -> f32 {
         self.half_width_m
     }
 
-    /// Whether a point is within the width of the stairs and not behind their landing.
+    /// Returns whether a point is within the width of the stairs and not behind their landing.
     fn is_in_line(&self, x_m: f32, y_m: f32) -> bool {
         x_m.abs() <= self.half_width_m && y_m <= self.end_y_m
     }

@@ -49,7 +49,7 @@ fn is_vertical(slope_m: &PerPart) -> bool {
 }
 
 impl Stairs {
-    /// The section of these settings.
+    /// Section of the settings of the stairs.
     pub const SECTION: Section =
         Section { title: "Stairs", about: "Shape and position of the staircase." };
     /// Stairs that do not evolve. Stairs that evolve begin low and without nosing or slopes; the trial sets their number of steps and
@@ -64,7 +64,7 @@ impl SettingGroup for Stairs {
             self;
         walk.section(Self::SECTION);
         settings! { walk,
-            // A hundred steps are far more than any snake climbs, and are still computed quickly.
+            // The range ends at a hundred steps, far more than any snake climbs, and still computed quickly.
             steps: whole("Steps", 0..=100)
                 .hint("Number of steps; 0 gives flat ground")
                 .slider(0.0, 20.0);
@@ -82,7 +82,7 @@ impl SettingGroup for Stairs {
                 .unit("m")
                 .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
                 .slider(1.0, 20.0);
-            // Within a hundred metres, 32-bit floats still resolve a hundredth of a millimetre.
+            // The range ends at a hundred metres, within which 32-bit floats still resolve a hundredth of a millimetre.
             first_riser_y_m: number("First riser at y", -100.0..=100.0).advanced()
                 .unit("m")
                 .hint("Position at which the stairs begin")
@@ -111,7 +111,7 @@ impl SettingGroup for Stairs {
 const GROUND_M: f32 = 1.0e-4;
 
 impl Stairs {
-    /// Position of riser number `index` (0 is the first) on the y axis, in metres.
+    /// Returns the position of riser number `index` (0 is the first) on the y axis, in metres.
     pub fn riser_y_m(&self, index: u32) -> f32 {
         match &self.tread_m {
             // The product, not a sum, keeps the bits of stairs of engine version 2 and earlier.
@@ -128,7 +128,7 @@ impl Stairs {
         if slope_m > 0.0 { self.riser_y_m(index) + slope_m } else { self.riser_y_m(index) }
     }
 
-    /// Depth of step number `index` (0 is the first) along y, in metres.
+    /// Returns the depth of step number `index` (0 is the first) along y, in metres.
     pub fn step_tread_m(&self, index: u32) -> f32 {
         self.tread_m.at(index as usize)
     }
@@ -138,7 +138,7 @@ impl Stairs {
         (0..self.steps).map(|step| self.step_tread_m(step)).sum()
     }
 
-    /// Mean depth of the steps along y, in metres.
+    /// Returns the mean depth of the steps along y, in metres.
     pub fn mean_tread_m(&self) -> f32 {
         match &self.tread_m {
             PerPart::All(tread_m) => *tread_m,
@@ -148,7 +148,7 @@ impl Stairs {
         }
     }
 
-    /// Depth over which the rise of step number `index` (0 is the first) slopes, in metres.
+    /// Returns the depth over which the rise of step number `index` (0 is the first) slopes, in metres.
     pub fn step_slope_m(&self, index: u32) -> f32 {
         self.slope_m.at(index as usize)
     }
@@ -165,7 +165,7 @@ impl Stairs {
         if has_none { 0.0 } else { self.nosing_m }
     }
 
-    /// Height of step number `index` (0 is the first) over the one below it, in metres.
+    /// Returns the height of step number `index` (0 is the first) over the one below it, in metres.
     pub fn step_rise_m(&self, index: u32) -> f32 {
         self.rise_m.at(index as usize)
     }
@@ -182,7 +182,7 @@ impl Stairs {
         }
     }
 
-    /// Greatest height of a tread over the ground, in metres.
+    /// Returns the greatest height of a tread over the ground, in metres.
     pub fn highest_m(&self) -> f32 {
         (0..=self.steps).map(|steps| self.height_m(steps)).fold(0.0, f32::max)
     }
@@ -196,7 +196,7 @@ impl Stairs {
         }
     }
 
-    /// Position of the end of the landing on the y axis, in metres.
+    /// Returns the position of the end of the landing on the y axis, in metres.
     pub fn end_y_m(&self) -> f32 {
         self.riser_y_m(self.steps) + self.landing_m
     }

@@ -16,14 +16,14 @@ setting_group! {
 
         /// Restitution, from 0 (no bounce) to 1 (the whole speed is kept).
         bounce: f32 = 0.0,
-            // More than 1 would create energy.
+            // A restitution above 1 would create energy.
             number("Bounce", 0.0..=1.0)
                 .hint("How much speed is kept after an impact: 0 does not bounce, 1 bounces back to full height")
                 .slider(0.0, 1.0);
 
         /// Least incoming normal speed at which a contact bounces, in m/s. Slower impacts do not bounce.
         bounce_velocity_m_s: f32 = 0.0,
-            // The range goes beyond the speed at which an agent is disqualified by default.
+            // The range ends beyond the speed at which an agent is disqualified by default.
             number("Bounce velocity", 0.0..=1000.0).advanced()
                 .unit("m/s")
                 .hint("Impacts slower than this do not bounce, so that a snake at rest stays at rest")
@@ -31,7 +31,7 @@ setting_group! {
 
         /// Error reduction parameter: the share of a penetration that is corrected in [`ERP_TIME_S`].
         soft_erp: f32 = 0.25,
-            // With an ERP of 0, nothing would ever be pushed out again and the snake would sink through the ground.
+            // The range excludes 0, at which nothing would ever be pushed out again and the snake would sink through the ground.
             number("Springiness (ERP)", 0.01..=1.0).advanced()
                 .hint("How quickly a soft surface springs back: share of a dent that is corrected in 1/60 s")
                 .slider(0.01, 1.0);
@@ -39,7 +39,7 @@ setting_group! {
         /// Constraint force mixing, in m/s per N (ODE's unit, s/kg): 0 is hard, larger is softer. See
         /// [`spring`] for the physical meaning.
         soft_cfm_m_s_per_n: f32 = 0.0,
-            // At 1 m/s per N the snake's own weight pushes it through a step in less than a second.
+            // The range ends at 1 m/s per N, at which the snake's own weight pushes it through a step in less than a second.
             number("Softness (CFM)", 0.0..=1.0)
                 .unit("m/s per N")
                 .hint("0 is hard; larger values let the snake sink in deeper")
@@ -49,17 +49,17 @@ setting_group! {
         /// Force-dependent slip, in m/s per N: under a tangential force F inside the friction cone a
         /// contact creeps at slip times F.
         slip_m_s_per_n: f32 = 0.0,
-            // At 10 m/s per N a limb's own weight is too much for the surface's hold.
+            // The range ends at 10 m/s per N, at which a limb's own weight is too much for the surface's hold.
             number("Creep (slip)", 0.0..=10.0).advanced()
                 .unit("m/s per N")
                 .hint("How fast a limb creeps under a force that friction would otherwise hold, as on oil")
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-4);
 
-        /// Rate at which the linear and angular velocity of a limb decay while it touches the surface, in 1/s: after
-        /// a time t they are `exp(-dampen t)` of what they were.
+        /// Rate at which the linear and angular velocity of a limb decay while it touches the surface, in 1/s: after a time t, the limb
+        /// keeps `exp(-dampen t)` of both velocities.
         dampen_per_s: f32 = 0.0,
-            // With 20 1/s, a limb that moves at 10 m/s comes to rest within its own length.
+            // The range ends at 20 1/s, at which a limb that moves at 10 m/s comes to rest within its own length.
             number("Damping", 0.0..=20.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
@@ -183,9 +183,9 @@ impl Softness {
 /// A constraint as a spring and a damper side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spring {
-    /// Stiffness, in N/m.
+    /// Stiffness of the spring, in N/m.
     pub kp_n_per_m: f32,
-    /// Damping, in N·s/m.
+    /// Damping of the damper, in N·s/m.
     pub kd_ns_per_m: f32,
 }
 

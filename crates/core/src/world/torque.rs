@@ -1,4 +1,4 @@
-//! Torques at joints.
+//! Torques at joints, as commanded and as applied.
 
 use rapier3d::prelude::Rotation;
 

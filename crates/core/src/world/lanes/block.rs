@@ -8,7 +8,7 @@
 use super::shared_points::{Plane, SharedPoint, SharedPoints, sign};
 use crate::world::Vector;
 
-/// A box in the world.
+/// A box with its pose in the world.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     /// Centre of the box, in metres.

@@ -15,7 +15,7 @@ pub(super) const MOST_PARTS: usize = 12;
 /// Greatest speed with which an error of position is corrected, as in rapier: in m/s for a contact, in rad/s for a joint beyond its limit.
 pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
 
-/// A box of the snake.
+/// Size and mass of a part of the snake, which is a box.
 #[derive(Debug, Clone)]
 pub(super) struct ChainPart {
     pub half_m: Vector,
@@ -44,7 +44,7 @@ pub(crate) struct PartState {
 }
 
 impl PartState {
-    /// Velocity of the part at a place in the world, in m/s.
+    /// Returns the velocity of the part at a place in the world, in m/s.
     pub fn velocity_at(&self, at: Vector) -> Vector {
         self.linear + self.angular.cross(at - self.at)
     }
@@ -59,19 +59,19 @@ impl PartState {
 /// A universal joint between the rear face of a part and the front face of another one.
 #[derive(Debug, Clone)]
 pub(super) struct Joint {
-    /// Indices of the parts, the front one first.
+    /// Indices of the two connected parts, the front one first.
     pub parts: [usize; 2],
     /// Sine and cosine of half of the greatest bend and twist; `None` where the axis turns freely.
     pub half_limits: [Option<[f32; 2]>; 2],
     /// Damping that the solver integrates, in N·m·s/rad: a share of the joint's damping.
     pub damping_nms: f32,
-    /// Share of a position error that is corrected, per second.
+    /// Share of a position error of the joint that is corrected, per second.
     pub correction_per_s: f32,
     /// Compliance of the joint, as a share of a row's own inverse mass.
     pub compliance: f32,
 }
 
-/// How a contact behaves.
+/// Parameters of a contact: friction, bounce and softness.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
     pub contact: ContactLaw,
@@ -91,7 +91,7 @@ pub(super) struct Laws {
     pub limbs: Law,
 }
 
-/// A solid of the stairs.
+/// A solid of the stairs, with the box around it.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub block: Block,

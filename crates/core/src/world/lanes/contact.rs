@@ -20,7 +20,7 @@ pub(crate) enum Touching {
     Part(usize),
 }
 
-/// A point of a contact.
+/// A point of a contact, with its impulses.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ContactPoint {
     pub(super) features: u16,
@@ -45,7 +45,7 @@ pub(crate) struct ContactPoint {
 /// A contact of a part: up to four points along one normal, which share their friction.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
-    /// Index of the part; of two parts that touch, the rear one.
+    /// Index of the part. For a contact of two parts, it is the rear one.
     pub part: usize,
     /// The body that the part touches.
     pub other: Touching,

@@ -7,7 +7,7 @@ use super::shared_points::{MOST_POINTS, basis};
 use super::wide::{Wide, WideVector};
 use crate::world::Vector;
 
-/// A point of a contact in each lane.
+/// One point of a contact per lane.
 #[derive(Debug, Clone, Copy)]
 struct WidePoint<const N: usize> {
     /// Levers from the centres of the two touching bodies to the point, at the beginning of the step, in the world.

@@ -32,10 +32,10 @@ struct JointRow<const N: usize> {
     range: [Wide<N>; 2],
 }
 
-/// A universal joint of each lane.
+/// One universal joint per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideJoint<const N: usize> {
-    /// Indices of the parts, the front one first.
+    /// Indices of the two connected parts, the front one first.
     pub parts: [usize; 2],
     /// Distances along y from the parts' centres to the joint's anchors, in metres: backwards from the front part, forwards from the rear
     /// part.

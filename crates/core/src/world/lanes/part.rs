@@ -7,7 +7,7 @@ use super::wide::{Wide, WideRotation, WideSymmetric, WideVector};
 const MOST_M_S: f32 = 400.0;
 pub(super) const MOST_TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
-/// A part in each lane.
+/// One part of the snake per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WidePart<const N: usize> {
     pub at: WideVector<N>,

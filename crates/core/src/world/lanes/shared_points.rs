@@ -2,7 +2,7 @@
 
 use crate::world::Vector;
 
-/// A point in which two bodies touch, or nearly do.
+/// A point in which two bodies touch, or nearly touch.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SharedPoint {
     /// Numbers of the corners, edges or faces that meet at the point. Equal numbers in two steps mean the same point of the same bodies.

@@ -114,7 +114,7 @@ fn rotation_vector(rotation: Rotation) -> Vector {
     let sign = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     let axis = Vector::new(rotation.x, rotation.y, rotation.z) * sign;
     let sine = axis.length();
-    // The limit for small angles is 2.
+    // For small angles, the factor approaches 2.
     let scale = if sine > 1.0e-3 { 2.0 * libm::asinf(sine.min(1.0)) / sine } else { 2.0 };
     axis * scale
 }

@@ -27,7 +27,7 @@ impl Simulation {
         on_parent.distance_squared(child_front)
     }
 
-    /// Checks the state after a step against the [`HealthLimits`] and returns its speeds and distances.
+    /// Checks the state after a step against the [`HealthLimits`] and returns the speeds and distances of this state.
     pub(super) fn check_health(&self) -> Result<Effort, Disqualification> {
         let mut seen = Effort::default();
         // Rapier rolls back a body with a non-finite state, and reports the body in its quarantine.

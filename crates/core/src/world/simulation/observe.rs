@@ -26,7 +26,7 @@ pub struct JointState {
 pub struct ContactForce {
     /// Index of the limb; the head is 0.
     pub limb: usize,
-    /// Point of contact in the world, in metres.
+    /// Place of the point of contact in the world, in metres.
     pub at_m: Vector,
     /// Force on the limb, in N: the sum of normal force and friction.
     pub force_n: Vector,

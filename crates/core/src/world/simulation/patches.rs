@@ -59,9 +59,9 @@ pub struct SurfaceDamping {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct SolvedVelocity {
     centre_m: Vector,
-    /// Linear velocity, in m/s.
+    /// Linear velocity of the limb's centre, in m/s.
     linear: Vector,
-    /// Angular velocity, in rad/s.
+    /// Angular velocity of the limb, in rad/s.
     angular: Vector,
 }
 

@@ -242,7 +242,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
     };
     assert!(stretch_m(0.0, 50.0).abs() < 0.001, "rigid");
     for (cfm_m_s_per_n, pull_n) in [(0.01, 50.0), (0.01, 100.0), (0.03, 50.0)] {
-        // kp = ERP / (h CFM) with an ERP of 0.2 and 60 steps a second.
+        // The stiffness is kp = ERP / (h CFM) with an ERP of 0.2 and 60 steps per second.
         let expected_m = pull_n / (0.2 * 60.0 / cfm_m_s_per_n);
         let found_m = stretch_m(cfm_m_s_per_n, pull_n);
         assert!((found_m / expected_m - 1.0).abs() < 0.03, "{found_m} m for {expected_m} m");
@@ -312,7 +312,7 @@ fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
     let [front, rear] = [simulation.parts[0], simulation.parts[1]];
     simulation.physics_mut().bodies[front].set_body_type(RigidBodyType::Fixed, true);
-    // Down is backwards along the snake, so that straight is at rest.
+    // Gravity points backwards along the snake, so that the straight snake is at rest.
     simulation.physics.gravity = Vector::new(0.0, -9.81, 0.0);
     let speed = 0.2;
     simulation.physics_mut().bodies[rear].set_angvel(Vector::new(speed, 0.0, 0.0), true);
@@ -330,7 +330,7 @@ fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     }
     let swings = crossings_s.len() as f32 - 1.0;
     let found_s = (crossings_s[crossings_s.len() - 1] - crossings_s[0]) / swings;
-    // T = 2 pi sqrt(I / (m g d)), I = m (l² + h²) / 12 + m d², for small swings.
+    // For small swings, the period is T = 2 pi sqrt(I / (m g d)) with I = m (l² + h²) / 12 + m d².
     let limb = &plan.body.parts[1];
     let own = (limb.length_m * limb.length_m + limb.height_m * limb.height_m) / 12.0;
     let expected_s = std::f32::consts::TAU * ((own + lever * lever) / (9.81 * lever)).sqrt();

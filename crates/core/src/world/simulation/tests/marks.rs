@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Steps before and after the middle of the test.
+/// Number of steps before the middle of the test, and after it.
 const STEPS: usize = 200;
 
 /// Returns the poses after each step of a snake that bends and twists at the stairs, under another plan from the middle on. If `marked`,

@@ -44,7 +44,7 @@ fn in_air_a_torque_turns_a_limb_at_torque_over_damping() {
             let mut simulation = floating_pair(physics, damping_per_s, 0.0);
             let torque = JointTorque { bend_nm: 0.0, twist_nm: 0.2 };
             run_with(&mut simulation, torque, (8.0 / damping_per_s).max(0.5));
-            // The joint turns at twice the rate of each limb of I = m (width² + height²) / 12 = 5/6 kg m².
+            // The joint turns at twice the rate of each limb, whose I = m (width² + height²) / 12 = 5/6 kg m².
             let expected = 2.0 * 0.2 / (damping_per_s * 5.0 / 6.0);
             let rate = simulation.joint_states().next().expect("a joint").twist_rad_s;
             assert_close(rate, expected, tolerance, case);
@@ -124,7 +124,7 @@ fn joint_damping_slows_a_joint_at_its_rate() {
             twist(&mut simulation, 1.0);
             run_with(&mut simulation, JointTorque::default(), 0.1);
             let found = simulation.physics.bodies[simulation.parts[0]].angvel().y;
-            // The joint rate is 2 w and the torque on each limb c * 2 w: w decays with exp(-2 c t / I).
+            // The joint rate is 2 w and the torque on each limb c * 2 w, so w decays with exp(-2 c t / I).
             let expected = libm::expf(-2.0 * damping * 0.1 / (5.0 / 6.0));
             assert_close(found, expected, 0.02, case);
         }
@@ -253,7 +253,7 @@ fn an_impact_bounces_from_the_bounce_velocity_on() {
             });
             speeds.fold(0.0, f32::max)
         };
-        // A fall of 1 m ends at sqrt(2 g) = 4.43 m/s.
+        // A fall of 1 m ends at a speed of sqrt(2 g) = 4.43 m/s.
         let impact_m_s = libm::sqrtf(2.0 * 9.81);
         for bounce_velocity_m_s in [0.0, impact_m_s * 0.95] {
             assert_close(rebound_m_s(bounce_velocity_m_s), 0.8 * impact_m_s, 0.05, case);

@@ -11,7 +11,7 @@ const LENGTH_M: f32 = 2.0;
 const LENGTH_CUBED: f32 = LENGTH_M * LENGTH_M * LENGTH_M;
 /// Second moment of area of the cross-section, in m⁴.
 const AREA_MOMENT_M4: f32 = 1.0 / 12.0;
-/// Mass per length, in kg/m.
+/// Mass of the limb per length, in kg/m.
 const LINE_KG_M: f32 = 2.5;
 
 /// Returns a snake of one limb of this bending stiffness, in N·m², without gravity.

@@ -49,7 +49,7 @@ fn a_block_slides_only_past_the_friction_angle() {
         };
         let held_m = slid_m(friction * 0.97);
         assert!(held_m.abs() < 0.005, "friction {friction}: held, but moved {held_m} m");
-        // s = g (sin a - friction cos a) t² / 2
+        // The block slides s = g (sin a - friction cos a) t² / 2.
         let tangent = friction * 1.1;
         let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
         let expected_m = 9.81 * (tangent - friction) * cosine * 2.0;
@@ -69,7 +69,7 @@ fn a_dropped_block_rebounds_to_the_square_of_its_bounce() {
 
 in_both_engines!(an_impact_below_the_bounce_velocity_does_not_rebound);
 fn an_impact_below_the_bounce_velocity_does_not_rebound() {
-    // A fall of 1 m ends at sqrt(2 g) = 4.43 m/s.
+    // A fall of 1 m ends at a speed of sqrt(2 g) = 4.43 m/s.
     let rebound_m = |bounce_velocity_m_s| {
         rebound_m(Surface { bounce: 0.8, bounce_velocity_m_s, ..Default::default() }, 1.0)
     };
@@ -176,7 +176,7 @@ fn dampen_halves_a_sliding_blocks_speed_in_the_computed_time() {
         let mut simulation = Simulation::new(&block(surface));
         run(&mut simulation, 0.5);
         body(&mut simulation).set_linvel(Vector::new(0.0, 2.0, 0.0), true);
-        // exp(-dampen t) = 1/2
+        // Half the speed is left when exp(-dampen t) = 1/2.
         let half_life_s = libm::logf(2.0) / dampen_per_s;
         run(&mut simulation, half_life_s);
         let speed_m_s = body(&mut simulation).linvel().y;
