@@ -40,7 +40,7 @@ impl BodyGenes {
         nodes: Vec::new(),
     };
 
-    /// Whether these genes determine the blocks of the body. Otherwise the trial does.
+    /// Returns whether these genes determine the blocks of the body. Otherwise the trial does.
     pub fn has_own_blocks(&self) -> bool {
         !self.segments.is_empty() || self.is_branching()
     }

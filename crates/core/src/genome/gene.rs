@@ -148,7 +148,7 @@ impl Feature {
     }
 }
 
-/// The values that a gene may have.
+/// The range of values that a gene may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GeneRange<'a> {
     /// Only this value, which is a setting of the space that the genome carries.

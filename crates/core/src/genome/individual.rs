@@ -15,7 +15,7 @@ use crate::check::{Invalid, within};
 pub struct Genome {
     /// Genes of the body: the limits of the joints and the material, or a body of the individual's own.
     pub body: BodyGenes,
-    /// The genes that drive the joints.
+    /// Genes of the controller, which drives the joints.
     pub controller: ControllerGenes,
 }
 
@@ -50,7 +50,7 @@ impl Genome {
         }
     }
 
-    /// Number of genes.
+    /// Counts the genes.
     pub fn gene_count(&self) -> usize {
         let mut count = 0;
         self.clone().visit(&GenomeSpace::default(), |_, _| count += 1);

@@ -144,7 +144,7 @@ impl GenomeSpace {
     pub const CONTROLLER: Section =
         Section { title: "Controller", about: "How genes become torques." };
 
-    /// Whether joints can bend, and whether they can twist.
+    /// Returns whether joints can bend, and whether they can twist.
     pub(super) fn turning_axes(&self) -> [bool; 2] {
         if self.bodies.vary {
             let BodySpace { bend_limit_max_rad, twist_limit_max_rad, .. } = self.bodies;

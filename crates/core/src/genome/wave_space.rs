@@ -117,7 +117,7 @@ impl WaveSpace {
         genes.gene(field, name, SERVO_DAMPING, range, damping_nms_per_rad);
     }
 
-    /// The range of the servo's stiffness.
+    /// Returns the range of the servo's stiffness.
     pub(super) fn stiffnesses(&self) -> GeneRange<'static> {
         GeneRange::Between(self.stiffness_min_nm_per_rad, self.stiffness_max_nm_per_rad)
     }

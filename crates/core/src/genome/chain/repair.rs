@@ -8,7 +8,7 @@ use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
 
 /// Number of attempts to meet all limits by changing only sizes that exceed them.
 const PASSES: usize = 8;
-/// Relative tolerance of the volume.
+/// Relative tolerance of a body's total volume.
 const VOLUME_TOLERANCE: f64 = 1.0e-3;
 /// Number of steps from the wanted body to the plain one, which are tried if the attempts fail.
 const STEPS_TO_PLAIN: usize = 16;

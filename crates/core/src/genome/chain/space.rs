@@ -14,9 +14,9 @@ setting_group! {
     pub struct BodySpace {
         /// Whether each genome has a body of its own. Otherwise the trial determines the body.
         vary: bool = false;
-        /// Least number of blocks.
+        /// Least number of blocks of a body.
         limbs_min: u32 = 2;
-        /// Greatest number of blocks.
+        /// Greatest number of blocks of a body.
         limbs_max: u32 = MOST_SEGMENTS;
         /// Least length of a block, in metres.
         length_min_m: f32 = 0.4;
@@ -47,7 +47,7 @@ setting_group! {
         /// does not.
         #[serde(default = "usual_modulus_min_pa", skip_serializing_if = "is_usual_modulus_min")]
         modulus_min_pa: f32 = USUAL_MODULUS_PA[0];
-        /// Greatest Young's modulus of a block, in Pa. Blocks that are too stiff to bend are rigid.
+        /// Greatest Young's modulus of a block, in Pa. A block that is too stiff to bend is rigid.
         #[serde(default = "usual_modulus_max_pa", skip_serializing_if = "is_usual_modulus_max")]
         modulus_max_pa: f32 = USUAL_MODULUS_PA[1];
     }
@@ -218,27 +218,27 @@ impl BodySpace {
         self.limbs_min..=self.limbs_max
     }
 
-    /// The range of the length of a block or part.
+    /// Returns the range of the length of a block or part.
     pub(in crate::genome) fn lengths(&self) -> GeneRange<'static> {
         GeneRange::Ratio(self.length_min_m, self.length_max_m)
     }
 
-    /// The range of the width and the height of a block or part.
+    /// Returns the range of the width and the height of a block or part.
     pub(in crate::genome) fn thicknesses(&self) -> GeneRange<'static> {
         GeneRange::Ratio(self.thickness_min_m, self.thickness_max_m)
     }
 
-    /// The range of the bend limit of a joint.
+    /// Returns the range of the bend limit of a joint.
     pub(in crate::genome) fn bend_limits(&self) -> GeneRange<'static> {
         GeneRange::Between(self.bend_limit_min_rad, self.bend_limit_max_rad)
     }
 
-    /// The range of the twist limit of a joint.
+    /// Returns the range of the twist limit of a joint.
     pub(in crate::genome) fn twist_limits(&self) -> GeneRange<'static> {
         GeneRange::Between(self.twist_limit_min_rad, self.twist_limit_max_rad)
     }
 
-    /// The range of the strength of a joint.
+    /// Returns the range of the strength of a joint.
     pub(in crate::genome) fn strengths(&self) -> GeneRange<'static> {
         GeneRange::Between(self.strength_min, 1.0)
     }

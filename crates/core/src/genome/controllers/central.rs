@@ -21,7 +21,7 @@ pub const fn sense_count(joints: usize) -> usize {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CentralNetwork {
-    /// Number of joints.
+    /// Number of joints that the network drives.
     pub joints: u32,
     /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,

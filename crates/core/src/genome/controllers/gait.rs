@@ -19,7 +19,7 @@ pub struct Gait {
     pub stiffness_nm_per_rad: f32,
     /// Torque against the joint's rate, per rate, in N·m·s/rad.
     pub servo_damping_nms_per_rad: f32,
-    /// The target angles, in radians.
+    /// Waves of the target angles, in radians.
     pub waves: Waves,
 }
 

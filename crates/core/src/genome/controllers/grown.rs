@@ -32,7 +32,7 @@ pub const GROWN_INPUTS: [&str; 12] = [
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrownGenes {
-    /// Number of joints.
+    /// Number of joints that the network drives.
     pub joints: u32,
     /// Servos that turn the joints to their targets.
     pub servo: ServoGenes,

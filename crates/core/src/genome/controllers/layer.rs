@@ -23,7 +23,7 @@ impl Layer {
         Self { rows: vec![vec![0.0; inputs + 1]; neurons] }
     }
 
-    /// Number of neurons.
+    /// Returns the number of neurons.
     pub fn neurons(&self) -> usize {
         self.rows.len()
     }

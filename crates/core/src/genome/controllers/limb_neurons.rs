@@ -52,7 +52,7 @@ impl LimbNeurons {
         self.limbs.get(limb).or(self.limbs.first())
     }
 
-    /// Number of limbs.
+    /// Returns the number of limbs.
     pub fn limb_count(&self) -> usize {
         (self.joints as usize).saturating_add(1)
     }

@@ -65,7 +65,7 @@ use super::wave_space::{FREQUENCY, SERVO_DAMPING, STIFFNESS};
 use crate::check::{Invalid, within};
 use encoding::{ControllerEncoding, SettingNames};
 
-/// Makes the enum of all kinds of genes from one line for each kind.
+/// Generates the enum `ControllerGenes` and its match expressions from one line for each kind.
 macro_rules! registry {
     ($($(#[$doc:meta])* $kind:ident($genes:ty),)*) => {
         /// The genes of a controller. Champion files store these fields as they are.
@@ -103,7 +103,7 @@ macro_rules! registry {
 registry! {
     /// Free torque signals, as in the report: each point has a torque of its own, without a rule.
     Signal(TorqueSignals),
-    /// Periodic torques. The waves are in N·m.
+    /// Periodic torques, as waves in N·m.
     Wave(Waves),
     /// Periodic joint angles, followed by a servo.
     Gait(Gait),
@@ -113,15 +113,15 @@ registry! {
     Modular(ModularNetwork),
     /// One network for the whole snake.
     Central(CentralNetwork),
-    /// A continuous-time recurrent neural network.
+    /// A continuous-time recurrent neural network at each joint.
     Ctrnn(CtrnnGenes),
     /// Learned decisions among a few postures.
     Decisions(DecisionGenes),
-    /// Learned decisions of each joint about its bend.
+    /// Learned decisions of each joint among a few bends.
     JointDecisions(JointDecisionGenes),
     /// Rules that choose among waves.
     Rules(RuleGenes),
-    /// A network that grew.
+    /// A network that grew by mutations.
     Grown(GrownGenes),
     /// Neurons in the limbs.
     LimbNeurons(LimbNeurons),

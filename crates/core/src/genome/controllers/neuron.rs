@@ -30,7 +30,7 @@ pub struct LimbNeuron {
     pub inputs: [NeuronInput; NEURON_INPUTS],
 }
 
-/// An input of a neuron.
+/// An input of a neuron, with its weight.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NeuronInput {

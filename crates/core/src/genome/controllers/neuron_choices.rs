@@ -14,7 +14,7 @@ named_values! {
     pub enum NeuronKind {
         /// The output is always 0: the neuron is switched off.
         Off = "off";
-        /// The hyperbolic tangent of the sum.
+        /// The output is the hyperbolic tangent of the sum.
         Tanh = "tanh";
         /// The output is 1 for a sum of at least 0, otherwise 0: the neuron of McCulloch and Pitts, whose threshold is minus the bias.
         Step = "step";

@@ -8,7 +8,7 @@ use crate::schema::listed_values;
 const SMOOTH_S: f64 = 0.25;
 /// Largest absolute value of a neuron's output, and of its state.
 const LARGEST_OUTPUT: f64 = 10.0;
-/// Largest exponent, so that no output overflows.
+/// Largest absolute value of the exponent in `Expt`, so that the output does not overflow.
 const LARGEST_EXPONENT: f64 = 5.0;
 
 listed_values! {

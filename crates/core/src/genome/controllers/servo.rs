@@ -40,7 +40,7 @@ impl ServoGenes {
         self.twist_range_rad > 0.0
     }
 
-    /// Visits the genes.
+    /// Visits the genes of the servo.
     pub fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
         let twist_range_rad = Self::zeroed(space).twist_range_rad;
         self.genes_with((LIMIT, twist_range_rad), space, genes);

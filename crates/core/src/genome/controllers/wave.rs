@@ -40,7 +40,7 @@ pub struct Wave {
     pub harmonics: Vec<Harmonic>,
 }
 
-/// One term of a wave.
+/// One sine term of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Harmonic {

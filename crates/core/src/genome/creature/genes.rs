@@ -61,7 +61,7 @@ fn connection_genes(connection: &mut Connection, genes: &mut Genes<'_>) {
 }
 
 impl BodySpace {
-    /// Widens the space so that it contains a creature.
+    /// Widens the space so that it contains a creature with these nodes.
     pub(in crate::genome) fn widen_for_creature(&mut self, nodes: &[BodyNode]) {
         let grown = grow(nodes);
         grown.iter().for_each(|part| self.widen_sizes(part.size_m));

@@ -9,7 +9,7 @@ use crate::genome::controllers::{ControllerGenes, NodeNeurons, PartNeuron, PartN
 use crate::genome::individual::Genome;
 use crate::rng::{drawn, uniform};
 
-/// A node with its neurons.
+/// A node of the graph: the plan of a part, with the part's neurons.
 #[derive(Debug, Clone)]
 pub struct WholeNode {
     /// Plan of the node's part.

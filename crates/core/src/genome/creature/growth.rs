@@ -13,14 +13,14 @@ pub const MOST_DEPTH: usize = 6;
 /// Largest number of parts that grow from one part.
 const MOST_CHILDREN: usize = 3;
 
-/// A part that has grown.
+/// A part that has grown from a graph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GrownPart {
     /// Index of the node of which the part has grown.
     pub node: usize,
     /// Index of the part from which this part has grown; `None` for the first part.
     pub parent: Option<usize>,
-    /// Size across x, along y and along z, in metres.
+    /// Size of the part across x, along y and along z, in metres.
     pub size_m: [f32; 3],
     /// Place on the parent at which the joint holds the part.
     pub mount: Mount,

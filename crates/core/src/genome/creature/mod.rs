@@ -1,7 +1,7 @@
 //! Branching bodies after Sims (1994): a directed graph of nodes, which grows into a tree of parts.
 //!
-//! A node is a plan for a part, and a connection says where another part grows from it. A node may be reached several times,
-//! also from itself, so that a small graph can have many legs.
+//! A node is a plan for a part, and a connection tells where another part grows from it. Several connections may lead to a node, also from
+//! the node itself, so that a small graph can have many legs.
 
 mod check;
 mod genes;

@@ -12,7 +12,7 @@ pub const MOST_CONNECTIONS: usize = 3;
 /// Largest number of parts of one node along a path from the first part.
 pub const MOST_COPIES: u32 = 5;
 
-/// The plan of a part.
+/// The plan of a part of a creature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyNode {
@@ -26,7 +26,7 @@ pub struct BodyNode {
     pub density_kg_m3: f32,
     /// Axes about which the part's joint turns. For the first part, the joint has no effect until the node also grows from another part.
     pub joint: NodeJoint,
-    /// Largest bend to either side of the middle of the range, in radians.
+    /// Largest bend of the joint to either side of the middle of its range, in radians.
     pub bend_limit_rad: f32,
     /// Largest twist to either side of the middle of the range, in radians.
     pub twist_limit_rad: f32,
@@ -49,7 +49,7 @@ named_values! {
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum NodeJoint {
-        /// No axis: the joint holds the part in its place.
+        /// The joint has no axis and holds the part in its place.
         Rigid = "rigid";
         /// The joint bends.
         Revolute = "revolute";
@@ -61,7 +61,7 @@ named_values! {
 }
 
 listed_values! {
-    /// A side of a part.
+    /// The side of a part from which another part grows.
     #[derive(Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum BodySide {

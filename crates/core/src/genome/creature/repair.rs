@@ -9,7 +9,7 @@ use crate::genome::space::GenomeSpace;
 
 /// Number of attempts to meet the limits by changing only sizes that exceed them, before all parts become equal cubes.
 const PASSES: usize = 12;
-/// Relative tolerance of the volume.
+/// Relative tolerance of a body's total volume.
 const VOLUME_TOLERANCE: f64 = 1.0e-3;
 
 fn volume_m3(grown: &[GrownPart]) -> f64 {

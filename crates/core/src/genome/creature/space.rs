@@ -18,7 +18,7 @@ setting_group! {
                 .hint("Smallest number of parts that a creature may have")
                 .slider(2.0, 7.0);
 
-        /// Greatest number of parts.
+        /// Greatest number of parts of a creature.
         parts_max: u32 = MOST_PARTS as u32,
             whole("Maximum parts", 2..=MOST_PARTS as u32)
                 .hint("Largest number of parts that a creature may have")

@@ -30,7 +30,7 @@ setting_group! {
         /// Greatest relative deviation of a tread from the mean.
         tread_noise: f32 = 0.0,
             number("Irregular treads", NOISES).hint("Greatest relative deviation of a tread from the mean");
-        /// Seed of the deviations.
+        /// Seed of the deviations from the mean step.
         noise_seed: u32 = 0,
             whole("Seed of the irregularities", NOISE_SEEDS).hint("Another seed gives other deviations");
         /// How far each tread overhangs its riser, in metres; at most half of the shallowest flat tread.
@@ -42,7 +42,8 @@ setting_group! {
         /// Share of each tread, from 0 to 1, that is a ramp leading up to it; 0 makes vertical risers.
         ramp: f32 = 0.0,
             number("Ramp", 0.0..=1.0).hint("How much of each tread is a ramp that leads up to it");
-        /// Number of the step whose tread is a landing of [`LANDING_M`] or more; the lowest is 1, and 0 means none.
+        /// Number of the step whose tread is an intermediate landing of [`LANDING_M`] or more; the lowest step is 1, and 0 means no
+        /// landing.
         landing: u32 = 0,
             whole("Landing", 0..=20).hint("Number of the step that is a landing on the way; 0 for none");
         /// Number of the missing step: from the second step to the last but one of those that lead up; 0 means none.

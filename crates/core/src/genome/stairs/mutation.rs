@@ -23,7 +23,7 @@ const FEATURE_CHANGE: f64 = 0.15;
 /// Number of attempts to draw a change that is allowed.
 const ATTEMPTS: u32 = 50;
 
-/// How a staircase mutates.
+/// The size and the kinds of a staircase's mutation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StairsChange {
     /// Factor on the greatest step of each number.

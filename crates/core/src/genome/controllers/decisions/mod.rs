@@ -69,7 +69,7 @@ pub const SITUATION_BITS: [[&str; 2]; 10] = [
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DecisionGenes {
-    /// Number of joints.
+    /// Number of joints that the postures bend.
     pub joints: u32,
     /// Servos of the joints. Their bend range is the angle of a full bend.
     pub servo: ServoGenes,
@@ -84,9 +84,9 @@ pub struct DecisionGenes {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Explorer {
-    /// Probability of a random posture.
+    /// Probability with which a decision takes a random posture.
     pub epsilon: f32,
-    /// Seed of the run.
+    /// Seed of the learning run.
     pub seed: u64,
     /// Generation of the individual.
     pub generation: u32,
