@@ -1,7 +1,7 @@
 //! Declares the parameters of a learner. The documentation, the default and the range of each are in one place.
 
 /// Declares a struct of parameters, in the order of files, with their defaults and a check of their ranges. A range may refer to other
-/// parameters by `*name`.
+/// parameters by `*name`. The documentation of a field ends with its range.
 ///
 /// ```text
 /// parameters! {

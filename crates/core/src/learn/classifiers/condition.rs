@@ -86,7 +86,7 @@ impl Condition {
         usize::from(self.length)
     }
 
-    /// Checks that the condition is about situations of `length` bits.
+    /// Checks that the condition is for situations of `length` bits.
     ///
     /// # Errors
     /// Returns an error if the condition has another length.

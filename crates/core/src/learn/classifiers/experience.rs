@@ -12,9 +12,9 @@ use crate::check::{Invalid, within};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedDecision {
-    /// The bits of the situation.
+    /// Bits of the situation in which the decision was taken.
     pub bits: u32,
-    /// The chosen action.
+    /// Index of the chosen action.
     pub action: u16,
     /// Reward between this decision and the next.
     pub reward: f32,
@@ -37,7 +37,7 @@ impl RecordedDecision {
     }
 }
 
-/// How an episode ended.
+/// The way in which an episode ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EpisodeEnd {
     /// The task ended for good: nothing could follow, so the return of the last action is its reward.

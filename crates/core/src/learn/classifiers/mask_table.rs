@@ -60,7 +60,7 @@ impl MaskTable {
         masks.into_iter().position(|((&care, &value), &action)| ((care, value), action) == sought)
     }
 
-    /// The action of a rule.
+    /// Returns the action of a rule.
     pub fn action(&self, index: usize) -> usize {
         usize::from(self.actions[index])
     }

@@ -5,7 +5,7 @@ use rand::RngExt;
 
 use super::chance::first_largest;
 
-/// How a learner chooses its action.
+/// The way in which a learner chooses its action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ActionChoice {
     /// The action was chosen elsewhere; the learner only learns from it.

@@ -97,12 +97,12 @@ impl Xcs {
         sums.iter().map(PredictionSum::mean).collect()
     }
 
-    /// The rules in order of birth.
+    /// Returns the rules in order of birth.
     pub fn rules(&self) -> &[XcsRule] {
         &self.rules
     }
 
-    /// The parameters.
+    /// Returns the parameters of the system.
     pub fn settings(&self) -> &XcsSettings {
         &self.settings
     }
@@ -112,7 +112,7 @@ impl Xcs {
         self.situation_bits
     }
 
-    /// Number of actions.
+    /// Returns the number of actions.
     pub fn actions(&self) -> usize {
         self.actions
     }

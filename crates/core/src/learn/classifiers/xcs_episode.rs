@@ -27,10 +27,10 @@ pub struct XcsEpisode<'a> {
     report: ReplayReport,
 }
 
-/// The rules that advised the last action.
+/// The rules that advised the last action, with the data needed to update them.
 #[derive(Debug)]
 struct PendingActionSet {
-    /// The situation in which the action was taken.
+    /// Bits of the situation in which the action was taken.
     bits: u32,
     /// Indices of the rules, in ascending order.
     rules: Vec<usize>,

@@ -27,7 +27,7 @@ pub struct XcsRule {
     pub fitness: f32,
     /// exp: number of updates of the rule.
     pub experience: u32,
-    /// ts: the decision at which the genetic algorithm last ran in a set with this rule.
+    /// ts: number of the decision at which the genetic algorithm last ran in a set with this rule.
     pub time_stamp: u64,
     /// as: mean numerosity of the action sets that contained the rule.
     pub action_set_size: f32,

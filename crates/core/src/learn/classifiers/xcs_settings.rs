@@ -28,7 +28,7 @@ parameters! {
         crossover_share: f32 = 0.8, 0.0..=1.0;
         /// μ: probability that a symbol, or the action, mutates.
         mutation_share: f32 = 0.04, 0.0..=1.0;
-        /// θ_del: experience above which an unfit rule is deleted more readily.
+        /// θ_del: experience above which an unfit rule is deleted with a higher probability.
         deletion_experience: u32 = 20, 0..=u32::MAX;
         /// δ: share of the mean fitness below which a rule is unfit.
         deletion_fitness_share: f32 = 0.1, 0.0..=1.0;

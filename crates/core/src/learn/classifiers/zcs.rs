@@ -108,7 +108,7 @@ impl Zcs {
         self.rules.push(rule);
     }
 
-    /// The rules in order of birth.
+    /// Returns the rules in order of birth.
     pub fn rules(&self) -> &[ZcsRule] {
         &self.rules
     }
@@ -118,7 +118,7 @@ impl Zcs {
         self.situation_bits
     }
 
-    /// Number of actions.
+    /// Returns the number of actions.
     pub fn actions(&self) -> usize {
         self.actions
     }

@@ -15,7 +15,7 @@ use super::textbook::{ActionChoice, random_largest};
 use super::zcs::Zcs;
 use crate::check::Invalid;
 
-/// An episode in progress.
+/// An episode of ZCS in progress.
 #[derive(Debug)]
 pub struct ZcsEpisode<'a> {
     zcs: &'a mut Zcs,

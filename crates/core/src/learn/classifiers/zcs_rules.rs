@@ -18,7 +18,7 @@ parameters! {
         population: u32 = 400, 2..=MOST_RULES;
         /// P#: probability that a bit does not matter in a random rule, and in a rule made for a new situation.
         wildcard_share: f32 = 0.33, 0.0..=1.0;
-        /// S₀: strength of the first rules, in units of reward.
+        /// S₀: strength of the rules at the start, in units of reward.
         initial_strength: f32 = 20.0, 1.0e-6..=MOST_REWARD;
         /// β: share of its strength that a rule pays when its action is taken. It is also the factor with which a reward counts.
         learning_rate: f32 = 0.2, 0.001..=1.0;
@@ -32,12 +32,12 @@ parameters! {
         mutation_share: f32 = 0.002, 0.0..=1.0;
         /// ρ: probability that the genetic algorithm runs after a decision.
         ga_rate: f32 = 0.25, 0.0..=1.0;
-        /// φ: share of the mean strength of a rule. If the matching rules together are weaker, they count as no rule.
+        /// φ: share of the mean strength of all rules. If the matching rules together are weaker than this share, they count as none.
         covering_share: f32 = 0.5, 0.0..=1.0;
     }
 }
 
-/// A rule of ZCS.
+/// A rule of ZCS: in these situations, take this action.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ZcsRule {

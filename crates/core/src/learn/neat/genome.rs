@@ -25,7 +25,7 @@ pub const LARGEST_NUMBER: u32 = 1 << 30;
 pub struct NetworkGenome {
     /// Number of inputs, including a constant one.
     pub inputs: u16,
-    /// Number of outputs.
+    /// Number of outputs of the network.
     pub outputs: u16,
     /// Numbers from 0 to 1 that evolve together with the network. The caller determines their meaning.
     pub parameters: Vec<f32>,

@@ -5,7 +5,7 @@ use super::genome::NetworkGenome;
 /// Steepness of the activation 1 / (1 + exp(-4.9 x)) of Stanley & Miikkulainen 2002.
 pub const STEEPNESS: f64 = 4.9;
 
-/// A network with its activations.
+/// A network with the activations of its nodes.
 ///
 /// In each tick every node is computed from the inputs of this tick and the values of the other nodes in the last tick. Cycles are
 /// therefore allowed, and the order of nodes does not matter. A signal through d links needs d ticks.

@@ -86,7 +86,7 @@ impl NeatPopulation {
         })
     }
 
-    /// The genomes of this generation.
+    /// Returns the genomes of this generation.
     pub fn genomes(&self) -> &[NetworkGenome] {
         &self.genomes
     }

@@ -1,4 +1,4 @@
-//! The tasks of Stanley & Miikkulainen 2002.
+//! Tests with the published tasks of Stanley & Miikkulainen 2002.
 
 use super::genome::NetworkGenome;
 use super::play::NetworkPlay;

@@ -56,7 +56,7 @@ impl ActionValues {
         row(&self.visits, state, self.actions)
     }
 
-    /// Checks that the table has as many states and actions as its user.
+    /// Checks that the table has this number of states and of actions.
     ///
     /// # Errors
     ///

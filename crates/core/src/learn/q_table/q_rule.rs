@@ -17,7 +17,7 @@ parameters! {
         /// Power by which the learning rate decreases with the visits; 0 keeps it constant. Above 1, a table could converge to values far
         /// from the true ones.
         rate_power: f32 = 0.8, 0.0..=1.0;
-        /// The least learning rate.
+        /// Least learning rate.
         rate_floor: f32 = 0.05, 0.0..=1.0;
     }
 }

@@ -8,7 +8,7 @@ use crate::check::within;
 /// Largest absolute value of a reward that [`Transition::check`] accepts.
 pub const LARGEST_REWARD: f32 = 1e6;
 
-/// One action with its outcome.
+/// One action of an actor, with its outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Transition {
     /// State in which the action was chosen, from 0.
@@ -39,6 +39,7 @@ impl Transition {
     /// Checks every number against a table of `states` times `actions`.
     ///
     /// # Errors
+    /// Returns the first field that is not allowed.
     /// Returns the first field that is not allowed.
     pub fn check(&self, states: usize, actions: usize) -> Result<(), Invalid> {
         check_index("state", self.state as usize, states)?;

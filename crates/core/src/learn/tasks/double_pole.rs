@@ -20,7 +20,7 @@ const LARGEST_ANGLE_RAD: f64 = 36.0 * std::f64::consts::PI / 180.0;
 /// Usual scale of each number of the state for a controller.
 const SCALES: [f64; 6] = [4.8, 2.0, 0.52, 2.0, 0.52, 2.0];
 
-/// The cart and its poles.
+/// The state of the cart and its two poles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DoublePole {
     /// Position of the cart in m and its speed in m/s, then for the long and for the short pole the angle from upright in rad and its rate

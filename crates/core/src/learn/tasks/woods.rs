@@ -11,7 +11,7 @@ use rand::RngExt;
 pub const MOST_STEPS: u32 = 50;
 /// Reward of food.
 pub const FOOD: f32 = 1000.0;
-/// Number of actions.
+/// Number of actions: one per neighbouring cell.
 pub const DIRECTIONS: usize = 8;
 
 const WOODS1: [&str; 5] = [".....", ".OOF.", ".OOO.", ".OOO.", "....."];

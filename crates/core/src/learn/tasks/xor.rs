@@ -4,7 +4,7 @@
 pub const PATTERNS: [([f64; 2], f64); 4] =
     [([0.0, 0.0], 0.0), ([0.0, 1.0], 1.0), ([1.0, 0.0], 1.0), ([1.0, 1.0], 0.0)];
 
-/// How well a function computes exclusive or.
+/// The score of a function that should compute exclusive or.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct XorScore {
     /// (4 - e)², where e is the sum of the absolute errors of the four outputs; 16 is the best (Stanley & Miikkulainen 2002).
@@ -13,7 +13,7 @@ pub struct XorScore {
     pub is_solved: bool,
 }
 
-/// Scores a function from two inputs to an output in 0 to 1.
+/// Scores a function from two inputs to an output from 0 to 1.
 pub fn score(mut function: impl FnMut([f64; 2]) -> f64) -> XorScore {
     let (mut errors, mut is_solved) = (0.0, true);
     for (inputs, wanted) in PATTERNS {
