@@ -11,10 +11,10 @@ use crate::schema::{
 use crate::world::{BodyPlan, Elasticity, JointPlan, PartPlan, Skin, check_softness};
 
 setting_group! {
-    /// The properties of the snake that do not evolve. Sizes have one value per limb, the rest one per joint, from
-    /// the head, or one value for all.
+    /// The properties of the snake that do not evolve. Sizes have one value per limb from the head, other properties one per joint, or one
+    /// value for all.
     pub struct AgentSettings {
-        /// Number of limbs. The report has five.
+        /// Number of limbs. The report has five limbs.
         limbs: u32 = 5;
         /// Width of the limbs across x, in metres.
         limb_width_m: PerPart = 1.0.into();
@@ -22,50 +22,50 @@ setting_group! {
         limb_length_m: PerPart = 2.0.into();
         /// Height of the limbs, in metres.
         limb_height_m: PerPart = 1.0.into();
-        /// Density of the limbs, in kg/m³. None: it is each genome's own, and evolves.
+        /// Density of the limbs, in kg/m³. `None`: each genome has its own density, which evolves.
         density_kg_m3: Option<PerPart> = None;
-        /// Largest bend of the joints to either side, in radians. None: each genome's own.
+        /// Largest bend of the joints to either side, in radians. `None`: each genome has its own limit.
         bend_limit_rad: Option<PerPart> = None;
-        /// Largest twist of the joints to either side, in radians. None: each genome's own.
+        /// Largest twist of the joints to either side, in radians. `None`: each genome has its own limit.
         twist_limit_rad: Option<PerPart> = None;
         /// Largest torque on the joints' bend axes, in N·m.
         max_bend_torque_nm: PerPart = 1000.0.into();
         /// Largest torque on the joints' twist axes, in N·m.
         max_twist_torque_nm: PerPart = 1000.0.into();
-        /// Greatest sum of the torques of all joints of a body of its own about both axes, in N·m; a stronger body has all of
-        /// them reduced alike. That of the five blocks of the report by default.
+        /// Greatest sum of the torques of all joints about both axes, in N·m, for a body from the genome. In a stronger body, all torques
+        /// are reduced by one factor. The default is the sum of the report's five blocks.
         #[serde(default = "usual_torque_budget_nm", skip_serializing_if = "is_usual_torque_budget")]
         torque_budget_nm: f32 = USUAL_TORQUE_BUDGET_NM;
-        /// Torque that resists the joints' motion, in N·m·s/rad. Without it the motion is chaotic, and where a
-        /// child ends up says nothing about its parent.
+        /// Torque that resists the joints' motion, per joint rate, in N·m·s/rad. Without damping the motion is chaotic, and a child's
+        /// fitness hardly depends on its parent's.
         joint_damping_nms_per_rad: PerPart = 30.0.into();
-        /// Power that a joint axis takes to hold a torque of 1000 N·m, in W, moving or not. It grows with the square of the
-        /// torque, as the heat of an electric motor does.
+        /// Power that a joint axis takes for a torque of 1000 N·m, in W, whether the joint moves or not. It grows with the square of the
+        /// torque, like the heat of an electric motor.
         #[serde(default, skip_serializing_if = "is_default")]
         holding_power_w: f32 = 0.0;
         /// Constraint force mixing of the joints, in m/s per N: 0 is rigid, larger is softer.
         joint_cfm_m_s_per_n: PerPart = 0.0.into();
-        /// Young's modulus of the limbs' material, in Pa, which makes them soft. None: they are rigid, unless the genome has
-        /// limbs of its own, whose modulus may evolve.
+        /// Young's modulus of the limbs' material, in Pa, which makes the limbs soft. `None`: limbs are rigid, unless the genome
+        /// determines the limbs and their modulus.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         youngs_modulus_pa: Option<PerPart> = None;
-        /// Number of parts of a soft limb.
+        /// Number of parts into which a soft limb is cut.
         #[serde(default = "usual_soft_parts", skip_serializing_if = "are_usual_soft_parts")]
         soft_parts: u32 = USUAL_SOFT_PARTS;
         /// Damping of a soft limb's slowest vibration, as a share of the critical damping.
         #[serde(default = "usual_soft_damping", skip_serializing_if = "is_usual_soft_damping")]
         soft_damping_ratio: f32 = USUAL_SOFT_DAMPING;
-        /// Rate d at which the air slows a limb's rotation, in 1/s: exp(-d t) of it is left after the time t.
+        /// Rate d at which the air slows a limb's rotation, in 1/s: after a time t, the limb keeps exp(-d t) of its angular velocity.
         angular_damping_per_s: f32 = 2.0;
         /// The material of the limbs.
         skin: Skin = Skin::default();
-        /// The senses that work.
+        /// Senses that work.
         #[serde(default, skip_serializing_if = "is_default")]
         senses: ActiveSenses = ActiveSenses::default();
     }
 }
 
-/// Four joints with two axes of 1000 N·m each.
+/// Default torque budget: four joints with two axes of 1000 N·m each.
 const USUAL_TORQUE_BUDGET_NM: f32 = 8000.0;
 
 fn usual_torque_budget_nm() -> f32 {
@@ -76,7 +76,7 @@ fn is_usual_torque_budget(budget_nm: &f32) -> bool {
     *budget_nm == USUAL_TORQUE_BUDGET_NM
 }
 
-/// Three parts bend like a beam within 6 %, and cost little.
+/// Default number of parts of a soft limb. Three parts bend like a beam within 6 %, at little cost of time.
 const USUAL_SOFT_PARTS: u32 = 3;
 
 fn usual_soft_parts() -> u32 {
@@ -87,7 +87,7 @@ fn are_usual_soft_parts(parts: &u32) -> bool {
     *parts == USUAL_SOFT_PARTS
 }
 
-/// Like rubber foam: a limb comes to rest after a few vibrations.
+/// Default damping ratio, like that of rubber foam: a limb comes to rest after a few vibrations.
 const USUAL_SOFT_DAMPING: f32 = 0.3;
 
 fn usual_soft_damping() -> f32 {
@@ -127,12 +127,12 @@ impl SettingGroup for AgentSettings {
         walk.group("skin", skin);
         walk.section(Section { title: "Body", about: "Number, size and weight of the blocks." });
         settings! { walk,
-            // Two limbs make a joint; with more than twelve the snake is longer than the arena.
+            // The range begins with the two limbs of a single joint. With more than twelve limbs, the snake is longer than the arena.
             limbs: whole("Limbs", 2..=12)
                 .needs(Self::GIVEN_BODY)
                 .hint("Number of limbs (blocks) of the snake. Genomes for a different number do not fit")
                 .slider(2.0, 12.0);
-            // From a finger to a bus: the engine's tolerances are made for sizes around a metre.
+            // The range goes from a finger to a bus. The engine's tolerances are made for sizes around a metre.
             limb_width_m: per_part("Limb width", 0.1..=10.0, each_limb)
                 .needs(Self::GIVEN_BODY)
                 .unit("m")
@@ -157,7 +157,7 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(0.1, 50.0)
                 .logarithmic_from(0.1);
-            // At 1000 a spin is gone within a millisecond, as in tar.
+            // The range ends at 1000, at which rotation stops within a millisecond, as in tar.
             angular_damping_per_s: number("Angular damping", 0.0..=1000.0).advanced()
                 .unit("1/s")
                 .hint("Rate at which a block loses its spin, as in thick air")
@@ -207,7 +207,7 @@ impl SettingGroup for AgentSettings {
                      drawn from a list",
                 )
                 .slider(0.0, 3.0);
-            // A thousand times the report's torque; more would only disqualify.
+            // The range ends at a thousand times the torque of the report. A greater torque would only disqualify snakes.
             max_bend_torque_nm: per_part("Maximum bend torque", 0.0..=1.0e6, each_joint)
                 .unit("N·m")
                 .hint("How strongly a joint can bend. Larger torques from the controller are cut off")
@@ -221,7 +221,7 @@ impl SettingGroup for AgentSettings {
                 .hint("Greatest sum of the torques of all joints of an evolving body. A stronger body has all of them reduced")
                 .slider(100.0, 20_000.0)
                 .logarithmic_from(100.0);
-            // At 1e5 a torque of 1000 N·m turns a joint by half a degree a second.
+            // The range ends at 1e5, at which a torque of 1000 N·m turns a joint by half a degree per second.
             joint_damping_nms_per_rad: per_part("Joint damping", 0.0..=1.0e5, each_joint)
                 .unit("N·m·s/rad")
                 .hint(
@@ -230,7 +230,8 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(0.0, 500.0)
                 .logarithmic_from(1.0);
-            // Motors of robots this strong take some 100 W for it; at 10 kW eight axes take 20 times what the climber spends.
+            // Motors of robots with such torques take some 100 W to hold them. At the end of the range, 10 kW, eight axes take 20 times
+            // the power of the climber.
             holding_power_w: number("Holding power", 0.0..=10_000.0).advanced()
                 .unit("W")
                 .hint(
@@ -239,7 +240,7 @@ impl SettingGroup for AgentSettings {
                 )
                 .slider(0.0, 1000.0)
                 .logarithmic_from(1.0);
-            // At 0.1 m/s per N a report's snake comes apart under its own weight.
+            // The range ends at 0.1 m/s per N, at which the report's snake comes apart under its own weight.
             joint_cfm_m_s_per_n: per_part("Joint softness (CFM)", 0.0..=0.1, each_joint).advanced()
                 .unit("m/s per N")
                 .hint("0 is rigid; larger values let the joints give way under load")
@@ -252,34 +253,34 @@ impl SettingGroup for AgentSettings {
 }
 
 impl AgentSettings {
-    /// The section of the material of the limbs.
+    /// Section of settings for the material of the limbs.
     pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 
-    /// A body of the trial, which genomes with a body of their own replace.
+    /// Needed by settings of the body of the trial, which genomes with a body of their own ignore.
     pub const GIVEN_BODY: Need = Need("a body of the trial");
-    /// Bodies that evolve.
+    /// Needed by settings of bodies that evolve.
     pub const OWN_BODIES: Need = Need("bodies that evolve");
-    /// Soft limbs.
+    /// Needed by settings of soft limbs.
     pub const SOFT_LIMBS: Need = Need("soft limbs");
-    /// A controller that senses its surroundings.
+    /// Needed by settings of a controller that senses its surroundings.
     pub const SENSING: Need = Need("a controller that senses its surroundings");
 
-    /// Number of joints between the limbs.
+    /// Returns the number of joints between the limbs.
     pub fn joints(&self) -> usize {
         self.limbs.saturating_sub(1) as usize
     }
 
-    /// Power that a joint axis takes per square of its torque, in W/(N·m)².
+    /// Returns the power that a joint axis takes per square of its torque, in W/(N·m)².
     pub(super) fn holding_w_per_n2m2(&self) -> f32 {
         self.holding_power_w / 1.0e6
     }
 
-    /// Length of the straight snake, in metres: the same for every genome.
+    /// Returns the length of the straight snake, in metres, for genomes without a body of their own.
     pub fn length_m(&self) -> f32 {
         (0..self.limbs as usize).map(|limb| self.limb_length_m.at(limb)).sum()
     }
 
-    /// The body that these settings and a genome make together: the one place where both meet.
+    /// Builds the body from these settings and a genome. No other function combines the two.
     pub fn body_plan(&self, genome: &Genome) -> BodyPlan {
         if genome.body.is_branching() {
             return creature_body(self, &genome.body.nodes);
@@ -327,7 +328,7 @@ impl AgentSettings {
         }
     }
 
-    /// The elasticity of a limb with this modulus, in Pa.
+    /// Returns the elasticity of a limb with this modulus, in Pa.
     pub(super) fn elasticity(&self, youngs_modulus_pa: f32) -> Elasticity {
         Elasticity {
             youngs_modulus_pa,
@@ -336,11 +337,11 @@ impl AgentSettings {
         }
     }
 
-    /// Checks that limbs of the trial's sizes do not fold up under their own weight, with the greatest density that a genome
-    /// may have, in kg/m³, unless the trial sets it.
+    /// Checks that limbs with the sizes of the trial do not fold up under their own weight. `greatest_kg_m3` is the greatest density that
+    /// a genome may have, in kg/m³; it counts unless the trial sets the density.
     ///
     /// # Errors
-    /// A modulus is too small.
+    /// Returns the first modulus that is too small.
     pub fn check_softness(&self, greatest_kg_m3: f32) -> Result<(), Invalid> {
         let Some(modulus_pa) = &self.youngs_modulus_pa else { return Ok(()) };
         (0..self.limbs as usize).try_for_each(|limb| {

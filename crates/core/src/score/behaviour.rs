@@ -10,25 +10,25 @@ use crate::world::{Simulation, Stairs};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Behaviour {
-    /// Steps under the middle limb at the end: see [`Stairs::steps_under`].
+    /// Number of steps under the middle limb at the end: see [`Stairs::steps_under`].
     pub steps_climbed: u32,
     /// Mean height of the limbs' centres over the ground or tread below the middle limb, in m.
     pub mean_height_m: f32,
     /// Mean |x| of the middle limb's centre, in m.
     pub mean_sideways_m: f32,
-    /// Share of limbs that touch ground or stairs, from 0 to 1, on average.
+    /// Mean share of the limbs that touch ground or stairs, from 0 to 1.
     pub contact_duty: f32,
     /// Frequency at which the controller's motion repeats, in Hz.
     pub frequency_hz: f32,
-    /// Cost of transport: energy spent per weight and way, `E / (m g d)`, for the way d of the middle limb along the line
-    /// of the stairs, treads and rises. None without a way or a weight.
+    /// Cost of transport: energy spent per weight and distance, `E / (m g d)`, for the distance d of the middle limb along the line of the
+    /// stairs, treads and rises. `None` without a distance or a weight.
     #[serde(default)]
     pub cost_of_transport: Option<f32>,
-    /// Climbing efficiency: share of the energy spent that lifted the snake up the steps under its middle limb,
-    /// `m g Δz / E`. None without energy.
+    /// Climbing efficiency: share of the energy spent that lifted the snake up the steps under its middle limb, `m g Δz / E`. `None`
+    /// without energy.
     #[serde(default)]
     pub climbing_efficiency: Option<f32>,
-    /// How often the controller chose each wave of its library. None for a controller without one.
+    /// How often the controller chose each wave of its library; `None` for a controller without a library.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wave_uses: Option<WaveUses>,
 }
@@ -37,7 +37,7 @@ impl Behaviour {
     /// Checks every value that was read from a file.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(self) -> Result<(), Invalid> {
         within("steps_climbed", self.steps_climbed, 0..=1000)?;
         for (field, value) in [
@@ -54,20 +54,20 @@ impl Behaviour {
     }
 }
 
-/// Data about a moment of the rollout, from which its [`Behaviour`] is computed.
+/// Data at a moment of a rollout from which its [`Behaviour`] is computed.
 #[derive(Debug, Clone, Copy)]
 pub struct BehaviourMoment {
-    /// Position of the middle limb's centre, in m.
+    /// Position of the middle limb's centre at the moment, in m.
     pub middle_m: [f32; 3],
-    /// Its y at the start, in m.
+    /// y of the middle limb's centre at the start, in m.
     pub start_y_m: f32,
     /// Weight of the snake, in N.
     pub weight_n: f32,
-    /// Energy that the joints have spent, in J.
+    /// Energy that the joints have spent so far, in J.
     pub energy_j: f32,
-    /// Frequency of the controller, in Hz.
+    /// Frequency of the controller's motion, in Hz.
     pub frequency_hz: f32,
-    /// Uses of the waves of the controller's library.
+    /// How often each wave of the controller's library was chosen; `None` for a controller without a library.
     pub wave_uses: Option<WaveUses>,
 }
 
@@ -81,13 +81,13 @@ pub struct BehaviourObserver {
 }
 
 impl BehaviourObserver {
-    /// Takes in the state of the world after a healthy step.
+    /// Adds the state of the world after a healthy step.
     pub fn observe(&mut self, simulation: &Simulation, stairs: &Stairs) {
         let body = simulation.body();
         let (mut sum_z_m, mut middle) = (0.0, [0.0; 3]);
         for (index, pose) in simulation.poses().enumerate() {
             let at = pose.translation;
-            // Each limb counts alike, whatever its number of parts.
+            // All limbs have equal weight, whatever their numbers of parts.
             let parts = if body.springs.is_empty() {
                 1
             } else {
@@ -105,7 +105,7 @@ impl BehaviourObserver {
         self.steps += 1;
     }
 
-    /// The behaviour so far.
+    /// Returns the behaviour over the steps so far.
     pub fn behaviour(&self, stairs: &Stairs, moment: &BehaviourMoment) -> Behaviour {
         let &BehaviourMoment { middle_m, start_y_m, weight_n, energy_j, frequency_hz, wave_uses } =
             moment;
@@ -135,7 +135,7 @@ mod tests {
         let champion = crate::save::shipped_champion().expect("shipped").champion;
         let duty = |trial: &crate::score::Trial| {
             let mut rollout = crate::score::Rollout::new(&champion.genome, trial);
-            // It still lies on the ground with all limbs.
+            // The snake still lies on the ground with all limbs.
             (0..6).for_each(|_| assert!(rollout.advance()));
             rollout.evaluation().behaviour.expect("measured").contact_duty
         };
@@ -157,7 +157,7 @@ mod tests {
             };
             BehaviourObserver::default().behaviour(&Stairs::default(), &moment)
         };
-        // On the landing: 35 m forward and 5 m up.
+        // On the landing, the snake has moved 35 m forward and 5 m up.
         let landed = of([0.0, 28.0, 5.5], 16_000.0);
         assert_eq!(
             (landed.cost_of_transport, landed.climbing_efficiency),

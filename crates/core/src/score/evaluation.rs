@@ -1,4 +1,4 @@
-//! The result of a rollout.
+//! The evaluation of an individual: the result of its rollout.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,32 +9,32 @@ use crate::world::{Disqualification, Effort, Stairs};
 
 /// The result of a rollout.
 ///
-/// Files state a disqualification beside it, if at all.
+/// In files, a disqualification is stored beside the evaluation, not in it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluation {
-    /// The fitness by the trial's measure: see [`Fitness`](super::Fitness) for the unit. For a disqualified agent, the fitness
-    /// after its last healthy step.
+    /// Fitness by the trial's measure: see [`Fitness`](super::Fitness) for the unit. For a disqualified agent, it is the fitness after the
+    /// last healthy step.
     pub fitness: f32,
-    /// y of the middle limb's centre at the end, in metres, for every measure of fitness.
+    /// y of the middle limb's centre at the end, in metres, whatever the measure of fitness.
     pub centre_y_m: f32,
-    /// The reason of the disqualification, if there was one.
+    /// Reason of the disqualification; `None` for a healthy agent.
     #[serde(skip)]
     pub disqualified: Option<Disqualification>,
-    /// Healthy physics steps taken.
+    /// Number of healthy physics steps taken.
     pub steps: u32,
-    /// Hash (XXH3, 64 bits) over the bits of every limb's pose after every healthy step, the final
-    /// one included. Files have its 16 hexadecimal digits.
+    /// Hash (XXH3, 64 bits) over the bits of every part's pose after every healthy step, including the last. Files store it as 16
+    /// hexadecimal digits.
     #[serde(with = "hex_hash")]
     pub trace_hash: u64,
-    /// Energy, speeds and distances over these steps. `None` in records from before they were measured.
+    /// Energy, speeds and distances over the healthy steps. `None` in records without these measurements.
     pub effort: Option<Effort>,
-    /// Measures of the motion. `None` in records from before they were measured.
+    /// Measures of the motion. `None` in records without these measurements.
     pub behaviour: Option<Behaviour>,
 }
 
 impl Evaluation {
-    /// A healthy evaluation with this fitness, for tests.
+    /// Returns a healthy evaluation with this fitness, for tests.
     pub fn of_fitness(fitness: f32) -> Self {
         Self {
             fitness,
@@ -47,7 +47,7 @@ impl Evaluation {
         }
     }
 
-    /// The evaluation of an individual whose simulation panicked.
+    /// Returns the evaluation of an individual whose simulation panicked.
     pub fn void() -> Self {
         Self {
             fitness: 0.0,
@@ -63,7 +63,7 @@ impl Evaluation {
     /// Checks every value that was read from a file.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
         within("fitness", self.fitness, FITNESS_RANGE)?;
         within("centre_y_m", self.centre_y_m, -1.0e6..=1.0e6)?;
@@ -73,7 +73,7 @@ impl Evaluation {
         behaviour.map_err(|error| error.inside("behaviour"))
     }
 
-    /// Whether both have the same bits. A value that one of them lacks is not compared.
+    /// Returns whether both evaluations have the same bits. A value that one of them lacks is not compared.
     pub fn agrees_with(&self, other: &Self) -> bool {
         fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
             a.is_none() || b.is_none() || a == b
@@ -84,7 +84,7 @@ impl Evaluation {
             && agree(self.behaviour, other.behaviour)
     }
 
-    /// Whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
+    /// Returns whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.
     pub fn is_on_landing(&self, stairs: &Stairs) -> bool {
         let climbed = self.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
         self.disqualified.is_none() && stairs.steps > 0 && climbed == stairs.steps

@@ -1,4 +1,4 @@
-//! Examinations of a champion: the same genome in many other conditions than those in which it evolved.
+//! Exams of a champion: its genome in many other conditions than those in which it evolved.
 
 mod suites;
 
@@ -14,7 +14,7 @@ use crate::schema::{Choices, choices};
 use crate::world::Stairs;
 
 choices! {
-    /// A list of conditions for one ability.
+    /// A suite of an exam: a list of conditions that test one ability.
     #[derive(PartialOrd, Ord)]
     pub enum ExamSuite {
         Trials = "trials", "Varied trials",
@@ -41,15 +41,15 @@ choices! {
     }
 }
 
-/// One trial of a suite.
+/// One condition of a suite: a trial, and how the world deviates from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExamCondition {
-    /// The condition in a few words.
+    /// Description of the condition in a few words.
     pub label: String,
-    /// The trial, in all but the perturbation.
+    /// Trial of the condition, without the perturbation.
     pub trial: Trial,
-    /// How the world deviates from it.
+    /// Deviation of the world from the trial.
     pub perturbation: Perturbation,
 }
 
@@ -57,15 +57,14 @@ pub struct ExamCondition {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExamEnd {
-    /// Steps under the middle limb at the end; 0 after a disqualification.
+    /// Number of steps under the middle limb at the end; 0 after a disqualification.
     pub steps: u32,
-    /// Share of the way from the start to the landing that the middle limb covered, 0 to 1; 0 after a disqualification.
-    /// Beside the stairs only the way to the first riser counts.
+    /// Share of the distance from the start to the landing that the middle limb covered, 0 to 1; 0 after a disqualification. Beside the
+    /// stairs, only the distance to the first riser counts.
     pub way: f32,
-    /// When the middle limb was first on the landing, in s; none if it never was.
+    /// Time at which the middle limb was first on the landing, in s; `None` if it never was.
     pub landed_s: Option<f32>,
-    /// When the middles of all blocks had first been behind the last tread for half a second, in s; none if they never
-    /// were.
+    /// Time at which the centres of all blocks had first been behind the last tread for half a second, in s; `None` if they never were.
     pub arrived_s: Option<f32>,
     /// Whether the middle limb ended on the landing.
     pub has_landed: bool,
@@ -79,24 +78,24 @@ pub struct ExamEnd {
 pub struct SuiteResult {
     /// The suite.
     pub suite: ExamSuite,
-    /// Number of trials.
+    /// Number of trials of the suite.
     pub trials: u32,
     /// Number of trials that ended on the landing.
     pub landed: u32,
     /// Number of trials that were disqualified.
     pub disqualified: u32,
-    /// Median of the steps climbed.
+    /// Median of the numbers of steps climbed.
     pub median_steps: f32,
-    /// Share of its way in its own trial that the champion keeps: the median over the trials, or, for the few trials
-    /// of the step rates, the smallest.
+    /// Share of the distance in its own trial that the champion keeps: the median over the trials, or the smallest share for the suite of
+    /// step rates, which has few trials.
     pub kept: f32,
-    /// The share in each condition, for a suite of few conditions; of the held-out stairs the share of each class on which
-    /// it landed.
+    /// Label and share of each condition, for a suite of few conditions. For the held-out stairs: name of each class, and the share of its
+    /// staircases on which the champion landed.
     pub each: Vec<(String, f32)>,
 }
 
 impl ExamSuite {
-    /// The suites of an exam that names none: all but that of the other physics engine.
+    /// The suites of an exam without a list of suites: all but the one with the other physics engine.
     pub const USUAL: [Self; 7] = [
         Self::Trials,
         Self::StepRate,
@@ -107,10 +106,10 @@ impl ExamSuite {
         Self::HeldOut,
     ];
 
-    /// The suites of the 100 other stairs.
+    /// The suites with 100 other stairs.
     pub const OF_STAIRS: [Self; 2] = [Self::Stairs, Self::Lesion];
 
-    /// Whether the suite can say anything of a genome: senses that a controller does not use cannot be taken from it.
+    /// Returns whether the suite can test a genome. For instance, senses that a controller does not use cannot be switched off.
     pub fn concerns(self, genome: &Genome) -> bool {
         match self {
             Self::Lesion => genome.controller.kind().senses_surroundings(),
@@ -121,10 +120,10 @@ impl ExamSuite {
 }
 
 impl ExamCondition {
-    /// Checks every value.
+    /// Checks the trial and the perturbation.
     ///
     /// # Errors
-    /// A trial that is not allowed, or a perturbation that no exam has.
+    /// Returns an error for a trial that is not allowed, or a perturbation that no exam contains.
     pub fn check(&self) -> Result<(), Invalid> {
         self.trial.check().map_err(|error| error.inside("trial"))?;
         self.perturbation.check().map_err(|error| error.inside("perturbation"))
@@ -142,10 +141,10 @@ impl ExamEnd {
         is_disqualified: true,
     };
 
-    /// Checks every value.
+    /// Checks that every value is one with which a trial can end.
     ///
     /// # Errors
-    /// A value that no trial ends with.
+    /// Returns an error for a value with which no trial ends.
     pub fn check(&self) -> Result<(), Invalid> {
         within("steps", self.steps, 0..=1000)?;
         within("way", self.way, 0.0..=1.0)?;
@@ -156,12 +155,12 @@ impl ExamEnd {
         time("arrived_s", self.arrived_s)
     }
 
-    /// The share of the way to the landing with which an evaluation ended, 0 to 1; 0 after a disqualification.
+    /// Returns the share of the distance to the landing with which an evaluation ended, 0 to 1; 0 after a disqualification.
     pub fn way_of(evaluation: &Evaluation, trial: &Trial) -> f32 {
         Self::new(evaluation, &trial.stairs, trial.start_y_m).way
     }
 
-    /// Simulates a genome in a condition.
+    /// Simulates a genome in a condition and returns the end of the trial.
     pub fn of(genome: &Genome, condition: &ExamCondition) -> Self {
         let ExamCondition { trial, perturbation, .. } = condition;
         let mut rollout = Rollout::perturbed(genome, trial, perturbation);
@@ -180,7 +179,7 @@ impl ExamEnd {
         Self { landed_s, arrived_s, ..Self::new(&evaluation, rollout.stairs(), start_y_m) }
     }
 
-    /// The end of a simulated trial, without its times.
+    /// Describes the end of a simulated trial, without its times.
     fn new(evaluation: &Evaluation, stairs: &Stairs, start_y_m: f32) -> Self {
         let is_disqualified = evaluation.disqualified.is_some();
         let steps = match evaluation.behaviour {
@@ -201,7 +200,7 @@ impl ExamEnd {
         }
     }
 
-    /// The end of a healthy trial in which the middle limb came to lie at `middle_m`, in metres.
+    /// Describes the end of a healthy trial whose middle limb ended at `middle_m`, in metres.
     pub(super) fn at(middle_m: [f32; 3], stairs: &Stairs, start_y_m: f32) -> Self {
         let steps = stairs.steps_under(middle_m);
         Self {
@@ -215,12 +214,12 @@ impl ExamEnd {
     }
 }
 
-/// Share of the way from the start to the landing at the end of a trial, 0 to 1.
+/// Returns the share of the distance from the start to the landing that was covered at the end of a trial, 0 to 1.
 fn way(centre_y_m: f32, steps: u32, stairs: &Stairs, start_y_m: f32) -> f32 {
     let goal_y_m = stairs.landing_y_m();
     let most_y_m = if steps > 0 { goal_y_m } else { stairs.first_riser_y_m };
     let share = (centre_y_m.min(most_y_m) - start_y_m) / (goal_y_m - start_y_m);
-    // A start beyond the landing has no way.
+    // A start at or beyond the landing leaves no distance, and the share is 0.
     if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
 }
 
@@ -231,7 +230,7 @@ impl SuiteResult {
     /// Checks every value that was read from a file.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
         within("trials", self.trials, 1..=1_000_000)?;
         within("landed", self.landed, 0..=self.trials)?;
@@ -249,8 +248,8 @@ impl SuiteResult {
         Ok(())
     }
 
-    /// The result of a suite, given the end of the champion's own trial, undisturbed for as long as the suite's trials,
-    /// and the ends in the suite's conditions.
+    /// Computes the result of a suite. `own` is the end of the champion's own trial, undisturbed and as long as the suite's trials; `ends`
+    /// are the ends in the suite's conditions.
     pub fn of(
         suite: ExamSuite,
         own: &ExamEnd,
@@ -258,7 +257,7 @@ impl SuiteResult {
         ends: &[ExamEnd],
     ) -> Self {
         let landed = |end: &&ExamEnd| match suite {
-            // Some snakes walk off the landing again within the long trial.
+            // In the long trial, some snakes walk off the landing again, so landing in time counts instead of the end.
             ExamSuite::Shove => {
                 let latest_s = own.landed_s.map(|landed_s| landed_s + suites::RECOVERY_S);
                 let in_time = |(landed_s, latest_s)| landed_s <= latest_s;
@@ -277,7 +276,7 @@ impl SuiteResult {
                 labels.zip(ends.iter().map(share)).collect()
             }
             ExamSuite::HeldOut => {
-                // The conditions of a class follow one another.
+                // The conditions of each class are consecutive.
                 let each = ends.chunks(HELD_OUT_PER_CLASS as usize);
                 let share =
                     |of: &[ExamEnd]| of.iter().filter(landed).count() as f32 / of.len() as f32;
@@ -302,10 +301,10 @@ impl SuiteResult {
         }
     }
 
-    /// The result of an exam of the own engine against the other one. `ends` has the starts in the own engine, followed
-    /// by the same starts in the other. Counts and the median of steps are those of the other engine. `kept` is the
-    /// median of the way in the other engine as a share of the way from the same start in the own, over the starts from
-    /// which there is a way.
+    /// Computes the result of an exam in both engines. `ends` has the starts in the champion's own engine, followed by the same starts in
+    /// the other engine. Counts and the median of steps are those of the other engine. `kept` is the median, over the starts, of the
+    /// distance in the other engine as a share of the distance in the own engine. Starts without a distance in the own engine do not
+    /// count.
     fn between_engines(ends: &[ExamEnd]) -> Self {
         let (own, other) = ends.split_at(ends.len() / 2);
         let shares = own.iter().zip(other).filter(|(own, _)| own.way > 0.0);
@@ -320,8 +319,8 @@ impl SuiteResult {
         }
     }
 
-    /// The classes of the held-out stairs, each with the number of its staircases on which the champion landed and the
-    /// number of all; of other suites none.
+    /// Returns the classes of the held-out stairs, each with the number of staircases on which the champion landed and the number of all
+    /// its staircases; empty for other suites.
     pub fn classes(&self) -> Vec<(&str, u32, u32)> {
         if self.suite != ExamSuite::HeldOut {
             return Vec::new();
@@ -332,7 +331,7 @@ impl SuiteResult {
     }
 }
 
-/// Median; of an even number, the mean of the two middle ones; 0 of none.
+/// Returns the median; for an even number of values, the mean of the two middle ones; 0 without values.
 pub fn median(mut values: Vec<f32>) -> f32 {
     values.sort_by(f32::total_cmp);
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };

@@ -1,4 +1,4 @@
-//! The fitness measures: what a trial rewards.
+//! The measures of fitness: what a trial rewards.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -7,12 +7,12 @@ use super::way_up::{WayUp, mean_steps};
 use crate::schema::{Choices, choices};
 use crate::world::{BodyPlan, Pose, Stairs};
 
-/// Allowed range of a fitness in a file. Even with the highest cost of energy a fitness lies within it.
+/// Allowed range of a fitness in a file. Even with the highest cost of energy, a fitness lies within it.
 pub const FITNESS_RANGE: std::ops::RangeInclusive<f32> = -1.0e15..=1.0e15;
 
 choices! {
-    /// The measure by which a rollout is scored, in metres but for the count of steps. The report chose the first and
-    /// considered the next three.
+    /// The measure by which a rollout is scored, in metres except for the count of steps and the share. The report chose the first measure
+    /// and considered the next three.
     #[derive(Default)]
     pub enum Fitness {
         #[default]
@@ -22,29 +22,29 @@ choices! {
         Head = "head", "Head, y",
             "The y of the head at the end.\n\
              Unintended rewards: Stretching or throwing the head forward.";
-        /// A curled snake scores less than a straight one that did not get further.
+        /// The y of the centre of mass at the end. A curled snake scores less than a straight one that got as far.
         CentreOfMass = "centre_of_mass", "Centre of mass, y",
             "The y of the centre of mass at the end.\n\
              Unintended rewards: The same as with the centre; a curled snake scores less.";
         Height = "height", "Height",
             "The height of the middle block at the end.\n\
              Unintended rewards: Jumping and rearing on the spot.";
-        /// Where the snake ends does not count.
+        /// The furthest y of the middle limb at any time, wherever the snake ends.
         FurthestY = "furthest_y", "Furthest y",
             "The furthest y of the middle block at any time.\n\
              Unintended rewards: A leap that falls back.";
-        /// A step is climbed if the middle limb's centre is past the riser, over the tread, and within the width. All
-        /// snakes that have not reached the first step are equal.
+        /// The number of steps climbed. A step is climbed if the middle limb's centre is past the riser, over the tread, and within the
+        /// width. All snakes that have not climbed a step are equal.
         StepsClimbed = "steps_climbed", "Steps climbed",
             "The steps climbed at the end.\n\
              Unintended rewards: None, but there is no reward before the first step, so the search starts blindly.";
-        /// Beside, inside or behind the stairs y counts only up to the first riser; on the landing it counts up to where
-        /// the whole snake stands there.
+        /// The y of the middle limb's centre. Beside, inside or behind the stairs it counts only up to the first riser. On the landing it
+        /// counts up to the place where the whole snake stands on the landing.
         Climb = "climb", "Climb: y on the stairs",
             "The y of the middle block at the end. Beside the stairs, only the distance to the first riser counts.\n\
              Unintended rewards: A leap over the stairs in the last half second.";
-        /// The way of every limb along the stairs counts by its mass, so no body has an advantage by its length: 0 at the
-        /// start, 1 with all limbs on the landing. Who arrives early has up to 0.1 more.
+        /// The share of the stairs. The distance of every limb along the stairs counts by its mass, so no body has an advantage by its
+        /// length: 0 at the start, 1 with all limbs on the landing. An early arrival adds up to 0.1.
         Share = "share", "Share of the stairs",
             "The share of the way to the landing that the whole body has covered at the end, weighted by mass.\n\
              Unintended rewards: None known. Beside the stairs nothing counts, and a leap over untouched steps is capped.";
@@ -52,12 +52,12 @@ choices! {
 }
 
 impl Fitness {
-    /// The name in flags and files.
+    /// Returns the name in flags and files.
     pub fn name(self) -> &'static str {
         self.choice().name
     }
 
-    /// A short description, to follow "fitness: ".
+    /// Returns a short description, to follow "fitness: ".
     pub fn words(self) -> &'static str {
         match self {
             Self::Centre => "y of the middle block at the end",
@@ -73,8 +73,8 @@ impl Fitness {
         }
     }
 
-    /// The fitness of the scores of the last half second: their mean, for a count their least, and for the furthest place
-    /// the last one. None of none.
+    /// Computes the fitness from the scores of the last half second: their mean, but the least for a count of steps, and the last for the
+    /// furthest y. `None` without scores.
     pub(super) fn over(self, scores: &VecDeque<f32>) -> Option<f32> {
         match self {
             Self::FurthestY => scores.back().copied(),
@@ -86,17 +86,17 @@ impl Fitness {
         }
     }
 
-    /// Whether the measure is a position on the y axis.
+    /// Returns whether the measure is a position on the y axis.
     pub fn is_along_y(self) -> bool {
         !matches!(self, Self::Height | Self::StepsClimbed | Self::Share)
     }
 
-    /// The unit with a leading space, or nothing for a count or a share.
+    /// Returns the unit with a leading space, or an empty string for a count or a share.
     pub fn unit(self) -> &'static str {
         if matches!(self, Self::StepsClimbed | Self::Share) { "" } else { " m" }
     }
 
-    /// A fitness in words, with its unit.
+    /// Describes a fitness in words, with its unit.
     pub fn text(self, fitness: f32) -> String {
         match self {
             Self::StepsClimbed => format!("{fitness:.0} steps"),
@@ -112,28 +112,28 @@ impl fmt::Display for Fitness {
     }
 }
 
-/// The greatest score of [`Fitness::Climb`], in m: the middle of the body when all of it lies on the landing.
+/// Returns the greatest score of [`Fitness::Climb`], in m: the y of the body's middle when the whole body lies on the landing.
 pub fn arrived_y_m(stairs: &Stairs, body: &BodyPlan) -> f32 {
     stairs.landing_y_m() + body.length_m() / 2.0
 }
 
-/// State at the end of a rollout, from which every fitness is computed.
+/// The state of a rollout from which every measure of fitness is computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FinalState<'a> {
-    /// The built body.
+    /// Built body of the snake.
     pub body: &'a BodyPlan,
     /// Poses of the parts, from the head.
     pub poses: &'a [Pose],
-    /// The furthest y that the middle limb's centre had, in m.
+    /// Furthest y that the middle limb's centre has had, in m.
     pub furthest_y_m: f32,
-    /// The stairs.
+    /// The stairs of the trial.
     pub stairs: &'a Stairs,
-    /// The way here, on which [`Fitness::Share`] depends.
+    /// Progress of the body over the stairs so far, on which [`Fitness::Share`] depends.
     pub way: &'a WayUp,
 }
 
 impl FinalState<'_> {
-    /// The score.
+    /// Returns the score of this state by a measure of fitness.
     pub fn score(&self, fitness: Fitness) -> f32 {
         let middle = self.poses[self.body.middle_part].translation;
         match fitness {

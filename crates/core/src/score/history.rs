@@ -1,5 +1,4 @@
-//! A whole rollout, computed in advance: its torques, its path, and keyframes from which any moment of it is
-//! simulated again, bit for bit.
+//! A whole rollout, computed in advance: its torques, its path, and keyframes from which any moment is simulated again, bit for bit.
 
 use super::{Evaluation, Rollout, Trial};
 use crate::genome::Genome;
@@ -7,37 +6,37 @@ use crate::world::{JointTorque, Vector};
 
 /// A rollout from its start to its end, with keyframes for seeking.
 pub struct KeyframeHistory {
-    /// Rollouts held at [`Self::keyframe_steps`], 0 first.
+    /// Rollouts in intervals of [`Self::keyframe_steps`] steps, beginning with step 0.
     keyframes: Vec<Rollout>,
     keyframe_steps: u32,
     sample_steps: u32,
     joints: usize,
-    /// Torques of each sample, joint by joint.
+    /// Torques of each sample, one per joint.
     torques: Vec<JointTorque>,
-    /// Positions of the middle limb's centre, sample by sample, the start first.
+    /// Positions of the middle limb's centre in each sample, in metres, beginning with the start.
     middles_m: Vec<Vector>,
     landed_at_step: Option<u32>,
     touched_stairs_at_step: Option<u32>,
     evaluation: Evaluation,
 }
 
-/// Minimum number of steps between two keyframes. A quarter of a second at the report's 60 a second is
-/// simulated again within a millisecond.
+/// Minimum number of steps between two keyframes: a quarter of a second at the report's 60 steps per second, which is simulated again
+/// within a millisecond.
 const MIN_STEPS_BETWEEN_KEYFRAMES: u32 = 15;
-/// Maximum number of keyframes. Each holds a whole physics world in memory.
+/// Maximum number of keyframes. Each keyframe holds a whole physics world in memory.
 const MAX_KEYFRAMES: u32 = 60;
-/// Maximum number of samples. More cannot be told apart on a screen.
+/// Maximum number of samples. A screen could not show more of them separately.
 const MAX_SAMPLES: u32 = 6000;
 
 impl KeyframeHistory {
-    /// Runs a genome's rollout to its end. Both must have passed their checks. `goes_on` is called after every
-    /// step with the step's number; if it returns `false`, the result is `None`.
+    /// Runs a genome's rollout to its end. Genome and trial must have passed their checks. `goes_on` is called after every step with the
+    /// number of the step; if it returns `false`, the result is `None`.
     pub fn of(genome: &Genome, trial: &Trial, goes_on: impl FnMut(u32) -> bool) -> Option<Self> {
         Self::of_rollout(Rollout::new(genome, trial), goes_on)
     }
 
-    /// Runs a rollout from its start to its end. `goes_on` is called after every step with the step's number; if it
-    /// returns `false`, the result is `None`.
+    /// Runs a rollout from its start to its end. `goes_on` is called after every step with the number of the step; if it returns `false`,
+    /// the result is `None`.
     pub fn of_rollout(mut rollout: Rollout, mut goes_on: impl FnMut(u32) -> bool) -> Option<Self> {
         let steps = rollout.last_step();
         let keyframe_steps = steps.div_ceil(MAX_KEYFRAMES).max(MIN_STEPS_BETWEEN_KEYFRAMES);
@@ -78,7 +77,7 @@ impl KeyframeHistory {
         Some(history)
     }
 
-    /// The rollout after `step` healthy steps, or at its end if that comes before.
+    /// Returns the rollout after `step` healthy steps, or at its end if the end comes earlier.
     pub fn rollout_at(&self, step: u32) -> Rollout {
         let last = self.keyframes.len() - 1;
         let index = ((step / self.keyframe_steps) as usize).min(last);
@@ -87,47 +86,47 @@ impl KeyframeHistory {
         rollout
     }
 
-    /// Step of the last keyframe at or before `step`.
+    /// Returns the step of the last keyframe at or before `step`.
     pub fn keyframe_before(&self, step: u32) -> u32 {
         let last = self.keyframes.len() as u32 - 1;
         (step / self.keyframe_steps).min(last) * self.keyframe_steps
     }
 
-    /// The evaluation at the end of the rollout.
+    /// Returns the evaluation at the end of the rollout.
     pub fn evaluation(&self) -> &Evaluation {
         &self.evaluation
     }
 
-    /// Step after which the middle limb first stood on the landing, if it ever did.
+    /// Returns the step after which the middle limb first stood on the landing; `None` if it never did.
     pub fn landed_at_step(&self) -> Option<u32> {
         self.landed_at_step
     }
 
-    /// Step after which a limb first touched the stairs, if one ever did.
+    /// Returns the step after which a limb first touched the stairs; `None` if none ever did.
     pub fn touched_stairs_at_step(&self) -> Option<u32> {
         self.touched_stairs_at_step
     }
 
-    /// Physics steps from one sample to the next.
+    /// Returns the number of physics steps from one sample to the next.
     pub fn sample_steps(&self) -> u32 {
         self.sample_steps
     }
 
-    /// The torques on the joints, sample by sample: those of the step that begins there.
+    /// Returns the torques on the joints in each sample: those of the step that begins at the sample.
     pub fn torques(&self) -> impl ExactSizeIterator<Item = &[JointTorque]> {
         self.torques.chunks_exact(self.joints.max(1))
     }
 
-    /// Positions of the middle limb's centre, sample by sample, the start first, in metres.
+    /// Returns the positions of the middle limb's centre in each sample, in metres, beginning with the start.
     pub fn middles_m(&self) -> &[Vector] {
         &self.middles_m
     }
 }
 
-/// Distance before the first riser from which a contact is one with the stairs, in metres: limbs sink in a little.
+/// Distance before the first riser within which a contact counts as one with the stairs, in metres, because limbs sink in a little.
 const RISER_MARGIN_M: f32 = 0.02;
 
-/// Whether a limb touches the stairs now.
+/// Returns whether a limb touches the stairs now.
 fn touches_stairs(rollout: &Rollout) -> bool {
     let stairs = rollout.stairs();
     let is_on_stairs = |at_m: Vector| {
@@ -137,7 +136,7 @@ fn touches_stairs(rollout: &Rollout) -> bool {
             && at_m.y <= stairs.end_y_m()
             && at_m.x.abs() <= stairs.width_m / 2.0
     };
-    // Contacts are listed only where a limb is near the stairs, because listing them takes time.
+    // Contacts are listed only if a limb may be near the stairs, because listing them takes time.
     let reach_m = rollout.body().length_m();
     let is_near = rollout.middle_m().y >= stairs.first_riser_y_m - reach_m;
     is_near
@@ -154,7 +153,7 @@ mod tests {
         KeyframeHistory::of(genome, trial, |_| true).expect("not stopped")
     }
 
-    /// Every bit of the bodies' motion.
+    /// Returns every bit of the bodies' motion.
     fn state(rollout: &Rollout) -> Vec<[u32; 13]> {
         let bodies = rollout.simulation().physics().bodies.iter();
         bodies

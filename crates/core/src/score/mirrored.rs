@@ -1,14 +1,14 @@
-//! A rollout whose motion another engine computes: the controller feels that engine's limbs, and moves them.
+//! A rollout whose motion another engine computes. The controller senses and drives the limbs in this engine.
 
 use super::{ExamCondition, ExamEnd};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
 use crate::world::{JointTorque, LimbState, Simulation, WorldPlan};
 
-/// A champion's controller at work in another engine.
+/// A champion's controller that drives a snake in another engine.
 pub struct MirroredRollout {
     plan: WorldPlan,
-    /// Shows the state of the other engine to the senses.
+    /// World that mirrors the state of the other engine, from which the senses are read.
     world: Simulation,
     control: ControlLoop,
     torques: Vec<JointTorque>,
@@ -18,7 +18,7 @@ pub struct MirroredRollout {
 }
 
 impl MirroredRollout {
-    /// A genome before the first step in a condition. A shove is left out.
+    /// Prepares a rollout of a genome in a condition, before its first step. It ignores a shove.
     pub fn new(genome: &Genome, ExamCondition { trial, perturbation, .. }: &ExamCondition) -> Self {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
@@ -33,22 +33,22 @@ impl MirroredRollout {
         }
     }
 
-    /// The world that the other engine has to build.
+    /// Returns the plan of the world that the other engine has to build.
     pub fn plan(&self) -> &WorldPlan {
         &self.plan
     }
 
-    /// The state of the limbs at the start, or as it was last taken over.
+    /// Returns the mirroring world, with the state of the limbs at the start or as it was last copied.
     pub fn world(&self) -> &Simulation {
         &self.world
     }
 
-    /// Whether the trial's time is up or the snake is disqualified.
+    /// Returns whether the trial's time is up or the snake is disqualified.
     pub fn is_over(&self) -> bool {
         self.step >= self.last_step || self.is_disqualified
     }
 
-    /// The torques of the step that begins, one per joint, within the joints' limits.
+    /// Computes the torques of the step that begins, one per joint, clamped to the joints' limits.
     pub fn torques(&mut self) -> &[JointTorque] {
         self.control.act(self.step, &self.world, &mut self.torques);
         for (torque, joint) in self.torques.iter_mut().zip(&self.plan.body.joints) {
@@ -59,9 +59,9 @@ impl MirroredRollout {
         &self.torques
     }
 
-    /// Takes over the limbs after the step, head first. A limb that is faster than the trial allows or beyond the sideways or
-    /// backward limit, or a number that is not finite, disqualifies the snake. Gaps of joints and energy from nothing are
-    /// errors of this program's engine; another one has its own.
+    /// Copies the limbs after a step, head first. The snake is disqualified if a limb is faster than the trial allows or beyond the
+    /// sideways or backward limit, or if a number is not finite. Gaps of joints and energy from nothing are not checked, because they are
+    /// errors of this program's engine.
     pub fn take(&mut self, limbs: &[LimbState]) {
         let health = &self.plan.health;
         let is_healthy = |limb: &LimbState| {
@@ -81,12 +81,12 @@ impl MirroredRollout {
         }
     }
 
-    /// Ends the trial, because the other engine cannot go on.
+    /// Ends the trial with a disqualification, because the other engine cannot continue.
     pub fn disqualify(&mut self) {
         self.is_disqualified = true;
     }
 
-    /// How it ends, if it ends now. When it landed is not recorded.
+    /// Returns the end of the trial, if it ends now. The time of landing is not recorded.
     pub fn end(&self) -> ExamEnd {
         let middle = self.world.poses().nth(self.plan.body.middle_part);
         match middle {

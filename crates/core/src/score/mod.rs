@@ -1,8 +1,7 @@
-//! Scoring: a [`Trial`] defines place, duration and surfaces; a [`Rollout`] is one genome in such a trial;
-//! [`evaluate`] runs a rollout to its end.
+//! Scoring: a [`Trial`] defines place, duration and surfaces; a [`Rollout`] is one genome in a trial; [`evaluate`] runs a rollout to its
+//! end.
 //!
-//! This is the only scoring path. A headless run, the studio's stage, a replay and a test all advance the
-//! same [`Rollout`].
+//! There is no other way to score. A headless run, the studio's stage, a replay and a test all advance the same [`Rollout`].
 
 mod agent;
 mod behaviour;

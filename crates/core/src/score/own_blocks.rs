@@ -1,4 +1,4 @@
-//! Trials of bodies with blocks of their own, and a common body as such blocks.
+//! Trials of bodies with blocks in the genome, and the conversion of a common body to such blocks.
 
 use super::Trial;
 use crate::check::Invalid;
@@ -7,11 +7,10 @@ use crate::schema::PerPart;
 use crate::world::{BodyPlan, JointPlan};
 
 impl Trial {
-    /// Checks that bodies with blocks of their own can be evaluated: one value for the joints of all, and no softness of
-    /// joints and surfaces.
+    /// Checks that bodies with blocks in the genome can be evaluated: all joints have the same settings, and joints and surfaces are not
+    /// soft.
     ///
-    /// # Errors
-    /// The first setting that does not go with them.
+    /// Returns the first setting that does not fit.
     pub fn check_own_bodies(&self) -> Result<(), Invalid> {
         let agent = &self.agent;
         for (field, value) in [
@@ -26,7 +25,7 @@ impl Trial {
                 return Err(Invalid::new(field, value, "one value while bodies evolve"));
             }
         }
-        // The engine takes one mass for all soft joints and surfaces, and the masses of limbs differ.
+        // The engine computes the springs of all soft joints and surfaces for one mass, but the masses of evolving limbs differ.
         for (field, cfm) in [
             ("agent.joint_cfm_m_s_per_n", agent.joint_cfm_m_s_per_n.at(0)),
             ("surface.soft_cfm_m_s_per_n", self.surface.soft_cfm_m_s_per_n),
@@ -40,11 +39,10 @@ impl Trial {
         Ok(())
     }
 
-    /// A genome with the same body as blocks of its own: then every block can be changed by itself. A genome that has its
-    /// own blocks stays as it is.
+    /// Returns a genome with the same body as blocks in the genome, so that each block can change separately. A genome that already has
+    /// blocks stays as it is.
     ///
-    /// # Errors
-    /// The controller does not follow a changing body, a setting does not go with blocks of their own, or such blocks
+    /// Returns an error if the controller cannot follow a changing body, if a setting does not fit blocks in the genome, or if such blocks
     /// would have joints of another strength.
     pub fn with_own_blocks(&self, genome: &Genome) -> Result<Genome, Invalid> {
         let kind = genome.controller.kind();
@@ -61,7 +59,7 @@ impl Trial {
         }
         let body = self.agent.body_plan(genome);
         let segment = |index: usize| {
-            // The head's joint waits until a block comes before it.
+            // The genes of the head's joint have no effect until a block comes before the head, so they are copied from the first joint.
             let joint = body.joints.get(index.saturating_sub(1));
             let [width_m, length_m, height_m] = body.limb_size_m(index);
             Segment {

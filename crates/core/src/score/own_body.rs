@@ -1,14 +1,13 @@
-//! The built body of a genome with blocks of its own.
+//! The body of a genome that contains the blocks of its body.
 
 use super::AgentSettings;
 use crate::genome::{BodyNode, Segment, grow, grown_body};
 use crate::world::{BodyPlan, JointPlan, PartPlan, neighbours_pass};
 
-/// The body of some blocks, with the torques, the damping and the softness of the agent's joints.
+/// Builds the body of these blocks, with the torques, the damping and the softness of the agent's joints.
 ///
-/// Torque and damping of a joint grow with the cross-section of its weaker block, and with its height as the lever:
-/// `min(A1, A2) · min(h1, h2) / 1 m³`. That is 1 for the blocks of the report. The strength of a muscle grows with its
-/// cross-section (Sims 1994).
+/// Torque and damping of a joint grow with the cross-section of its weaker block, and with the block's height as the lever: `min(A1, A2) ·
+/// min(h1, h2) / 1 m³`. This factor is 1 for the blocks of the report. The strength of a muscle grows with its cross-section (Sims 1994).
 pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan {
     let limb = |(limb, segment): (usize, &Segment)| PartPlan {
         limb,
@@ -49,7 +48,7 @@ pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan 
     })
 }
 
-/// The body of a creature: what grows from the nodes, with torques and damping by the same rule.
+/// Builds the body of a creature from the parts that grow from its nodes, with torques and damping that grow as in `own_body`.
 pub(super) fn creature_body(agent: &AgentSettings, nodes: &[BodyNode]) -> BodyPlan {
     let grown = grow(nodes);
     let mut body = grown_body(nodes, &grown);
@@ -71,13 +70,13 @@ pub(super) fn creature_body(agent: &AgentSettings, nodes: &[BodyNode]) -> BodyPl
     body
 }
 
-/// Torque and damping of the joint of two parts, relative to a joint of the report's blocks.
+/// Returns the torque and damping of the joint of two parts, relative to a joint of the report's blocks.
 fn strength_of([front, rear]: [&PartPlan; 2]) -> f32 {
     let section_m2 = (front.width_m * front.height_m).min(rear.width_m * rear.height_m);
     section_m2 * front.height_m.min(rear.height_m)
 }
 
-/// Reduces all torques alike, if their sum exceeds the budget in N·m.
+/// Reduces all torques by one factor if their sum exceeds the budget in N·m.
 fn keep_torque_budget(body: &mut BodyPlan, budget_nm: f32) {
     let sum_nm = body.torque_nm();
     if sum_nm > budget_nm {
@@ -89,7 +88,7 @@ fn keep_torque_budget(body: &mut BodyPlan, budget_nm: f32) {
     }
 }
 
-/// The neighbours of each short block, as pairs.
+/// Returns the pairs of neighbours of each short block.
 fn contact_free_pairs(limbs: &[PartPlan]) -> Vec<[usize; 2]> {
     let triples = limbs.windows(3).enumerate();
     triples
@@ -121,14 +120,14 @@ mod tests {
             "ends have no two neighbours"
         );
         assert_eq!(pairs(&[2.0, 0.5, 0.5, 2.0]), [[0, 2], [1, 3]]);
-        // The taller neighbour counts.
+        // The height of the taller neighbour counts.
         assert_eq!(
             contact_free_pairs(&[block(2.0, 0.4), block(0.7, 0.4), block(2.0, 1.5)]),
             [[0, 2]]
         );
     }
 
-    /// Torque and damping by the cross-section of the weaker block and its height; the gap by the smallest side.
+    /// Torque and damping depend on the cross-section of the weaker block and its height, the allowed gap on the smallest side.
     #[test]
     fn joints_are_as_strong_as_their_weaker_block() {
         let agent = AgentSettings { torque_budget_nm: f32::INFINITY, ..AgentSettings::default() };

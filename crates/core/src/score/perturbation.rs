@@ -10,50 +10,50 @@ use crate::schema::{check, choice, choices, is_default, number, setting_group};
 use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Stairs, Vector, WorldPlan};
 
 setting_group! {
-    /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal one.
+    /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal value.
     #[derive(Copy)]
     pub struct PerturbationRange {
-        /// Relative change of the friction of stairs and ground.
+        /// Maximum relative change of the friction of stairs and ground.
         friction: f32 = 0.2,
-            // No factor may become zero or negative.
+            // The range ends at 0.9, so that no factor becomes zero or negative.
             number("Friction variation", 0.0..=0.9)
                 .hint("Maximum relative change of friction: 0.2 is 20 % up or down")
                 .slider(0.0, 0.9);
 
-        /// Relative change of the height of the steps.
+        /// Maximum relative change of the height of the steps.
         rise: f32 = 0.1,
             number("Rise variation", 0.0..=0.9)
                 .hint("Maximum relative change of the steps' height: 0.1 is 10 % up or down")
                 .slider(0.0, 0.9);
 
-        /// Relative change of the density of the limbs.
+        /// Maximum relative change of the density of the limbs.
         density: f32 = 0.0,
             number("Density variation", 0.0..=0.9).advanced()
                 .hint("Maximum relative change of the limbs' density")
                 .slider(0.0, 0.9);
 
-        /// Shift of the start, along and across, in metres.
+        /// Maximum shift of the start along y and along x, in metres.
         start_m: f32 = 0.2,
             number("Start variation", 0.0..=5.0).advanced()
                 .unit("m")
                 .hint("Maximum shift of the start, along and across the stairs")
                 .slider(0.0, 2.0);
 
-        /// Turn of the snake at the start, in degrees.
+        /// Maximum turn of the snake at the start, in degrees.
         turn_deg: f32 = 5.0,
             number("Start direction variation", 0.0..=180.0).advanced()
                 .unit("°")
                 .hint("Maximum turn of the snake at the start, to either side")
                 .slider(0.0, 45.0);
 
-        /// Relative change of the depth of the steps.
+        /// Maximum relative change of the depth of the steps.
         #[serde(default, skip_serializing_if = "is_default")]
         tread: f32 = 0.0,
             number("Tread variation", 0.0..=0.9).advanced()
                 .hint("Maximum relative change of the steps' depth: 0.1 is 10 % up or down")
                 .slider(0.0, 0.9);
 
-        /// Relative change of the number of physics steps per second.
+        /// Maximum relative change of the number of physics steps per second.
         #[serde(default, skip_serializing_if = "is_default")]
         step_rate: f32 = 0.0,
             number("Step rate variation", 0.0..=0.9).advanced()
@@ -63,7 +63,7 @@ setting_group! {
                 )
                 .slider(0.0, 0.9);
 
-        /// Largest change of a limb's velocity by a shove, in m/s.
+        /// Largest change of a limb's velocity by a shove, in m/s; 0 for no shove.
         #[serde(default, skip_serializing_if = "is_default")]
         shove_m_s: f32 = 0.0,
             number("Shove", 0.0..=10.0).advanced()
@@ -74,7 +74,7 @@ setting_group! {
                 )
                 .slider(0.0, 5.0);
 
-        /// The stairs of the other trials.
+        /// Stairs of the perturbed trials.
         #[serde(default, skip_serializing_if = "is_default")]
         stairs: StairsVariation = StairsVariation::Own,
             choice("Stairs of the variations").advanced()
@@ -83,19 +83,19 @@ setting_group! {
 }
 
 choices! {
-    /// The stairs of perturbed trials.
+    /// Which stairs perturbed trials have.
     #[derive(Default)]
     pub enum StairsVariation {
         #[default]
         Own = "own", "Those of the trial", "The varied trials have the stairs of the trial, higher or deeper at most.";
-        /// See [`StairsGenome::random`].
+        /// Stairs drawn by [`StairsGenome::random`].
         Drawn = "drawn", "Any others",
             "Each varied trial has stairs of its own: equal, irregular, steep as in a house, or with nosing.";
     }
 }
 
 impl PerturbationRange {
-    /// Draws a perturbation of a trial of this length, in seconds, with this number of limbs.
+    /// Draws a perturbation of a trial of this length, in seconds, for a snake with this number of limbs.
     pub fn draw(&self, duration_s: f32, limbs: u32, rng: &mut ChaCha8Rng) -> Perturbation {
         let mut draw = |range: f32| rng.random_range(-range..=range);
         Perturbation {
@@ -117,7 +117,8 @@ impl PerturbationRange {
     }
 }
 
-/// Draws a shove of one of `limbs` limbs by `change_m_s` between two moments, in s: backwards, to either side or upwards.
+/// Draws a shove of one of `limbs` limbs by `change_m_s`, in m/s, between two moments, in s. Its direction is backwards, to either side or
+/// upwards.
 pub fn draw_shove(
     change_m_s: f32,
     [first_s, last_s]: [f32; 2],
@@ -131,7 +132,7 @@ pub fn draw_shove(
     Shove { limb, at_s, change_m_s: direction * change_m_s }
 }
 
-/// Deviation of one trial from the nominal one.
+/// The deviation of one trial from the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Perturbation {
@@ -149,16 +150,16 @@ pub struct Perturbation {
     pub turn_rad: f32,
     /// Factor on the depth of the steps.
     pub tread: f32,
-    /// Factor on the physics steps per second.
+    /// Factor on the number of physics steps per second.
     pub step_rate: f32,
-    /// A shove on the way.
+    /// Shove during the trial; `None` for no shove.
     pub shove: Option<Shove>,
-    /// Other stairs than those of the trial; the factors apply to them as well.
+    /// Stairs that replace those of the trial; the factors apply to them, too. `None`: the stairs of the trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stairs: Option<StairsGenome>,
 }
 
-/// No deviation.
+/// The perturbation that changes nothing.
 impl Default for Perturbation {
     fn default() -> Self {
         Self {
@@ -177,10 +178,10 @@ impl Default for Perturbation {
 }
 
 impl Perturbation {
-    /// Checks every value.
+    /// Checks that every value is in a range that perturbations can have.
     ///
     /// # Errors
-    /// A value that no range of perturbations can draw.
+    /// Returns an error for a value that no range of perturbations can draw.
     pub fn check(&self) -> Result<(), Invalid> {
         for (field, factor) in [
             ("friction", self.friction),
@@ -198,7 +199,7 @@ impl Perturbation {
         self.shove.map_or(Ok(()), |shove| shove.check().map_err(|error| error.inside("shove")))
     }
 
-    /// Applies the perturbation to a world, all but the shove.
+    /// Applies the perturbation to a world, except for the shove.
     pub fn apply(&self, plan: &mut WorldPlan) {
         plan.surface.friction *= self.friction;
         plan.ground.friction *= self.friction;
@@ -323,7 +324,7 @@ mod tests {
         assert_eq!(plain.poses(), shoved.poses());
         assert!(plain.advance() && shoved.advance());
         let up_m = shoved.middle_m().z - plain.middle_m().z;
-        // A step of 2 m/s, of which the joints take a part.
+        // The shove changes the velocity by 2 m/s, of which the joints take a part.
         assert!(up_m > 0.005, "{up_m} m higher");
     }
 }

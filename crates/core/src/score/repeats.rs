@@ -1,4 +1,4 @@
-//! Several trials per evaluation, all but the first perturbed, which rewards robust gaits.
+//! Several trials per evaluation. All but the first are perturbed, which rewards robust gaits.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -13,28 +13,28 @@ use crate::schema::{
 setting_group! {
     /// Number of trials per evaluation, and how they differ.
     pub struct Repeats {
-        /// Trials per evaluation. The first is the nominal one, the others are perturbed.
+        /// Number of trials per evaluation. The first trial is the nominal one, the others are perturbed.
         trials: u32 = 1;
-        /// Fitness of the evaluation, made from those of its trials.
+        /// How the fitness of the evaluation is made from those of its trials.
         counts: RepeatAggregate = RepeatAggregate::Mean;
-        /// Where the perturbations come from.
+        /// Source of the perturbations.
         #[serde(default, skip_serializing_if = "is_default")]
         list: PerturbationList = PerturbationList::Own;
-        /// Number of varied trials on which a run chooses its champion; 0: it chooses by the fitness alone. Not part of
-        /// an evaluation.
+        /// Number of varied trials by which a run chooses its champion; with 0, it chooses by the fitness alone. These trials are not a
+        /// part of an evaluation.
         #[serde(default, skip_serializing_if = "is_default")]
         champion_trials: u32 = 0;
-        /// Maximum perturbation of the other trials.
+        /// Maximum perturbation of the trials after the first.
         off: PerturbationRange = PerturbationRange::default();
-        /// Number of the list of a generation's perturbations, which its run draws; 0 for any other list. No user sets
-        /// it: a champion's file has the number of its generation.
+        /// Number of the list of a generation's perturbations, which its run draws; 0 for all other lists. Users do not set it: a
+        /// champion's file contains the number of its generation.
         #[serde(default, skip_serializing_if = "is_default")]
         list_number: u32 = 0;
     }
 }
 
 choices! {
-    /// How the fitness of an evaluation is made from those of its trials.
+    /// The rule by which the fitness of an evaluation is made from those of its trials.
     pub enum RepeatAggregate {
         Mean = "mean", "Mean", "All trials count equally.";
         Worst = "worst", "Worst", "A snake is as good as its worst trial.";
@@ -42,7 +42,7 @@ choices! {
 }
 
 choices! {
-    /// Where the perturbations of the repeated trials come from.
+    /// The source of the perturbations of the repeated trials.
     #[derive(Default)]
     pub enum PerturbationList {
         #[default]
@@ -63,7 +63,7 @@ impl SettingGroup for Repeats {
             about: "Several slightly different trials per snake favour robust motion.",
         });
         settings! { walk,
-            // A hundred trials of 15 s are a second and a half.
+            // The range ends at a hundred trials. With 15 s each, they take a second and a half.
             trials: whole("Trials per snake", 1..=100)
                 .hint("The first is exact, the others vary by the values below. Each trial takes additional time")
                 .slider(1.0, 10.0);
@@ -88,11 +88,11 @@ impl SettingGroup for Repeats {
     }
 }
 
-/// The greatest number of a list.
+/// Greatest number of a list of perturbations.
 const LARGEST_LIST_NUMBER: u32 = 0xff_ffff;
 
 impl Repeats {
-    /// The repeats of a generation of a run with this seed.
+    /// Returns the repeats for a generation of a run with this seed.
     #[must_use]
     pub fn in_generation(&self, seed: u64, generation: u32) -> Self {
         let list_number = match self.list {
@@ -104,7 +104,7 @@ impl Repeats {
         Self { list_number, ..self.clone() }
     }
 
-    /// The stream of perturbation number `number` of a genome with this hash.
+    /// Returns the stream of random numbers for perturbation number `number` of a genome with this hash.
     pub(super) fn stream(&self, genome_hash: u64, number: u32) -> ChaCha8Rng {
         match self.list {
             PerturbationList::Own => stream(genome_hash, 0, number, Purpose::Repeat),
@@ -117,7 +117,7 @@ impl Repeats {
 }
 
 impl RepeatAggregate {
-    /// The fitness of an evaluation whose trials have these fitnesses.
+    /// Computes the fitness of an evaluation from those of its trials.
     pub(super) fn of(self, fitnesses: &[f32]) -> f32 {
         match self {
             Self::Mean => {

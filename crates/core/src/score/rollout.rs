@@ -23,13 +23,13 @@ use crate::world::{
 };
 use continued::{Conditions, TrialChange};
 
-/// Time at the end of a trial over which a fitness counts, in s: a snake that is thrown up the stairs in the last instant
-/// has not climbed them.
+/// Time at the end of a trial whose scores make the fitness, in s. A snake that is thrown up the stairs in the last instant has not
+/// climbed them.
 const SCORED_S: f32 = 0.5;
 
-/// A rollout in progress. A clone continues with the bits of the original.
+/// A rollout in progress. A clone continues with the same bits as the original.
 ///
-/// A what-if changes its trial on the way: see [`Rollout::changing_at`].
+/// Its trial can change on the way, to show what would have happened: see [`Rollout::changing_at`].
 #[derive(Clone)]
 pub struct Rollout {
     simulation: Simulation,
@@ -37,16 +37,16 @@ pub struct Rollout {
     torques: Vec<JointTorque>,
     poses: Vec<Pose>,
     conditions: Arc<Conditions>,
-    /// The change of its conditions that is still to come.
+    /// Change of the trial that is still to come; `None` without one.
     change: Option<TrialChange>,
-    /// The shove that is still to come.
+    /// Shove that is still to come; `None` without one.
     shove: Option<Shove>,
     frequency_hz: f32,
     observer: BehaviourObserver,
     furthest_y_m: f32,
-    /// The way up, which is observed if the fitness depends on it.
+    /// Progress of the body over the stairs, which is observed if the fitness depends on it.
     way: WayUp,
-    /// The scores of the last [`SCORED_S`], the earliest first.
+    /// Scores of the last [`SCORED_S`], the earliest first.
     recent: VecDeque<f32>,
     trace: Xxh3Default,
     step: u32,
@@ -55,7 +55,7 @@ pub struct Rollout {
 }
 
 impl Rollout {
-    /// Builds the trial's world with the genome's body. Both must have passed their checks.
+    /// Builds the trial's world with the genome's body. Genome and trial must have passed their checks.
     pub fn new(genome: &Genome, trial: &Trial) -> Self {
         Self::in_world(genome, trial, trial.world_plan(genome))
     }
@@ -67,8 +67,7 @@ impl Rollout {
         perturbation.apply(&mut plan);
         let mut rollout = Self::in_world(genome, trial, plan);
         rollout.shove = perturbation.shove.map(|shove| {
-            // The limb was drawn for the number of limbs of the trial. A body of its own is shoved at the same share of its
-            // length.
+            // The limb was drawn for the number of limbs of the trial. A body from the genome is shoved at the same share of its length.
             let (own, drawn_for) = (rollout.body().limbs(), trial.agent.limbs.max(1) as usize);
             let is_own = genome.body.has_own_blocks();
             let limb = if is_own { shove.limb * own / drawn_for } else { shove.limb };
@@ -113,8 +112,8 @@ impl Rollout {
         self.take_step()
     }
 
-    /// Takes one step of each rollout, side by side, with the bits that each has alone. None of them is over, and all their worlds
-    /// have the same [`Simulation::common`].
+    /// Takes one step of each rollout, side by side, with the same bits as each alone. None of the rollouts may be over, and all their
+    /// worlds must have the same [`Simulation::common`].
     pub(crate) fn advance_together(rollouts: &mut [&mut Self], lock_step: &mut LockStep) {
         for rollout in rollouts.iter_mut() {
             rollout.enter_step();
@@ -130,14 +129,15 @@ impl Rollout {
         }
     }
 
-    /// Settings and sizes that its world must share with those beside which it advances; none if its engine takes each step alone.
+    /// Returns the settings and sizes that the world must have in common with those beside which it advances; `None` if its engine takes
+    /// each step alone.
     pub(crate) fn common(&self) -> Option<LanesCommon> {
         self.simulation.common()
     }
 
-    /// Takes one step, unless the rollout is over, with torques from outside instead of the genome's controller, one per
-    /// joint from the head; a joint without one is not driven. Returns whether it took a healthy step. The evaluation
-    /// then describes the controller outside.
+    /// Takes one step, unless the rollout is over, with torques from outside instead of those of the genome's controller, one per joint
+    /// from the head. A joint without a torque is not driven. Returns whether it took a healthy step. The evaluation then describes the
+    /// controller outside.
     pub fn advance_with(&mut self, torques: &[JointTorque]) -> bool {
         if self.is_over() {
             return false;
@@ -150,7 +150,7 @@ impl Rollout {
         self.take_step()
     }
 
-    /// Brings about what happens to the world before this step.
+    /// Applies changes and shoves that are due before this step.
     fn enter_step(&mut self) {
         self.enter_change();
         let now_s = self.time_s();
@@ -159,13 +159,13 @@ impl Rollout {
         }
     }
 
-    /// Steps the world with the torques of this step.
+    /// Steps the world with the torques of this step, and returns whether the step was healthy.
     fn take_step(&mut self) -> bool {
         let end = self.simulation.step(&self.torques);
         self.take_in_step(end)
     }
 
-    /// Takes in the result of a step.
+    /// Takes in the result of a step, and returns whether the step was healthy.
     fn take_in_step(&mut self, end: Result<(), Disqualification>) -> bool {
         if let Err(reason) = end {
             self.disqualified = Some(reason);
@@ -193,27 +193,27 @@ impl Rollout {
         true
     }
 
-    /// Whether the trial's time is up or the agent is disqualified.
+    /// Returns whether the trial's time is up or the agent is disqualified.
     pub fn is_over(&self) -> bool {
         self.step >= self.last_step() || self.disqualified.is_some()
     }
 
-    /// The poses of the parts after the last healthy step, from the head.
+    /// Returns the poses of the parts after the last healthy step, from the head.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
     }
 
-    /// Healthy steps taken so far.
+    /// Returns the number of healthy steps taken so far.
     pub fn step(&self) -> u32 {
         self.step
     }
 
-    /// Simulated time so far, in s.
+    /// Returns the simulated time so far, in s.
     pub fn time_s(&self) -> f32 {
         self.step as f32 * self.conditions.world.physics.step_s()
     }
 
-    /// The evaluation so far; after the end, the result.
+    /// Returns the evaluation of the steps so far; after the end, this is the result.
     pub fn evaluation(&self) -> Evaluation {
         let effort = self.simulation.effort();
         let middle = self.middle_m();
@@ -245,7 +245,7 @@ impl Rollout {
         }
     }
 
-    /// The score of the present state alone, by the trial's measure of fitness and without the cost of energy.
+    /// Returns the score of the present state alone, by the trial's measure of fitness and without the cost of energy.
     pub fn score(&self) -> f32 {
         let state = FinalState {
             body: self.body(),
@@ -257,7 +257,7 @@ impl Rollout {
         state.score(self.conditions.fitness)
     }
 
-    /// Remembers the score of the present state, and forgets those from more than [`SCORED_S`] ago.
+    /// Stores the score of the present state, and removes those from more than [`SCORED_S`] ago.
     fn remember_score(&mut self) {
         let scored = steps_in(SCORED_S, &self.conditions.world.physics) as usize;
         while self.recent.len() >= scored {
@@ -266,69 +266,70 @@ impl Rollout {
         self.recent.push_back(self.score());
     }
 
-    /// Sets or ends the user's pull on a limb, from the next step on. A pull disturbs the rollout for good: its
-    /// result no longer describes the genome.
+    /// Sets or ends the user's pull on a part, from the next step on. A pull disturbs the rollout for good: its result no longer describes
+    /// the genome.
     pub fn pull(&mut self, pull: Option<Pull>) {
         self.is_disturbed |= pull.is_some();
         self.simulation.pull(pull);
     }
 
-    /// Whether the user has pulled a limb.
+    /// Returns whether the user has pulled a part during the rollout.
     pub fn is_disturbed(&self) -> bool {
         self.is_disturbed
     }
 
-    /// Number of steps of the whole rollout, unless the agent is disqualified before.
+    /// Returns the number of steps of the whole rollout, unless the agent is disqualified earlier.
     pub fn last_step(&self) -> u32 {
-        // The last conditions decide.
+        // If the trial changes, the duration of the new trial counts.
         self.change.as_ref().map_or(self.conditions.last_step, TrialChange::last_step)
     }
 
-    /// The stairs on which the snake is now.
+    /// Returns the stairs of the present trial.
     pub fn stairs(&self) -> &Stairs {
         &self.conditions.world.stairs
     }
 
-    /// The built body.
+    /// Returns the built body.
     pub fn body(&self) -> &BodyPlan {
         self.simulation.body()
     }
 
-    /// Position of the middle limb's centre after the last healthy step, in metres.
+    /// Returns the position of the middle limb's centre after the last healthy step, in metres.
     pub fn middle_m(&self) -> Vector {
         self.poses[self.body().middle_part].translation
     }
 
-    /// Whether all steps of the stairs are under the middle limb now.
+    /// Returns whether all steps of the stairs are under the middle limb now.
     pub fn is_on_landing(&self) -> bool {
         let steps = self.stairs().steps;
         steps > 0 && self.stairs().steps_under(self.middle_m().to_array()) == steps
     }
 
-    /// Ends the episode: the experience of a controller that learns from it. A disturbed rollout teaches nothing.
+    /// Ends the episode and returns the experience of a controller that learns from it. `None` for other controllers, and for a disturbed
+    /// rollout, from which nothing is learned.
     pub fn finish(&mut self) -> Option<Episode> {
         let is_disqualified = self.disqualified.is_some();
         let episode = self.control.finish(self.step, &self.simulation, is_disqualified);
         episode.filter(|_| !self.is_disturbed)
     }
 
-    /// The snake's perception before the last step; empty for a controller that does not sense its surroundings.
+    /// Returns the snake's perception before the last step; empty for a controller that does not sense its surroundings.
     pub fn perception(&self) -> &Perception {
         self.control.perception()
     }
 
-    /// The senses that work now.
+    /// Returns the senses that work now.
     pub fn active_senses(&self) -> ActiveSenses {
         self.control.active_senses()
     }
 
-    /// The activity of the controller at a joint, the first of which is 0; none before the first step, and for a
-    /// controller that has nothing to show.
+    /// Returns the activity of the controller at a joint; the first joint is 0. `None` before the first step, and for a controller that
+    /// has nothing to show.
     pub fn activity(&self, joint: usize) -> Option<Activity> {
         self.control.activity(joint)
     }
 
-    /// The world, for reading.
+    /// Gives read access to the world.
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }

@@ -7,31 +7,31 @@ use crate::genome::Genome;
 use crate::learn::Episode;
 use crate::world::{LANES, LanesCommon, LockStep};
 
-/// The outcome of scoring a genome.
+/// The result of scoring a genome.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scored {
-    /// The evaluation.
+    /// Evaluation of the genome.
     pub evaluation: Evaluation,
-    /// The experience of the nominal trial, of a controller that learns from it.
+    /// Experience of the nominal trial, for a controller that learns from it; otherwise `None`.
     pub episode: Option<Episode>,
 }
 
-/// A genome that is being scored: what its trials gave so far.
+/// A genome during its scoring, with the results of its trials so far.
 struct Scoring<'a> {
     genome: &'a Genome,
     trial: &'a Trial,
-    /// The result of the nominal trial, after its end.
+    /// Result of the nominal trial; `None` before its end.
     nominal: Option<Scored>,
-    /// The fitness of each trial that has ended; the nominal one is the first.
+    /// Fitness of each trial, beginning with the nominal one; `None` for a trial that has not ended.
     fitnesses: Vec<Option<f32>>,
 }
 
-/// One of its trials.
+/// A running trial of a genome.
 struct TrialRun {
-    /// Its number; the nominal one is 0.
+    /// Number of the trial; the nominal one is 0.
     number: u32,
     rollout: Rollout,
-    /// Fitness at its start.
+    /// Fitness at the start of the trial; only computed for perturbed trials.
     at_start: f32,
 }
 
@@ -54,14 +54,14 @@ impl<'a> Scoring<'a> {
         TrialRun { number, rollout, at_start }
     }
 
-    /// Takes in the end of a trial.
+    /// Takes in the result of a trial that has ended.
     fn take_in(&mut self, run: &mut TrialRun) {
         let evaluation = run.rollout.evaluation();
         if run.number == 0 {
             self.nominal = Some(Scored { evaluation, episode: run.rollout.finish() });
             self.fitnesses = vec![None; self.trial.simulations_of(&evaluation) as usize];
         }
-        // A disqualified trial scores at most its starting fitness. It may score less where energy costs.
+        // A disqualified trial scores at most its fitness at the start. With a cost of energy, it may score less.
         let fitness = if run.number > 0 && evaluation.disqualified.is_some() {
             run.at_start.min(evaluation.fitness)
         } else {
@@ -72,12 +72,13 @@ impl<'a> Scoring<'a> {
         }
     }
 
-    /// The perturbed trials, which are made if the nominal one ended well; to be asked for after its end.
+    /// Returns the numbers of the perturbed trials, which are made if the nominal trial ended without disqualification. It must be called
+    /// after the end of the nominal trial.
     fn perturbed(&self) -> std::ops::Range<u32> {
         1..self.fitnesses.len() as u32
     }
 
-    /// The outcome, after the end of all trials.
+    /// Returns the result after the end of all trials; `None` before.
     fn outcome(&self) -> Option<Scored> {
         let fitnesses: Vec<f32> = self.fitnesses.iter().copied().collect::<Option<_>>()?;
         let nominal = self.nominal.as_ref()?;
@@ -90,21 +91,21 @@ impl<'a> Scoring<'a> {
     }
 }
 
-/// Scores a genome: runs its rollout to the end, and then its perturbed trials, if the settings ask for them.
-/// Of these only the fitness counts: see [`super::Repeats`].
+/// Scores a genome: runs its nominal trial to the end, and then the perturbed trials that the settings demand. Of the perturbed trials,
+/// only the fitness counts: see [`super::Repeats`].
 ///
-/// The perturbations are derived from the genome's own bits, from a fixed seed, or from the number of a generation's list,
-/// which its trial holds. A champion's file is therefore enough to score it again.
+/// The perturbations are derived from the genome's own bits, from a fixed seed, or from the number of a generation's list, which the trial
+/// contains. A champion's file is therefore enough to score it again.
 pub fn score(genome: &Genome, trial: &Trial) -> Scored {
     let mut scored = Vec::with_capacity(1);
     score_together(&[(genome, trial)], || true, |_, found| scored.push(found));
-    // Each job is reported once.
+    // Each job is reported exactly once.
     scored.remove(0)
 }
 
-/// Scores several genomes, each in its trial, with the results of [`score`]; `report` gets each with its index, in the order in
-/// which they end. Where the physics engine takes steps of several snakes side by side, their trials run so. Before it begins a
-/// trial it asks `goes_on`, and ends without further results if that says no.
+/// Scores several genomes, each in its trial, with the same results as [`score`]. `report` gets each result with the index of its job, in
+/// the order in which the jobs end. If the physics engine can step several snakes side by side, their trials run side by side. Before each
+/// trial it calls `goes_on`, and returns without further results if that is false.
 pub fn score_together(
     jobs: &[(&Genome, &Trial)],
     mut goes_on: impl FnMut() -> bool,
@@ -119,7 +120,7 @@ pub fn score_together(
         while together.len() < LANES {
             let beside = together.first().map(|(_, run)| run.rollout.common());
             if beside == Some(None) {
-                // This engine takes each step alone.
+                // Rapier takes each step alone, so no second trial is added.
                 break;
             }
             if queue.is_empty() {
@@ -154,19 +155,19 @@ pub fn score_together(
     }
 }
 
-/// Trials that are still to be made.
+/// Trials that still have to run.
 struct TrialQueue {
-    /// Job, and number of the trial. Those of a genome follow its nominal one.
+    /// Index of the job and number of the trial. Perturbed trials are added after the nominal trial of their genome.
     waiting: VecDeque<(usize, u32)>,
-    /// Trials that have been built, and did not fit beside those that ran then.
+    /// Trials that have been built, but could not run beside the running trials.
     set_aside: Vec<(usize, TrialRun)>,
 }
 
-/// Maximum number of trials that are set aside.
+/// Maximum number of trials in `set_aside`.
 const MOST_SET_ASIDE: usize = 4 * LANES;
 
 impl TrialQueue {
-    /// The nominal trials of this number of jobs.
+    /// Creates a queue of the nominal trials of this number of jobs.
     fn of(jobs: usize) -> Self {
         let waiting = (0..jobs).map(|job| (job, 0)).collect();
         Self { waiting, set_aside: Vec::new() }
@@ -176,14 +177,15 @@ impl TrialQueue {
         self.waiting.is_empty() && self.set_aside.is_empty()
     }
 
-    /// Adds the perturbed trials of a genome, before other genomes, so that results come in about the order of the jobs.
+    /// Adds the perturbed trials of a genome, in front of other genomes, so that results come roughly in the order of the jobs.
     fn add_perturbed(&mut self, job: usize, scoring: &Scoring<'_>) {
         for number in scoring.perturbed().rev() {
             self.waiting.push_front((job, number));
         }
     }
 
-    /// The next trial that can run beside trials with this in common; any trial, if none runs.
+    /// Returns the next trial that can run beside trials with these common settings; `beside` is `None` if none runs, and then any trial
+    /// fits.
     fn next_beside(
         &mut self,
         beside: Option<Option<LanesCommon>>,
@@ -205,10 +207,10 @@ impl TrialQueue {
     }
 }
 
-/// Number of trials from which on a step of all lanes takes less time than a step of each alone.
+/// Least number of trials for which a step of all lanes takes less time than a step of each trial alone.
 const WORTH_A_LOCK_STEP: usize = 3;
 
-/// Advances trials by one step, or, in an engine that takes each step alone, to their ends.
+/// Advances trials by one step; in rapier, which takes each step alone, to their ends.
 fn advance(together: &mut [(usize, TrialRun)], lock_step: &mut LockStep) {
     let rollouts = together.iter_mut().map(|(_, run)| &mut run.rollout);
     let mut running: Vec<&mut Rollout> = rollouts.filter(|rollout| !rollout.is_over()).collect();
@@ -225,7 +227,7 @@ fn advance(together: &mut [(usize, TrialRun)], lock_step: &mut LockStep) {
     }
 }
 
-/// The evaluation of a genome: see [`score`].
+/// Returns the evaluation of a genome: see [`score`].
 pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
     score(genome, trial).evaluation
 }
@@ -238,7 +240,8 @@ mod tests {
     use crate::score::PerturbationList;
     use crate::world::PhysicsEngine;
 
-    /// Snakes of three and five limbs in lanes, on stairs in front of them; some are disqualified before their trials end.
+    /// Returns snakes of three and five limbs in the engine *lanes*, on stairs in front of them. Some are disqualified before their trials
+    /// end.
     fn jobs() -> Vec<(Genome, Trial)> {
         let job = |individual: u32| {
             let mut trial = Trial { duration_s: 2.0, ..Trial::default() };

@@ -1,4 +1,4 @@
-//! The exam on other stairs as a grid of rise and tread: how often a champion lands in each cell, and a typical trial.
+//! The exam on other stairs as a grid of rise and tread: how often a champion lands in each cell, and a typical trial of the cell.
 
 use super::{ExamCondition, ExamEnd, ExamSuite, Trial, median};
 
@@ -7,36 +7,36 @@ use super::{ExamCondition, ExamEnd, ExamSuite, Trial, median};
 pub struct StairsGrid {
     /// The suite.
     pub suite: ExamSuite,
-    /// The rises, ascending, in m.
+    /// Rises in ascending order, in m.
     pub rises_m: Vec<f32>,
-    /// The treads, ascending, in m.
+    /// Treads in ascending order, in m.
     pub treads_m: Vec<f32>,
-    /// The cells, by rise and then by tread; a combination without trials has none.
+    /// Cells, ordered by rise and then by tread. A combination without trials has no cell.
     pub cells: Vec<StairsCell>,
 }
 
-/// The trials on stairs of one rise and one tread, which differ in the place of the first riser.
+/// The trials on stairs with one rise and one tread. They differ in the place of the first riser.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StairsCell {
     /// Height of the steps, in m.
     pub rise_m: f32,
     /// Depth of the steps, in m.
     pub tread_m: f32,
-    /// Number of trials.
+    /// Number of trials in the cell.
     pub trials: u32,
-    /// Number of trials that ended on the landing.
+    /// Number of trials in the cell that ended on the landing.
     pub landed: u32,
-    /// Median of the steps climbed.
+    /// Median of the numbers of steps climbed in the cell's trials.
     pub median_steps: f32,
-    /// The trial that stands for the cell: it lands if most do, and of those its steps are nearest to the median; of
-    /// equal ones, its first riser is nearest to where the champion had it.
+    /// Typical trial of the cell. It ends on the landing if most trials do. Of these trials, its steps are nearest to the median; of equal
+    /// ones, its first riser is nearest to that of the champion's own trial.
     pub typical: Trial,
-    /// The end of that trial.
+    /// End of the typical trial.
     pub typical_end: ExamEnd,
 }
 
 impl StairsGrid {
-    /// The grid of a suite of a champion whose own trial is `own`, given the ends in the suite's conditions.
+    /// Computes the grid of a suite for a champion whose own trial is `own`, from the ends in the suite's conditions.
     pub fn of(
         suite: ExamSuite,
         own: &Trial,
@@ -60,19 +60,19 @@ impl StairsGrid {
         Self { suite, rises_m, treads_m, cells }
     }
 
-    /// Number of trials.
+    /// Returns the number of trials in all cells.
     pub fn trials(&self) -> u32 {
         self.cells.iter().map(|cell| cell.trials).sum()
     }
 
-    /// Number of trials that ended on the landing.
+    /// Returns the number of trials in all cells that ended on the landing.
     pub fn landed(&self) -> u32 {
         self.cells.iter().map(|cell| cell.landed).sum()
     }
 }
 
 impl StairsCell {
-    /// The cell of these trials; none without a trial.
+    /// Computes the cell of these trials; `None` without a trial.
     fn of(rise_m: f32, tread_m: f32, own: &Trial, here: &[(&Trial, &ExamEnd)]) -> Option<Self> {
         let trials = here.len() as u32;
         let landed = here.iter().filter(|(_, end)| end.has_landed).count() as u32;
@@ -83,7 +83,7 @@ impl StairsCell {
             let moved_m = (trial.stairs.first_riser_y_m - own.stairs.first_riser_y_m).abs();
             [f32::from(u8::from(end.has_landed != lands)), other_steps, moved_m]
         };
-        // The first of equal ones.
+        // Of equal trials, the first is chosen.
         let (typical, typical_end) = here.iter().min_by(|one, other| {
             let pairs = strangeness(one).into_iter().zip(strangeness(other));
             pairs
@@ -95,12 +95,12 @@ impl StairsCell {
     }
 }
 
-/// The rise of the first step, in m.
+/// Returns the rise of the first step, in m.
 fn rise_m(trial: &Trial) -> f32 {
     trial.stairs.step_rise_m(0)
 }
 
-/// The different values in ascending order.
+/// Returns the different values in ascending order.
 fn ascending(values: impl Iterator<Item = f32>) -> Vec<f32> {
     let mut values: Vec<f32> = values.collect();
     values.sort_by(f32::total_cmp);
@@ -121,7 +121,7 @@ mod tests {
     fn each_of_the_100_stairs_counts_in_the_cell_of_its_rise_and_tread() {
         let own = Trial::default();
         let conditions = ExamSuite::Stairs.conditions(&own);
-        // Made-up ends: of the i-th of 20 cells, i modulo 6 of the five trials land; the others climb i steps.
+        // In the made-up ends of the i-th of 20 cells, i modulo 6 of the five trials land; the others climb i steps.
         let ends: Vec<ExamEnd> = (0..100)
             .map(|index| match index % 5 < index / 5 % 6 {
                 true => end(10, true),

@@ -1,4 +1,4 @@
-//! The conditions of an evaluation: everything outside the genome.
+//! The conditions of an evaluation: everything that does not belong to the genome.
 
 use super::{AgentSettings, Behaviour, Evaluation, Fitness, PerturbationList, Repeats};
 use crate::check::Invalid;
@@ -9,36 +9,36 @@ use crate::schema::{
 use crate::world::{HealthLimits, PhysicsEngine, PhysicsSettings, Stairs, Surface, WorldPlan};
 
 setting_group! {
-    /// Place, duration, surfaces, body, and measure of fitness.
+    /// The conditions of an evaluation: place, duration, surfaces, body, and measure of fitness.
     pub struct Trial {
-        /// Length of the simulation, in simulated seconds.
+        /// Length of the trial, in simulated seconds.
         duration_s: f32 = 5.0;
-        /// Position of the snake's centre on the y axis at the start, in metres. The report's first
-        /// generation, which does not move, stands at -7.23. A body of its own starts with its front 5 m before this, where
-        /// the front of the report's snake is, so that all have the same way to the stairs.
+        /// Position of the snake's centre on the y axis at the start, in metres. The default is where the report's first generation
+        /// stands, which does not move. A body from the genome starts with its front 5 m before this position, like the report's snake, so
+        /// that all bodies have the same distance to the stairs.
         start_y_m: f32 = -7.23;
-        /// Step length, substeps, gravity.
+        /// Settings of the physics: step length, substeps, gravity.
         physics: PhysicsSettings = PhysicsSettings::default();
-        /// The staircase.
+        /// Shape and position of the staircase.
         stairs: Stairs = Stairs::default();
         /// The material of the stairs, and of the ground if `ground` is `None`.
         surface: Surface = Surface::default();
         /// The material of the ground, if it differs from that of the stairs.
         ground: Option<Surface> = None;
-        /// The properties of the snake that do not evolve.
+        /// Properties of the snake that do not evolve.
         agent: AgentSettings = AgentSettings::default();
-        /// The measure of fitness.
+        /// Measure of fitness.
         fitness: Fitness = Fitness::default();
-        /// Cost of energy, in units of the fitness per kJ; it is subtracted from the fitness.
+        /// Cost of energy, in units of the fitness per kJ. It is subtracted from the fitness.
         energy_cost_per_kj: f32 = 0.0;
-        /// The number of trials per evaluation, and their perturbations.
+        /// Number of trials per evaluation, and their perturbations.
         repeats: Repeats = Repeats::default();
         /// Limits beyond which the snake is disqualified.
         health: HealthLimits = HealthLimits::default();
     }
 }
 
-/// Distance of the front of a body of its own from `start_y_m`, in metres: half the length of the report's snake.
+/// Distance of the front of a body from the genome from `start_y_m`, in metres: half the length of the report's snake.
 const FRONT_M: f32 = 5.0;
 
 impl SettingGroup for Trial {
@@ -78,7 +78,7 @@ impl SettingGroup for Trial {
             about: "Duration of a trial, and where the snake starts.",
         });
         settings! { walk,
-            // Ten minutes are a third of a second to compute; longer genomes make unreadable saves.
+            // The range ends at ten minutes, which take a third of a second to compute. Longer genomes would make unreadable saves.
             duration_s: number("Duration", 0.1..=600.0)
                 .unit("s")
                 .hint("Simulated time of a trial. Longer trials take longer to evaluate")
@@ -92,7 +92,7 @@ impl SettingGroup for Trial {
         walk.section(Self::REWARD);
         settings! { walk,
             fitness: choice("Fitness").hint("Quantity that evolution maximises");
-            // At 1000 a joule costs a metre.
+            // The range ends at 1000, at which a joule costs a metre.
             energy_cost_per_kj: number("Energy cost", 0.0..=1000.0)
                 .unit("per kJ")
                 .hint("Subtracted from the fitness for each kJ that the joints use")
@@ -105,49 +105,49 @@ impl SettingGroup for Trial {
 }
 
 impl Trial {
-    /// The section of the material of the stairs.
+    /// Section of settings for the material of the stairs.
     pub const SURFACE: Section = Section {
         title: "Surface",
         about: "Material of the stairs, and of the ground unless it has its own surface.",
     };
-    /// The section of the material of the ground.
+    /// Section of settings for the material of the ground.
     pub const GROUND: Section =
         Section { title: "Ground", about: "Material of the ground around the stairs." };
-    /// The section of the reward.
+    /// Section of settings for the reward.
     pub const REWARD: Section = Section { title: "Reward", about: "What evolution maximises." };
 
     /// Checks every field against its range.
     ///
     /// # Errors
-    /// The first that is not allowed.
+    /// Returns the first value that is not allowed.
     pub fn check(&self) -> Result<(), Invalid> {
         schema::check(self)
     }
 
-    /// This trial on other stairs, whose first riser and landing are those of its own.
+    /// Returns this trial on other stairs, with the first riser and the landing of its own stairs.
     #[must_use]
     pub fn on_stairs(&self, stairs: Stairs) -> Self {
         let Stairs { first_riser_y_m, landing_m, .. } = self.stairs;
         Self { stairs: Stairs { first_riser_y_m, landing_m, ..stairs }, ..self.clone() }
     }
 
-    /// Number of physics steps of the trial: its duration, rounded to the nearest step.
+    /// Returns the number of physics steps of the trial: its duration, rounded to the nearest step.
     pub fn steps(&self) -> u32 {
         steps_in(self.duration_s, &self.physics)
     }
 
-    /// Maximum number of simulations that an evaluation takes.
+    /// Returns the maximum number of simulations for an evaluation.
     pub fn most_simulations(&self) -> u32 {
         self.repeats.trials.max(1)
     }
 
-    /// Number of simulations that an evaluation took: a snake that is disqualified in the nominal trial is tried in no other.
+    /// Returns the number of simulations that an evaluation took: only one if the snake was disqualified in the nominal trial.
     pub fn simulations_of(&self, evaluation: &Evaluation) -> u32 {
         if evaluation.disqualified.is_none() { self.most_simulations() } else { 1 }
     }
 
-    /// The trial on whose fitness a run chooses its champions: this one and a fixed list of variations. `None` if it
-    /// chooses by the fitness in this trial alone.
+    /// Returns the trial by whose fitness a run chooses its champions: this trial and a fixed list of variations. `None` if it chooses by
+    /// the fitness in this trial alone.
     pub fn that_chooses_champions(&self) -> Option<Self> {
         let varied = self.repeats.champion_trials;
         let list = PerturbationList::Fixed;
@@ -180,10 +180,10 @@ impl Trial {
         genome.controller.check()
     }
 
-    /// The path of the physics engine in settings.
+    /// Path of the physics engine in settings.
     pub const ENGINE_FIELD: &str = "trial.physics.engine";
 
-    /// This trial, with the engine rapier if its own cannot simulate the body of a genome.
+    /// Returns this trial, with the engine rapier if its own engine cannot simulate the body of a genome.
     #[must_use]
     pub fn suited_to(mut self, genome: &Genome) -> Self {
         if self.agent.body_plan(genome).obstacle_in_lanes().is_some() {
@@ -192,7 +192,7 @@ impl Trial {
         self
     }
 
-    /// The world in which this trial evaluates a genome.
+    /// Returns the plan of the world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {
         let body = self.agent.body_plan(genome);
         let has_own_body = genome.body.has_own_blocks();
@@ -215,17 +215,17 @@ impl Trial {
         }
     }
 
-    /// The shape of the genomes for this trial.
+    /// Returns the shape of the genomes for this trial.
     pub fn genome_shape(&self) -> GenomeShape {
         GenomeShape { joints: self.agent.joints(), duration_s: self.duration_s }
     }
 
-    /// Fitness of an agent that does not move: its start, or zero if the fitness counts no metres.
+    /// Returns the fitness of an agent that does not move: its start, or zero if the fitness is not a position on the y axis.
     pub fn resting_fitness(&self) -> f32 {
         if self.fitness.is_along_y() { self.start_y_m } else { 0.0 }
     }
 
-    /// The material of the ground.
+    /// Returns the material of the ground.
     pub fn ground(&self) -> &Surface {
         self.ground.as_ref().unwrap_or(&self.surface)
     }
@@ -236,7 +236,7 @@ impl Trial {
         self.stairs.meaning(y_m, f64::from(self.start_y_m), length_m)
     }
 
-    /// Describes the centre position `y_m` of the snake of a genome, whose body may be of its own.
+    /// Describes the centre position `y_m` of the snake of a genome, which may have a body of its own.
     fn meaning_of(&self, genome: &Genome, y_m: f64) -> String {
         if !genome.body.has_own_blocks() {
             return self.meaning(y_m);
@@ -245,7 +245,7 @@ impl Trial {
         self.stairs.meaning(y_m, f64::from(self.middle_start_y_m(genome)), length_m.into())
     }
 
-    /// Position of the middle limb's centre on the y axis at the start, in metres.
+    /// Returns the position of the middle limb's centre on the y axis at the start, in metres.
     pub fn middle_start_y_m(&self, genome: &Genome) -> f32 {
         if !genome.body.has_own_blocks() {
             self.start_y_m
@@ -254,13 +254,13 @@ impl Trial {
         }
     }
 
-    /// Position of the middle of a body of its own at the start, in metres.
+    /// Returns the position on the y axis of the middle of a body from the genome at the start, in metres.
     fn own_start_y_m(&self, length_m: f32) -> f32 {
         self.start_y_m + FRONT_M - length_m / 2.0
     }
 
-    /// Describes where one snake ended: as [`Trial::meaning`], unless its behaviour says that it lay beside the stairs
-    /// or behind them. A record without a behaviour only has the distance.
+    /// Describes where a snake ended: like [`Trial::meaning`], unless its behaviour shows that it lay beside or behind the stairs. For a
+    /// record without a behaviour, only the position is described.
     pub fn result_in_words(&self, genome: &Genome, evaluation: &Evaluation) -> String {
         let y_m = f64::from(evaluation.centre_y_m);
         let off_the_stairs = match evaluation.behaviour {
@@ -271,7 +271,7 @@ impl Trial {
     }
 }
 
-/// Number of physics steps of a duration in s, rounded to the nearest step; at least one.
+/// Returns the number of physics steps of a duration in s, rounded to the nearest step; at least one.
 pub(super) fn steps_in(duration_s: f32, physics: &PhysicsSettings) -> u32 {
     let steps = f64::from(duration_s) * f64::from(physics.steps_per_s);
     libm::round(steps).max(1.0) as u32
@@ -296,7 +296,7 @@ mod tests {
         assert_eq!(trial.simulations_of(&Evaluation { disqualified, ..healthy }), 1);
     }
 
-    /// A world in which every parameter has an effect.
+    /// Returns settings in which every parameter has an effect.
     fn lively() -> Settings {
         let changes = [
             ("surface.bounce", "0.3"),
@@ -308,10 +308,10 @@ mod tests {
             ("skin.soft_cfm_m_s_per_n", "0.001"),
             ("joint_cfm_m_s_per_n", "0.00001"),
             ("ground.friction", "0.9"),
-            // Within reach at once.
+            // The stairs are within reach at once.
             ("first_riser_y_m", "-1.5"),
             ("trial.duration_s", "5"),
-            // Limits wide enough to reach the end.
+            // These limits are wide enough for the trial to reach its end.
             ("joint_drift_m", "10"),
             ("speed_m_s", "1000"),
             ("arena_half_width_m", "1000"),

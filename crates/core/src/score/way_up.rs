@@ -1,33 +1,33 @@
-//! The share of the stairs that a body of any length has climbed.
+//! The share of the stairs that a body has climbed, for bodies of any length.
 
 use crate::world::{BodyPlan, Pose, Simulation, Stairs};
 
-/// Time for which the whole body has to stay on the landing to have arrived, in s.
+/// Time for which the whole body has to stay on the landing until it counts as arrived, in s.
 const ARRIVAL_S: f32 = 0.5;
-/// Greatest addition to the share for an early arrival.
+/// Greatest addition to the share of the stairs for an early arrival.
 const ARRIVAL_BONUS: f32 = 0.1;
 
-/// The part of a rollout on which [`Fitness::Share`](super::Fitness::Share) depends, beside its present state.
+/// Data of a rollout on which [`Fitness::Share`](super::Fitness::Share) depends, besides its present state.
 #[derive(Debug, Clone, Default)]
 pub(super) struct WayUp {
-    /// Way of the body at the start: see [`mean_steps`].
+    /// Distance of the body along the stairs at the start, in steps: see [`mean_steps`].
     start_steps: f32,
     /// Whether a limb has touched each tread, the lowest first.
     touched: Vec<bool>,
     arrival: Arrival,
 }
 
-/// When the whole body has stood on the landing for long enough.
+/// When the whole body has stood on the landing for `ARRIVAL_S`.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arrival {
-    /// Time since which it stands there, in s.
+    /// Time since which the whole body has been on the landing, in s; `None` if it is not there.
     up_since_s: Option<f32>,
-    /// Time at which it first had stood there for long enough, in s.
+    /// Time at which the whole body had first been on the landing for `ARRIVAL_S`, in s; `None` if it never was.
     arrived_s: Option<f32>,
 }
 
 impl Arrival {
-    /// Takes in the way of the body, see [`mean_steps`], at this simulated time.
+    /// Takes in the distance of the body along the stairs, see [`mean_steps`], at this simulated time.
     pub fn observe(&mut self, steps: f32, stairs: &Stairs, time_s: f32) {
         let is_up = steps >= stairs.steps as f32;
         self.up_since_s = is_up.then(|| self.up_since_s.unwrap_or(time_s));
@@ -37,14 +37,14 @@ impl Arrival {
         }
     }
 
-    /// Time at which it first had stood there for long enough, in s.
+    /// Returns the time at which the whole body had first been on the landing for `ARRIVAL_S`, in s; `None` if it never was.
     pub fn arrived_s(&self) -> Option<f32> {
         self.arrived_s
     }
 }
 
 impl WayUp {
-    /// The way up of a body at its start.
+    /// Begins with a body at its start.
     pub fn begin(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> Self {
         Self {
             start_steps: mean_steps(body, poses, stairs),
@@ -71,8 +71,8 @@ impl WayUp {
         self.arrival.observe(mean_steps(simulation.body(), poses, stairs), stairs, time_s);
     }
 
-    /// The share of the way from the start to the landing. A body that has leapt over treads can have at most twice the share
-    /// of the treads that it has touched.
+    /// Returns the share of the distance from the start to the landing. A body that has leapt over treads gets at most twice the share of
+    /// the treads that it has touched.
     pub fn share(&self, steps: f32, stairs: &Stairs) -> f32 {
         let all = stairs.steps as f32;
         let whole = all - self.start_steps;
@@ -84,12 +84,12 @@ impl WayUp {
             return share;
         }
         let touched = self.touched.iter().filter(|touched| **touched).count() as f32;
-        // The part of the way before the first riser needs no touch.
+        // The distance before the first riser needs no touch.
         let capped = (2.0 * touched).min(all);
         share.min((capped - self.start_steps.min(0.0)) / (all - self.start_steps.min(0.0)))
     }
 
-    /// The addition for an arrival at this time of the trial, of a body that still is where it arrived.
+    /// Returns the addition for the time of arrival in a trial of this length, in s; 0 for a body that has left the landing.
     pub fn bonus(&self, duration_s: f32) -> f32 {
         let Arrival { up_since_s, arrived_s } = self.arrival;
         let arrived_s = arrived_s.filter(|_| up_since_s.is_some());
@@ -97,9 +97,9 @@ impl WayUp {
     }
 }
 
-/// The way of a body along the stairs, in steps: the mean over its limbs, weighted by mass. The way of a limb counts from
-/// the first riser, in treads, up to the last step; above its tread only, and beside, inside or behind the stairs only up
-/// to the first riser. Before the first riser it is negative.
+/// Returns the distance of a body along the stairs, in steps: the mean over its limbs, weighted by mass. The distance of a limb counts
+/// from the first riser, in treads, up to the last step. It counts only above the limb's tread; beside, inside or behind the stairs, only
+/// up to the first riser. Before the first riser it is negative.
 pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f32 {
     let (mut sum, mut mass_kg) = (0.0, 0.0);
     for (pose, limb) in poses.iter().zip(&body.parts) {
@@ -109,7 +109,7 @@ pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f3
         sum += limb.mass_kg() * way.min(most);
         mass_kg += limb.mass_kg();
     }
-    // Equal limbs at the top have exactly all steps, whatever the rounding of their masses.
+    // Equal limbs at the top have exactly all steps, even if their masses are rounded.
     let mean = sum / mass_kg;
     let all = stairs.steps as f32;
     if mean >= all * (1.0 - 1.0e-6) { all } else { mean }
@@ -149,7 +149,7 @@ mod tests {
         let stairs = Stairs::default();
         let heavy_tail = body(&[1.0, 3.0]);
         let way = |places: &[[f32; 3]]| mean_steps(&heavy_tail, &poses(places), &stairs);
-        // The head is half a tread past the second riser, the tail two treads before the first.
+        // The head is half a tread past the second riser, the tail two treads before the first riser.
         assert_eq!(way(&[[0.0, 6.0, 1.5], [0.0, -1.0, 0.5]]), (1.5 - 2.0 * 3.0) / 4.0);
         assert_eq!(
             way(&[[3.0, 6.0, 1.5], [0.0, -1.0, 0.5]]),
@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(way.share(10.0, &stairs), 1.0);
         way.touched = vec![false; 10];
         way.touched[9] = true;
-        // Of the 12.5 treads from the start to the landing 2.5 lie before the stairs, and one touch counts for two steps.
+        // Of the 12.5 treads from the start to the landing, 2.5 lie before the stairs. One touch counts for two steps.
         assert!((way.share(10.0, &stairs) - 4.5 / 12.5).abs() < 1e-6);
     }
 

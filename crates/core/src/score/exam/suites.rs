@@ -1,4 +1,4 @@
-//! The conditions of each suite.
+//! The conditions of each suite of an exam.
 
 use super::{ExamCondition, ExamSuite};
 use crate::control::ActiveSenses;
@@ -9,21 +9,21 @@ use crate::score::perturbation::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
 use crate::world::Stairs;
 
-/// How much later than without the shove a shoved snake may land, in s.
+/// Time by which a shoved snake may land later than without the shove, in s.
 pub(super) const RECOVERY_S: f32 = 5.0;
 /// Number of trials in the suites of random conditions.
 const TRIALS: u32 = 100;
-/// Number of starts in the other engine.
+/// Number of different starts in the suite with the other engine.
 const STARTS: u32 = 20;
 /// Seed of the random conditions.
 const SEED: u64 = 1;
-/// Duration of the trials on other stairs and with shoves, in s.
+/// Duration of the trials in the long suites, such as those on other stairs and with shoves, in s.
 const DURATION_S: f32 = 30.0;
-/// Depth of their landing, in m: a snake that lands early has room for the rest of the time.
+/// Depth of the landing in the long suites, in m: a snake that lands early has room for the rest of the time.
 const LANDING_M: f32 = 100.0;
-/// How much further the first riser is than in the champion's own trial, in m.
+/// Shifts of the first riser away from the start, in m, relative to the champion's own trial.
 const FURTHER_M: [f32; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
-/// Factor on the rise of the surprising step.
+/// Factor on the rise of the surprisingly high step.
 const SURPRISE: f32 = 1.4;
 /// Greatest rise that a staircase may have, in m.
 const HIGHEST_RISE_M: f32 = 5.0;
@@ -33,7 +33,8 @@ const SHOVE_M_S: f32 = 2.0;
 const SHOVE_MOMENT_S: [f32; 2] = [3.0, 8.0];
 
 impl ExamSuite {
-    /// The undisturbed trial with which the others are compared: the champion's own, for as long as theirs.
+    /// Returns the undisturbed trial with which the conditions are compared: the champion's own trial, with the duration of the
+    /// conditions.
     pub fn undisturbed(self, trial: &Trial) -> ExamCondition {
         let trial = match self {
             Self::Trials | Self::StepRate | Self::Engine => trial.clone(),
@@ -44,7 +45,7 @@ impl ExamSuite {
         condition("undisturbed", trial)
     }
 
-    /// The conditions for a champion of this trial.
+    /// Returns the conditions for a champion with this trial.
     pub fn conditions(self, trial: &Trial) -> Vec<ExamCondition> {
         match self {
             Self::Trials => varied(trial, &PerturbationRange::default(), TRIALS, SEED),
@@ -59,7 +60,7 @@ impl ExamSuite {
     }
 }
 
-/// Random variations of a trial.
+/// Draws random variations of a trial.
 pub fn varied(
     trial: &Trial,
     range: &PerturbationRange,
@@ -80,13 +81,14 @@ fn condition(label: &str, trial: Trial) -> ExamCondition {
     ExamCondition { label: label.to_owned(), trial, perturbation: Perturbation::default() }
 }
 
-/// The trial with the duration and the landing of the long suites.
+/// Returns the trial with the duration and the landing of the long suites.
 fn long(trial: &Trial) -> Trial {
     let stairs = Stairs { landing_m: LANDING_M, ..trial.stairs.clone() };
     Trial { duration_s: DURATION_S, stairs, ..trial.clone() }
 }
 
-/// Other starts, each in the own engine and then each in the other; none if that cannot simulate the trial's snakes.
+/// Returns conditions with other starts, first all in the trial's own engine, then all in the other engine; empty if the other engine
+/// cannot simulate the trial's snakes.
 fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
     if trial.agent.youngs_modulus_pa.is_some() {
         return Vec::new();
@@ -103,7 +105,7 @@ fn other_engine(trial: &Trial) -> Vec<ExamCondition> {
     [in_engine(trial, "own engine"), in_engine(&other, "other engine")].concat()
 }
 
-/// The trial with all outer senses frozen.
+/// Returns the trial with all senses switched off, except those of the joints.
 fn without_senses(trial: &Trial) -> Trial {
     let mut trial = trial.clone();
     trial.agent.senses = ActiveSenses::NONE;
@@ -149,7 +151,7 @@ fn other_stairs(trial: &Trial) -> Vec<ExamCondition> {
     all
 }
 
-/// The held-out stairs, class by class; the first riser is where the champion's own trial has it.
+/// Returns the held-out stairs, class by class. The first riser is where it is in the champion's own trial.
 fn held_out_stairs(trial: &Trial) -> Vec<ExamCondition> {
     let on = |class: StairsClass, number: u32| {
         let other = long(trial).on_stairs(held_out(class, number).stairs());
@@ -164,9 +166,9 @@ fn held_out_stairs(trial: &Trial) -> Vec<ExamCondition> {
 fn higher_steps(trial: &Trial) -> Vec<ExamCondition> {
     let mut all = Vec::new();
     let steps = trial.stairs.steps;
-    // Index 0 is the first step. Shorter stairs surprise with any of theirs.
+    // Index 0 is the first step. With at most three steps, any of them may be higher.
     let places = if steps > 3 { 3..steps.min(9) } else { 0..steps };
-    // Of a step down nothing could be higher.
+    // A step down cannot be higher.
     let places = places.filter(|step| trial.stairs.step_rise_m(*step) > 0.0);
     for high in places {
         for further_m in FURTHER_M {

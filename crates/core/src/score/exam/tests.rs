@@ -110,7 +110,7 @@ fn the_held_out_stairs_keep_the_place_of_the_champions_own_and_count_whole_bodie
         condition.check().expect("allowed");
         assert_eq!(condition.trial.stairs.first_riser_y_m, 4.0, "{}", condition.label);
     }
-    // The middle limb lands everywhere, the whole body on the first staircase of each class alone.
+    // The middle limb lands on all stairs, the whole body only on the first staircase of each class.
     let ends: Vec<ExamEnd> = (0..60)
         .map(|index| {
             let arrived_s = (index % 15 == 0).then_some(12.0);

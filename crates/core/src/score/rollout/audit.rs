@@ -1,4 +1,4 @@
-//! The energy audit over many random snakes.
+//! The energy balance of many random snakes, computed independently of the simulation's own balance.
 
 use super::Rollout;
 use crate::genome::{ControllerKind, Genome, GenomeSpace};
@@ -6,7 +6,7 @@ use crate::rng::{Purpose, stream};
 use crate::score::Trial;
 use crate::world::{Disqualification, Simulation};
 
-/// Kinetic and potential energy of all limbs, in J. The engine's positions are half a substep ahead of its velocities.
+/// Returns the kinetic and potential energy of all limbs, in J. The engine's positions are half a substep ahead of its velocities.
 fn mechanical_energy_j(simulation: &Simulation) -> f64 {
     let physics = simulation.physics();
     let parameters = &physics.integration_parameters;
@@ -20,16 +20,16 @@ fn mechanical_energy_j(simulation: &Simulation) -> f64 {
     energies_j.sum()
 }
 
-/// A random snake of the default world.
+/// Draws a random snake of the default world.
 fn random_genome(kind: ControllerKind, individual: u32, trial: &Trial) -> Genome {
     let space = GenomeSpace { controller: kind, ..GenomeSpace::default() };
     let mut rng = stream(1, 1, individual, Purpose::Birth);
     space.random_genome(trial.genome_shape(), &mut rng)
 }
 
-/// The largest gain of mechanical energy over the work of the joints during a rollout, in J, in excess of 5 % of what
-/// they spent, and the reason of a disqualification. The work is the sum over all steps of torque times turned angle, for
-/// the torques and angles that the simulation shows; its own balance is not used.
+/// Returns the largest gain of mechanical energy beyond the work of the joints during a rollout, in J, less 5 % of the energy that the
+/// joints spent, and the reason of a disqualification. The work is the sum over all steps of torque times turned angle, for the torques
+/// and angles that the simulation reports. The simulation's own balance is not used.
 fn greatest_gain_j(genome: &Genome, trial: &Trial) -> (f64, Option<Disqualification>) {
     let mut rollout = Rollout::new(genome, trial);
     let start_j = mechanical_energy_j(rollout.simulation());
@@ -53,7 +53,7 @@ fn greatest_gain_j(genome: &Genome, trial: &Trial) -> (f64, Option<Disqualificat
     (most_j, rollout.evaluation().disqualified)
 }
 
-/// Runs this number of random snakes of two kinds of controller. Those that are not disqualified must not gain energy.
+/// Runs this number of random snakes of two kinds of controller. Snakes that are not disqualified must not gain energy.
 fn audit(snakes: u32) {
     let mut trial = Trial::default();
     for density_kg_m3 in [2.5, 9.0] {

@@ -1,4 +1,4 @@
-//! A rollout whose trial changes on the way: the same moment and state, then another world.
+//! A rollout whose trial changes on the way: moment and state stay the same, and the world becomes another.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::score::way_up::WayUp;
 use crate::score::{Fitness, Trial};
 use crate::world::{Discontinuity, WorldPlan};
 
-/// The conditions of a rollout: the part of its trial that is needed at every step.
+/// The conditions of a rollout: the values of its trial that are needed at every step.
 pub(super) struct Conditions {
     pub world: WorldPlan,
     pub fitness: Fitness,
@@ -20,7 +20,7 @@ pub(super) struct Conditions {
 }
 
 impl Conditions {
-    /// The conditions of a trial in this world.
+    /// Extracts the conditions of a trial in this world.
     pub fn of(trial: &Trial, world: WorldPlan) -> Self {
         Self {
             last_step: steps_in(trial.duration_s, &world.physics),
@@ -32,7 +32,7 @@ impl Conditions {
     }
 }
 
-/// New conditions from a step on.
+/// New conditions that apply from a step on.
 #[derive(Clone)]
 pub(super) struct TrialChange {
     at_step: u32,
@@ -40,17 +40,17 @@ pub(super) struct TrialChange {
 }
 
 impl TrialChange {
-    /// Number of steps of the whole rollout.
+    /// Returns the number of steps of the whole rollout.
     pub fn last_step(&self) -> u32 {
         self.to.last_step
     }
 }
 
 impl Rollout {
-    /// Whether this rollout of a genome can continue in another trial, in its present state.
+    /// Checks whether this rollout of a genome can continue in another trial, in its present state.
     ///
     /// # Errors
-    /// The reason, if it cannot.
+    /// Returns the reason if the rollout cannot continue.
     pub fn can_continue(&self, genome: &Genome, trial: &Trial) -> Result<(), Discontinuity> {
         let world = trial.world_plan(genome);
         self.simulation.can_continue(&self.conditions.world, &world)?;
@@ -61,14 +61,14 @@ impl Rollout {
         }
     }
 
-    /// This rollout of a genome with another trial from `step` on, which must not be past: limbs, controller, energy and
-    /// furthest position go on from their state at that moment.
+    /// Returns this rollout of a genome with another trial from `step` on, which must not be in the past. Limbs, controller, energy and
+    /// furthest position continue from their state at this step.
     ///
-    /// Its evaluation is that of no trial, and must not be compared with a record.
+    /// The evaluation then belongs to no trial, and must not be compared with a record.
     ///
     /// # Errors
-    /// The reason, if worlds like these cannot continue one another at any moment. Other stairs also depend on the
-    /// moment: see [`Self::can_continue`].
+    /// Returns the reason if the worlds of the two trials can never continue one another. Whether other stairs are possible also depends
+    /// on the moment: see [`Self::can_continue`].
     pub fn changing_at(
         mut self,
         step: u32,
@@ -84,11 +84,11 @@ impl Rollout {
         Ok(self)
     }
 
-    /// Takes over new conditions if their step has come.
+    /// Applies new conditions if their step has come.
     pub(super) fn enter_change(&mut self) {
         if let Some(change) = self.change.take_if(|change| change.at_step == self.step) {
             self.simulation = self.simulation.continued_in(&change.to.world);
-            // Scores under other conditions cannot be averaged.
+            // Scores of different measures or on different stairs cannot be averaged.
             if self.conditions.fitness != change.to.fitness
                 || self.conditions.world.stairs != change.to.world.stairs
             {
@@ -112,13 +112,13 @@ mod tests {
         shipped_champion().expect("well formed").champion
     }
 
-    /// The champion's trial with other values.
+    /// Returns the champion's trial with other values.
     fn with(trial: &Trial, changes: &[(&str, &str)]) -> Trial {
         let settings = Settings { trial: trial.clone(), ..Settings::default() };
         with_fields(&settings, changes.iter().copied()).expect("allowed").trial
     }
 
-    /// A rollout after this number of steps.
+    /// Returns a rollout after this number of steps.
     fn after(mut rollout: Rollout, step: u32) -> Rollout {
         while rollout.step() < step {
             assert!(rollout.advance());
@@ -126,7 +126,7 @@ mod tests {
         rollout
     }
 
-    /// Everything that an end shows: the trace covers the pose of every limb after every step.
+    /// Returns the evaluation at the end, whose trace covers the pose of every limb after every step.
     fn end(mut rollout: Rollout) -> crate::score::Evaluation {
         while rollout.advance() {}
         rollout.evaluation()
@@ -138,14 +138,14 @@ mod tests {
         for step in [0, 1, 200, 437, trial.steps() - 1] {
             let same = Rollout::new(&genome, &trial).changing_at(step, &genome, &trial);
             assert_eq!(end(same.expect("the same world")), evaluation, "at step {step}");
-            // Without the contacts that the engine holds, it would differ.
+            // Without the contacts that the engine holds, the end would differ.
             let given = after(Rollout::new(&genome, &trial), step);
             let given = given.changing_at(step, &genome, &trial).expect("the same world");
             assert_eq!(end(given), evaluation, "from step {step}");
         }
     }
 
-    /// Changes of which each needs another part of the engine's world to be replaced.
+    /// Changes that each replace another part of the engine's world.
     const CHANGES: [&[(&str, &str)]; 12] = [
         &[("surface.friction", "0.3")],
         &[("surface.bounce", "0.5")],
@@ -187,7 +187,7 @@ mod tests {
                 |rollout: &Rollout| -> Vec<f32> { rollout.simulation().speeds_m_s().collect() };
             assert_eq!(speed(&changed), speed(&beside));
             assert!(changed.advance() && beside.advance());
-            // Within a step nothing can jump: limbs go on from where and how they were.
+            // Limbs continue with their positions and velocities, so nothing jumps within a step.
             for (a, b) in changed.poses().iter().zip(beside.poses()) {
                 assert!(a.translation.distance(b.translation) < 0.05, "{changes:?}");
             }
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn other_friction_takes_effect_at_once_on_limbs_that_rest() {
-        // Contacts of resting limbs are recycled by the engine with their friction.
+        // The engine recycles the contacts of resting limbs, with their friction.
         let Champion { genome, trial, .. } = champion();
         let still = with(&trial, &[("max_bend_torque_nm", "0"), ("max_twist_torque_nm", "0")]);
         let resting = after(Rollout::new(&genome, &still), 120);
@@ -264,7 +264,7 @@ mod tests {
         let mut changed = rollout.clone().changing_at(10, &genome, &lower).expect("continues");
         assert!(changed.advance() && rollout.advance());
         assert_eq!(changed.stairs(), &lower.stairs);
-        // The world is built anew there, without the impulses of the engine's last step.
+        // At the stairs, the world is built anew, without the impulses of the engine's last step.
         for (a, b) in changed.poses().iter().zip(rollout.poses()) {
             let apart_m = a.translation.distance(b.translation);
             assert!(apart_m < 0.005, "{apart_m} m after a step");
