@@ -1,79 +1,79 @@
-//! The state of a controller at a moment, for display. Nothing acts on it.
+//! The state of a controller at a moment, for display. It does not influence the simulation.
 
 use super::{DecisionActivity, LimbActivity, WaveChoiceActivity};
 use crate::genome::controllers::Layer;
 
-/// A controller at work.
+/// The state of a controller, by its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Activity {
-    /// A network of neurons.
+    /// Neurons of a network.
     Network(NetworkActivity),
-    /// A decision among postures.
+    /// Decision among postures.
     Decision(DecisionActivity),
-    /// The reflexes of a joint.
+    /// Reflexes of a joint.
     Reflex(ReflexActivity),
-    /// Waves that rules choose.
+    /// Waves chosen by rules.
     Waves(WaveChoiceActivity),
-    /// The neurons of all limbs.
+    /// Neurons of all limbs.
     Limbs(LimbActivity),
 }
 
 /// The neurons of a network, and the links between them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NetworkActivity {
-    /// The joint that has this network, if each has one of its own; the first is 0.
+    /// Joint that has this network, if each joint has one; the first joint is 0. `None` for a network of the whole snake.
     pub joint: Option<usize>,
-    /// Its neurons and inputs.
+    /// Neurons and inputs of the network.
     pub nodes: Vec<NetworkNode>,
-    /// Its links; those of weight 0 are left out.
+    /// Links of the network, without those of weight 0.
     pub links: Vec<NetworkLink>,
 }
 
-/// An input or a neuron.
+/// An input or a neuron of a network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NetworkNode {
-    /// Its name, in lower case.
+    /// Name of the node, in lower case.
     pub name: String,
-    /// Its place.
+    /// Column of the node in the network.
     pub column: NodeColumn,
-    /// Its activity.
+    /// Activity of the node.
     pub value: f32,
-    /// Its activity from -1 to 1, where 0 is the middle of its range.
+    /// Activity of the node, scaled to -1 to 1, where 0 is the middle of its range.
     pub level: f32,
 }
 
-/// The place of a node in a network.
+/// The column of a node in the drawing of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NodeColumn {
-    /// An input.
+    /// The node is an input.
     Input,
-    /// Between inputs and outputs.
+    /// The node lies between inputs and outputs.
     Hidden,
-    /// An output.
+    /// The node is an output.
     Output,
 }
 
-/// A link from one node to another, by their places in the list.
+/// A link from one node to another, by their indices in the list of nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetworkLink {
     /// Index of the node at which the link begins.
     pub from: usize,
     /// Index of the node at which the link ends.
     pub to: usize,
-    /// Factor of the signal.
+    /// Factor on the signal.
     pub weight: f32,
 }
 
-/// How the senses move the bend target of a joint.
+/// The effect of the senses on the bend target of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReflexActivity {
-    /// The joint; the first is 0.
+    /// Index of the joint; the first is 0.
     pub joint: usize,
-    /// The contribution of each sense to the sum.
+    /// Contribution of each sense to the weighted sum.
     pub pushes: Vec<ReflexPush>,
-    /// Angle by which they move the target together, in radians.
+    /// Angle by which the senses together move the target, in radians.
     pub moved_rad: f32,
-    /// The largest angle by which they can, in radians.
+    /// Largest angle by which the senses can move the target, in radians.
     pub reach_rad: f32,
     /// Shift of the phase of the joint's wave since the start, in radians.
     pub shift_rad: f32,
@@ -82,22 +82,22 @@ pub struct ReflexActivity {
 /// The contribution of a sense to a reflex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReflexPush {
-    /// The sense.
+    /// Name of the sense.
     pub name: &'static str,
-    /// Its value.
+    /// Value of the sense.
     pub value: f32,
-    /// The value times its weight.
+    /// Value of the sense times its weight.
     pub push: f32,
 }
 
 impl NetworkActivity {
-    /// Adds a node, whose activity is also its level.
+    /// Adds a node. Its level is its activity, clamped to -1 to 1.
     pub(super) fn add(&mut self, column: NodeColumn, name: impl Into<String>, value: f32) {
         let level = value.clamp(-1.0, 1.0);
         self.nodes.push(NetworkNode { name: name.into(), column, value, level });
     }
 
-    /// Adds a neuron whose activity is from 0 to 1.
+    /// Adds a neuron whose activity ranges from 0 to 1.
     pub(super) fn add_sigmoid(&mut self, column: NodeColumn, name: impl Into<String>, value: f32) {
         let level = (2.0 * value - 1.0).clamp(-1.0, 1.0);
         self.nodes.push(NetworkNode { name: name.into(), column, value, level });
@@ -110,7 +110,7 @@ impl NetworkActivity {
         }
     }
 
-    /// Adds the links of a layer, from its first input to its first neuron on.
+    /// Adds the links of a layer. `from` is the index of its first input, `to` that of its first neuron.
     pub(super) fn link_layer(&mut self, layer: &Layer, from: usize, to: usize) {
         for (neuron, row) in layer.rows.iter().enumerate() {
             for (input, weight) in row.iter().take(layer.inputs()).enumerate() {
@@ -128,7 +128,7 @@ pub(super) mod tests {
     use crate::save::load_preset;
     use crate::score::Rollout;
 
-    /// A random genome of a kind, after a change, and its rollout after so many steps.
+    /// Returns the rollout of a random genome of a kind, after a change of the genome and this number of steps.
     pub fn played(kind: ControllerKind, steps: u32, change: impl Fn(&mut Genome)) -> Rollout {
         let mut settings = load_preset("climb").expect("shipped").settings;
         settings.genome.controller = kind;

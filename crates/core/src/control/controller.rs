@@ -1,4 +1,4 @@
-//! The interface of a controller.
+//! The trait that every controller implements.
 
 use super::{Activity, Observation, Senses, WaveUses};
 use crate::learn::Episode;
@@ -6,38 +6,37 @@ use crate::world::JointTorque;
 
 /// Turns observations into torques, step after step.
 ///
-/// It may keep state between steps. The state is part of a clone: keyframes and replays go on with the bits of
+/// A controller may keep state between steps. The state is part of a clone, so that keyframes and replays continue with the same bits as
 /// the original.
 pub trait Controller: CloneController + Send + Sync {
-    /// The senses it needs, the same in every step; none unless it says so.
+    /// Returns the senses that the controller needs, the same in every step; by default none.
     fn needs(&self) -> Senses {
         Senses::default()
     }
 
-    /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints'
-    /// limits later.
+    /// Writes the torques of the step that begins, one per joint from the head. They are clamped to the joints' limits afterwards.
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]);
 
-    /// How often it chose each wave of its library; none if it has none.
+    /// Returns how often the controller chose each wave of its library; `None` without a library.
     fn wave_uses(&self) -> Option<WaveUses> {
         None
     }
 
-    /// Its state for display: as it acted last, in the joint of this number where each has a network of its
-    /// own. None before the first step, and for a controller that has nothing to show.
+    /// Returns the state of the controller for display, as in its last step; where each joint has a network of its own, for this joint.
+    /// `None` before the first step, and for a controller that has nothing to show.
     fn activity(&self, _observation: &Observation, _joint: usize) -> Option<Activity> {
         None
     }
 
-    /// Ends the episode after the last step: the experience of a controller that learns from it.
+    /// Ends the episode after the last step and returns the experience of a controller that learns from it; otherwise `None`.
     fn finish(&mut self, _observation: &Observation, _is_disqualified: bool) -> Option<Episode> {
         None
     }
 }
 
-/// A controller that can be copied, whatever its type is. Every controller with `Clone` is one.
+/// A controller that can be copied, whatever its type is. Every controller that implements `Clone` implements this trait, too.
 pub trait CloneController {
-    /// A copy with the same state.
+    /// Returns a copy with the same state.
     fn boxed_clone(&self) -> Box<dyn Controller>;
 }
 

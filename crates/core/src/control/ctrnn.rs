@@ -1,4 +1,4 @@
-//! A continuous-time recurrent network at work.
+//! The controller with a continuous-time recurrent network.
 
 use super::network::{place, servos};
 use super::servo::JointServos;
@@ -6,22 +6,22 @@ use super::{Activity, Controller, NetworkActivity, NodeColumn, Observation, Sens
 use crate::genome::controllers::{CTRNN_INPUTS, CTRNN_NEURONS, CtrnnGenes, ServoGenes};
 use crate::world::JointTorque;
 
-/// Integrates three leaky neurons at each joint.
+/// Computes a continuous-time recurrent network with three leaky neurons at each joint.
 #[derive(Debug, Clone)]
 pub struct CtrnnController {
     genes: CtrnnGenes,
     servo: JointServos,
-    /// Share of the way to its input that each neuron goes in a step: 1 - exp(-h/τ), exact for an input that stays. It is
-    /// stable for every time constant, unlike Euler's rule.
+    /// Share of the distance to its input that each neuron's state covers in a step: 1 - exp(-h/τ), which is exact for a constant input.
+    /// Unlike Euler's method, it is stable for every time constant.
     shares: [f32; CTRNN_NEURONS],
     /// States of the neurons of each joint.
     states: Vec<[f32; CTRNN_NEURONS]>,
-    /// Their outputs, 0 to 1.
+    /// Outputs of the neurons of each joint, 0 to 1.
     outputs: Vec<[f32; CTRNN_NEURONS]>,
 }
 
 impl CtrnnController {
-    /// The controller before the first step: all states are 0.
+    /// Creates the controller before the first step, with all states 0.
     pub fn new(genes: CtrnnGenes) -> Self {
         let joints = genes.joints as usize;
         let mut controller = Self {
@@ -103,7 +103,7 @@ impl Controller for CtrnnController {
         self.servo.pull(observation, targets, torques);
     }
 
-    /// The first neurons of the neighbours among the inputs are those that it reads next.
+    /// Shows the neurons of a joint. Inputs that are neurons of neighbouring joints have the values that are read in the next step.
     fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
         observation.perception.joints.get(joint)?;
         let inputs = self.inputs(joint, observation);
@@ -146,7 +146,7 @@ mod tests {
             neuron.own = [0.0; 3];
             neuron.inputs = [0.0; CTRNN_INPUTS.len()];
         }
-        // The pitch of the front limb, 0.5, draws the first neuron to 2.
+        // The pitch of the front limb, 0.5, pulls the first neuron towards 2.
         genes.neurons[0].inputs[6] = 4.0;
         for steps_per_s in [30, 60, 240] {
             let mut observation = Observation { steps_per_s, ..Observation::default() };

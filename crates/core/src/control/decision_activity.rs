@@ -1,70 +1,70 @@
-//! The state of decisions at a moment, for display: the worth of each choice, and the rules that say so.
+//! The state of decisions at a moment, for display: the value of each choice, and the rules that predict it.
 
 use crate::genome::controllers::{BitNames, bits_in_words};
 use crate::learn::classifiers::{Condition, Xcs, Zcs};
 
-/// A decision, and what it was taken by.
+/// A decision, with the values and rules by which it was taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DecisionActivity {
-    /// The joint that decides, if each decides for itself; the first is 0.
+    /// Joint that decides, if each joint decides for itself; the first joint is 0. `None` if the whole snake decides.
     pub joint: Option<usize>,
-    /// The situation in words.
+    /// Situation in words.
     pub situation: String,
-    /// The worth in it of each posture, or of each bend of the joint.
+    /// Value of each posture, or of each bend of the joint, in this situation.
     pub postures: Vec<PostureWorth>,
-    /// The posture that was chosen, by its place in the list.
+    /// Index of the chosen posture in the list.
     pub chosen: usize,
-    /// The posture before it, which a decision cannot take again; none where it can.
+    /// Posture before the decision, which cannot be chosen again; `None` where it can.
     pub barred: Option<usize>,
-    /// The rules, in order of birth; none for a table.
+    /// Rules in order of birth; empty for a table.
     pub rules: Vec<ActiveRule>,
 }
 
-/// The worth of a posture in a situation.
+/// The value of a posture in a situation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PostureWorth {
-    /// Its name.
+    /// Name of the posture.
     pub name: &'static str,
-    /// Its value in a table, the payoff that rules predict, or their strength; none if no rule is about it.
+    /// Value in a table, payoff that rules predict, or strength of the rules; `None` if no rule advises the posture.
     pub worth: Option<f32>,
-    /// How often a table has tried it there, or how many rules advise it.
+    /// How often a table has tried the posture in this situation, or how many matching rules advise it.
     pub count: u32,
 }
 
 /// A rule of a population.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActiveRule {
-    /// The situations that it is about.
+    /// Condition on the situations to which the rule applies.
     pub condition: Condition,
-    /// The names of the bits of situations.
+    /// Names of the bits of situations.
     pub names: &'static BitNames,
-    /// The posture that it is about, by its number.
+    /// Index of the posture that the rule advises.
     pub posture: usize,
-    /// The payoff that it predicts, or its strength.
+    /// Payoff that the rule predicts, or its strength.
     pub worth: f32,
-    /// Its accuracy relative to others, 0 to 1; none for rules that are kept for their strength.
+    /// Accuracy of the rule relative to others, 0 to 1; `None` for rules that are kept for their strength.
     pub fitness: Option<f32>,
-    /// How often it has learned, for rules that count that.
+    /// Number of updates of the rule; `None` for rules that do not count them.
     pub experience: Option<u32>,
-    /// Whether it matches the situation.
+    /// Whether the rule matches the situation.
     pub matches: bool,
-    /// Whether it matches and is about the posture that was chosen.
+    /// Whether the rule matches the situation and advises the chosen posture.
     pub decides: bool,
 }
 
-/// Where rules are looked at.
+/// The situation and the action for which rules are displayed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RulePlace {
-    /// The bits of the situation.
+    /// Bits of the situation.
     pub bits: u32,
-    /// Their names.
+    /// Names of the bits.
     pub names: &'static BitNames,
-    /// The action that was taken, if one was.
+    /// Index of the chosen action; `None` if none was chosen.
     pub chosen: Option<usize>,
 }
 
 impl RulePlace {
-    /// The rules of an XCS, in order of birth.
+    /// Returns the rules of an XCS, in order of birth.
     pub fn rules_of_xcs(&self, system: &Xcs) -> Vec<ActiveRule> {
         let rules = system.rules().iter().map(|rule| ActiveRule {
             fitness: Some(rule.fitness),
@@ -74,7 +74,7 @@ impl RulePlace {
         rules.collect()
     }
 
-    /// The rules of a ZCS, in order of birth.
+    /// Returns the rules of a ZCS, in order of birth.
     pub fn rules_of_zcs(&self, system: &Zcs) -> Vec<ActiveRule> {
         let rules = system.rules().iter();
         rules.map(|rule| self.rule(rule.condition, rule.action, rule.strength)).collect()
@@ -96,7 +96,7 @@ impl RulePlace {
 }
 
 impl ActiveRule {
-    /// The worth of each action by its name, and how many of the rules advise it.
+    /// Returns the value of each action with its name, and the number of matching rules that advise it.
     pub(super) fn worths(
         names: &[&'static str],
         worths: Vec<Option<f32>>,
@@ -110,7 +110,7 @@ impl ActiveRule {
             .collect()
     }
 
-    /// Its condition in words: "riser at the middle, not moving".
+    /// Describes the rule's condition in words, such as "riser at the middle, not moving".
     pub fn words(&self) -> String {
         bits_in_words(self.names, self.condition.care(), self.condition.value(), "always")
     }

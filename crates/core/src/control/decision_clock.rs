@@ -1,17 +1,17 @@
-//! The beat of decisions.
+//! The clock of decisions.
 
 use super::Observation;
 use crate::genome::controllers::DECISIONS_PER_S;
 
-/// Tells when the next decision is due.
+/// Determines when the next decision is due.
 #[derive(Debug, Clone, Default)]
 pub struct DecisionClock {
-    /// Number of the decision that holds; none before the first step.
+    /// Number of the present decision; `None` before the first step.
     decision: Option<u64>,
 }
 
 impl DecisionClock {
-    /// Whether a decision is due at this step. Each is due once.
+    /// Returns whether a decision is due at this step. Each decision is due once.
     pub fn is_due(&mut self, observation: &Observation) -> bool {
         let decision = Some(quarters(observation) / u64::from(observation.steps_per_s));
         let is_due = self.decision != decision;
@@ -19,8 +19,8 @@ impl DecisionClock {
         is_due
     }
 
-    /// The share of the way from the last bends to the next ones at the end of this step: they move on a straight line,
-    /// and arrive with the next decision.
+    /// Returns the share of the change from the last bends to the next ones at the end of this step. Bends change linearly, and reach
+    /// their targets with the next decision.
     pub fn share(observation: &Observation) -> f32 {
         let rate = u64::from(observation.steps_per_s);
         let within = quarters(observation) % rate + u64::from(DECISIONS_PER_S);
@@ -28,7 +28,7 @@ impl DecisionClock {
     }
 }
 
-/// The step times the decisions per second: the time, in a unit in which steps and decisions are whole numbers.
+/// Returns the step times the decisions per second. In this unit of time, steps and decisions are whole numbers.
 fn quarters(observation: &Observation) -> u64 {
     u64::from(observation.step) * u64::from(DECISIONS_PER_S)
 }

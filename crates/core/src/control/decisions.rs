@@ -1,4 +1,4 @@
-//! Decisions at work: a posture four times a second, and the experience that comes of it.
+//! The controller with decisions: it chooses a posture four times a second, and records the experience.
 
 use std::sync::Arc;
 
@@ -23,35 +23,35 @@ use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
 use crate::learn::q_table::{Next, Transition};
 use crate::world::JointTorque;
 
-/// Ticks of 1/60 s that a decision lasts: the unit of the learner's discount, whatever the step rate.
+/// Number of ticks of 1/60 s for which a decision lasts. The learner's discount is per tick, whatever the step rate.
 const TICKS: u16 = 60 / DECISIONS_PER_S as u16;
-/// The posture before the first decision: straight.
+/// Index of the posture before the first decision: straight.
 const FIRST_POSTURE: usize = 0;
 
-/// Decides by a learned policy. An explorer decides at random now and then, and learns in its own copy of a table.
+/// Decides by a learned policy. An explorer sometimes decides at random, and learns in its own copy of a table.
 #[derive(Debug, Clone)]
 pub struct DecisionController {
     genes: DecisionGenes,
     servo: JointServos,
     rng: Option<ChaCha8Rng>,
     clock: DecisionClock,
-    /// The situation in which it was taken.
+    /// Situation in which the present decision was taken; `None` before the first decision.
     at: Option<DecisionPoint>,
-    /// The posture that it took, and the one before.
+    /// Posture of the present decision; `previous` is the posture before it.
     action: usize,
     previous: usize,
-    /// Bends at the last decision, and those that it asks for, in radians.
+    /// Bends of each joint at the last decision and the target bends of this decision, in radians.
     bends_rad: Vec<[f32; 2]>,
     moved_m: f32,
     rewards: RewardMeter,
-    /// The experience so far, of a table or of rules.
+    /// Experience so far for a table; `decisions` is the experience for rules.
     transitions: Vec<Transition>,
     decisions: Vec<RecordedDecision>,
-    /// The end of the episode, after which there is nothing more to learn.
+    /// End of the episode, after which nothing more is learned; `None` during the episode.
     end: Option<EpisodeEnd>,
 }
 
-/// A situation as tables and rules distinguish it.
+/// A situation, as a state of a table and as bits of rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct DecisionPoint {
     situation: SensedSituation,
@@ -60,7 +60,7 @@ struct DecisionPoint {
 }
 
 impl DecisionController {
-    /// The controller before the first step.
+    /// Creates the controller before the first step.
     pub fn new(genes: DecisionGenes) -> Self {
         Self {
             servo: servos(&genes.servo),
@@ -79,7 +79,7 @@ impl DecisionController {
         }
     }
 
-    /// Ends the decision that held, and takes the next one.
+    /// Ends the present decision, and takes the next one.
     fn decide(&mut self, observation: &Observation) {
         let place = self.place(observation);
         self.close(Some(place));
@@ -95,7 +95,7 @@ impl DecisionController {
         }
     }
 
-    /// The situation that the senses show now.
+    /// Returns the situation that the senses show now.
     fn place(&self, observation: &Observation) -> DecisionPoint {
         let senses = &observation.perception;
         let situation = SensedSituation::of(senses, self.action, self.moved_m);
@@ -103,7 +103,7 @@ impl DecisionController {
         DecisionPoint { situation, state, bits }
     }
 
-    /// The posture that the policy takes, or the explorer's.
+    /// Chooses a posture by the policy, or by the explorer.
     fn choice(&mut self, place: &DecisionPoint) -> usize {
         let worths = self.known_worths(place);
         match self.genes.explorer.as_ref().zip(self.rng.as_mut()) {
@@ -112,7 +112,8 @@ impl DecisionController {
         }
     }
 
-    /// The worth of each posture in a place, as far as it is known. No rule is made: it would change the champion.
+    /// Returns the value of each posture in a situation; `None` where it is unknown. No rules are made, because new rules would change the
+    /// champion.
     fn known_worths(&self, place: &DecisionPoint) -> Vec<Option<f32>> {
         match &self.genes.policy {
             Policy::Table(table) => {
@@ -123,7 +124,7 @@ impl DecisionController {
         }
     }
 
-    /// The worth of each posture in a place, and how often it was tried or is advised there.
+    /// Returns the value of each posture in a situation, with the number of times it was tried or of rules that advise it.
     fn worths(&self, place: &DecisionPoint, rules: &[ActiveRule]) -> Vec<PostureWorth> {
         let visits = match &self.genes.policy {
             Policy::Table(table) => table.visits(place.state as usize),
@@ -136,7 +137,7 @@ impl DecisionController {
         of_rules
     }
 
-    /// The rules of the policy, and which of them match and decide in a place.
+    /// Returns the rules of the policy, and whether they match and decide in a situation.
     fn rules(&self, place: &DecisionPoint) -> Vec<ActiveRule> {
         let at = RulePlace { bits: place.bits, names: &SITUATION_BITS, chosen: Some(self.action) };
         match &self.genes.policy {
@@ -146,7 +147,7 @@ impl DecisionController {
         }
     }
 
-    /// Adds the experience of the decision that held until now. `next` is where it led; nothing follows an end.
+    /// Adds the experience of the decision that ends. `next` is the situation to which it led; `None` at an end.
     fn close(&mut self, next: Option<DecisionPoint>) {
         let Some(at) = self.at.filter(|_| self.end.is_none()) else { return };
         let is_end = next.is_none();
@@ -199,7 +200,7 @@ impl Controller for DecisionController {
             self.rewards.disqualify();
             self.close(None);
         }
-        // Time that is up is no end: the snake would go on.
+        // The end of time does not end the task: the snake could continue.
         let now = self.place(observation);
         if self.end.is_none() {
             self.rewards.observe(&observation.climb);

@@ -1,12 +1,11 @@
-//! Senses and servos for a controller outside of this crate.
+//! Senses and servos for a controller outside of this program.
 
 use super::servo::JointServos;
 use super::{ActiveSenses, Observation, Perception, Senses};
 use crate::world::{JointTorque, PhysicsSettings, Simulation};
 
-/// The senses of a snake, and the servos that follow target angles, for a controller outside this program. Such a
-/// controller observes the world with it, decides, and steps a
-/// [`Rollout`](crate::score::Rollout) with torques.
+/// Senses of a snake, and servos that follow target angles, for a controller outside of this program. Such a controller observes the world
+/// with it, decides, and steps a [`Rollout`](crate::score::Rollout) with torques.
 #[derive(Debug, Clone)]
 pub struct ExternalControl {
     observation: Observation,
@@ -15,8 +14,8 @@ pub struct ExternalControl {
 }
 
 impl ExternalControl {
-    /// Control of a world with these settings of the engine, with the senses that work, and servos of a stiffness in
-    /// N·m/rad and a damping in N·m·s/rad.
+    /// Creates the control of a world with these settings of the engine, with these active senses, and with servos of this stiffness in
+    /// N·m/rad and damping in N·m·s/rad.
     pub fn new(
         physics: &PhysicsSettings,
         active: ActiveSenses,
@@ -30,19 +29,19 @@ impl ExternalControl {
         }
     }
 
-    /// Observes the world before step number `step` (0 is the first). To be called once before each step, because the
-    /// filter of the contact forces goes on with each call.
+    /// Observes the world before step number `step` (0 is the first). It must be called once before each step, because each call advances
+    /// the filter of the contact forces.
     pub fn observe(&mut self, step: u32, world: &Simulation) {
         self.observation.update(step, world, Senses::ALL, &self.active);
     }
 
-    /// The senses at the latest observation of the world.
+    /// Returns the senses at the latest observation of the world.
     pub fn perception(&self) -> &Perception {
         &self.observation.perception
     }
 
-    /// Writes the torques of the step that begins, which pull the joints, from the head, towards these angles of bend and
-    /// twist, in radians. To be called at most once between two observations.
+    /// Writes the torques of the step that begins. They turn the joints, from the head, towards these angles of bend and twist, in
+    /// radians. It must be called at most once between two observations.
     pub fn pull_towards(
         &mut self,
         targets_rad: impl Iterator<Item = [f32; 2]>,

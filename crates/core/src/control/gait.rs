@@ -5,7 +5,7 @@ use super::{Controller, Observation, Senses};
 use crate::genome::controllers::{Gait, Waves};
 use crate::world::JointTorque;
 
-/// Pulls every joint towards the angle of a gait.
+/// Turns every joint towards the target angle of a gait.
 #[derive(Debug, Clone)]
 pub struct GaitFollower {
     waves: Waves,
@@ -13,7 +13,7 @@ pub struct GaitFollower {
 }
 
 impl GaitFollower {
-    /// The follower of a gait before the first step.
+    /// Creates the follower of a gait before the first step.
     pub fn new(gait: Gait) -> Self {
         let Gait { stiffness_nm_per_rad, servo_damping_nms_per_rad, waves } = gait;
         Self { waves, servo: JointServos::new(stiffness_nm_per_rad, servo_damping_nms_per_rad) }
@@ -42,7 +42,7 @@ mod tests {
     use crate::score::Trial;
     use crate::world::{JointTorque, PhysicsSettings, Simulation, TESTED_RATES, Vector};
 
-    /// Angles after each step of two floating limbs whose joint is twisted at 2 rad/s and pulled back by a servo.
+    /// Returns the angles after each step of two floating limbs whose joint is twisted at 2 rad/s and turned back by a servo.
     fn swing_rad(
         physics: &PhysicsSettings,
         stiffness: f32,
@@ -97,11 +97,11 @@ mod tests {
                     "{stiffness}, {joint_damping}, {servo_damping} at {steps_per_s} and {substeps}"
                 );
                 let angles = swing_rad(&physics, stiffness, joint_damping, servo_damping);
-                // A limb has m (width² + height²) / 12 = 5/6 kg m², the joint between two of them half of that.
+                // A limb has m (width² + height²) / 12 = 5/6 kg m²; for the joint between two limbs, half of it counts.
                 let inertia = 5.0 / 12.0;
                 let decay_per_s = (joint_damping + servo_damping) / inertia / 2.0;
                 let angular = (stiffness / inertia - decay_per_s * decay_per_s).sqrt();
-                // The turns, from the vertices of parabolas through three points.
+                // The turning points are the vertices of parabolas through three points.
                 let mut turns = Vec::new();
                 for (index, three) in angles.windows(3).enumerate() {
                     let [a, b, c] = [three[0], three[1], three[2]];

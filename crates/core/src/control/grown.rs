@@ -1,4 +1,4 @@
-//! A grown network at work.
+//! The controller with a grown network.
 
 use super::network::{beat, servos};
 use super::servo::JointServos;
@@ -7,7 +7,7 @@ use crate::genome::controllers::{GROWN_INPUTS, GrownGenes};
 use crate::learn::neat::NetworkPlay;
 use crate::world::JointTorque;
 
-/// Lets a grown network act. All nodes respond to the activities of the last step, so that cycles need no order.
+/// Computes a grown network. All nodes respond to the activities of the last step, so that cycles need no order.
 #[derive(Debug, Clone)]
 pub struct GrownController {
     genes: GrownGenes,
@@ -17,7 +17,7 @@ pub struct GrownController {
 }
 
 impl GrownController {
-    /// The controller before the first step: all activities are 0.
+    /// Creates the controller before the first step, with all activities 0.
     pub fn new(genes: GrownGenes) -> Self {
         Self {
             servo: servos(&genes.servo),
@@ -63,7 +63,7 @@ impl Controller for GrownController {
         self.sense(observation);
         let range_rad = self.genes.servo.bend_range_rad;
         let outputs = self.network.tick(&self.inputs);
-        // An output of 0 to 1 is a bend to either side.
+        // An output from 0 to 1 becomes a bend to either side.
         let targets = outputs.iter().map(|output| [(2.0 * output - 1.0) as f32 * range_rad, 0.0]);
         self.servo.pull(observation, targets, torques);
     }
@@ -92,7 +92,7 @@ impl Controller for GrownController {
             }
         }
         for link in genome.links.iter().filter(|link| link.enabled) {
-            // Ids ascend.
+            // Ids are in ascending order.
             let ends = [link.from, link.to].map(|id| ids.binary_search(&id).ok());
             if let [Some(from), Some(to)] = ends {
                 shown.link(from, to, link.weight);

@@ -1,4 +1,4 @@
-//! Decisions of each joint at work: a bend four times a second, and the experience that comes of it.
+//! The controller with decisions of each joint: it chooses bends four times a second, and records the experience.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -19,38 +19,38 @@ use crate::learn::Episode;
 use crate::learn::classifiers::{EpisodeEnd, RecordedDecision};
 use crate::world::JointTorque;
 
-/// The bend from which on a joint is bent, in radians.
+/// Bend from which on a joint counts as bent, in radians.
 const BENT_RAD: f32 = 0.4;
-/// The gap below which a riser is near a limb, in metres.
+/// Gap below which a riser counts as near a limb, in metres.
 const NEAR_M: f32 = 1.0;
-/// The height from which on there is a step ahead, in metres.
+/// Height from which on a step counts as being ahead, in metres.
 const STEP_M: f32 = 0.05;
-/// The sine of the pitch from which on a limb is raised.
+/// Sine of the pitch from which on a limb counts as raised.
 const RAISED: f32 = 0.3;
 
-/// Each joint decides by its own rules. Explorers decide at random now and then.
+/// Lets each joint decide by its own rules. Explorers sometimes decide at random.
 #[derive(Debug, Clone)]
 pub struct JointDecisionController {
     genes: JointDecisionGenes,
     servo: JointServos,
     rng: Option<ChaCha8Rng>,
     clock: DecisionClock,
-    /// The situation of each joint at the decision that holds; none before the first.
+    /// Situation of each joint at the present decision; `None` before the first decision.
     bits: Option<Vec<u32>>,
-    /// The bend of each joint, by its number among [`JOINT_BENDS`]; none before its first.
+    /// Bend of each joint, as an index of [`JOINT_BENDS`]; `None` before the joint's first choice.
     chosen: Vec<Option<usize>>,
-    /// Bends at the last decision, and those that it asks for, in radians.
+    /// Bends of each joint at the last decision and the target bends of this decision, in radians.
     bends_rad: Vec<[f32; 2]>,
     moved_m: f32,
     rewards: RewardMeter,
-    /// The experience of each joint so far.
+    /// Experience of each joint so far.
     decisions: Vec<Vec<RecordedDecision>>,
-    /// Whether nothing more can be learned: the episode has ended.
+    /// Whether the episode has ended, so that nothing more is learned.
     is_over: bool,
 }
 
 impl JointDecisionController {
-    /// The controller before the first step.
+    /// Creates the controller before the first step.
     pub fn new(genes: JointDecisionGenes) -> Self {
         let joints = genes.systems.len();
         Self {
@@ -68,7 +68,7 @@ impl JointDecisionController {
         }
     }
 
-    /// Ends the decisions that held, and takes the next ones, from the head.
+    /// Ends the present decisions, and takes the next ones, from the head.
     fn decide(&mut self, senses: &Perception) {
         self.close(false);
         self.rewards.begin_decision();
@@ -80,7 +80,7 @@ impl JointDecisionController {
             let action = explored(explorer, JOINT_BENDS.len(), system.frozen_action(bits[joint]));
             let [from, to] = &mut self.bends_rad[joint];
             *from = *to;
-            // Without a rule a joint keeps its bend: covering would change the champion.
+            // Without a matching rule, a joint keeps its bend. Covering is not possible, because it would change the champion.
             self.chosen[joint] = action.or(self.chosen[joint]);
             if let Some(action) = action {
                 *to = [0.0, 1.0, -1.0][action.min(2)] * self.genes.servo.bend_range_rad;
@@ -89,7 +89,7 @@ impl JointDecisionController {
         self.bits = Some(bits);
     }
 
-    /// Adds the experience of the decisions that held until now.
+    /// Adds the experience of the decisions that end.
     fn close(&mut self, is_end: bool) {
         let Some(bits) = self.bits.as_ref().filter(|_| !self.is_over) else { return };
         let reward = self.rewards.of_rules(is_end);
@@ -102,13 +102,14 @@ impl JointDecisionController {
     }
 }
 
-/// The action of rules that would take the frozen one: an explorer's random one now and then, and where there is none.
+/// Returns the action of rules whose frozen action is `frozen`. For an explorer, it is sometimes a random action, and always if there is
+/// no frozen one.
 fn explored(
     explorer: Option<(&Explorer, &mut ChaCha8Rng)>,
     actions: usize,
     frozen: Option<usize>,
 ) -> Option<usize> {
-    // An explorer draws both numbers in each decision, so that its stream does not depend on what it knows.
+    // An explorer draws both numbers in each decision, so that its stream does not depend on what it has learned.
     let random = explorer.map(|(explorer, rng)| {
         let is_random = rng.random::<f32>() < explorer.epsilon;
         (is_random, rng.random_range(0..actions as u32) as usize)
@@ -119,7 +120,7 @@ fn explored(
     }
 }
 
-/// The bits of a joint's situation: see [`JOINT_BITS`].
+/// Returns the bits of a joint's situation: see [`JOINT_BITS`].
 fn situation(senses: &Perception, joint: usize, moved: bool) -> u32 {
     let bend_rad = |joint: Option<usize>| {
         let of = joint.and_then(|joint| senses.joints.get(joint).copied());
@@ -146,7 +147,7 @@ fn situation(senses: &Perception, joint: usize, moved: bool) -> u32 {
     bits_of(&bits)
 }
 
-/// The situation of a joint in words: all that is so.
+/// Describes the situation of a joint in words, by all bits that are set.
 fn in_words(bits: u32) -> String {
     bits_in_words(&JOINT_BITS, bits, bits, "nothing near")
 }
@@ -179,7 +180,7 @@ impl Controller for JointDecisionController {
         }
         let was_over = self.is_over;
         self.close(is_disqualified);
-        // Time that is up is no end: the snake would go on.
+        // The end of time does not end the task: the snake could continue.
         let end = |bits: u32| match was_over || is_disqualified {
             true => EpisodeEnd::Terminal,
             false => EpisodeEnd::TimeOut { bits },

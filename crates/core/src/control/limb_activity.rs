@@ -8,23 +8,23 @@ use crate::genome::controllers::{
 /// The neurons of all limbs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LimbActivity {
-    /// The limbs, head first.
+    /// Limbs, head first.
     pub limbs: Vec<ActiveLimb>,
 }
 
 /// The neurons of a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActiveLimb {
-    /// The neurons.
+    /// Neurons of the limb.
     pub neurons: [LimbNeuron; LIMB_NEURONS],
-    /// Their outputs.
+    /// Outputs of the neurons.
     pub outputs: [f32; LIMB_NEURONS],
-    /// The values of all sources, in the order of [`NeuronSource::ALL`].
+    /// Values of all sources, in the order of [`NeuronSource::ALL`].
     pub values: [f32; NEURON_SOURCES],
 }
 
 impl LimbActivity {
-    /// The purpose of a neuron, by its place: the first two drive the joint behind their limb. The tail has none behind it.
+    /// Describes the purpose of a neuron by its index: the first two drive the joint behind their limb. The tail has no joint behind it.
     pub fn purpose(&self, limb: usize, neuron: usize) -> &'static str {
         match neuron {
             0 if limb + 1 < self.limbs.len() => "bend target",
@@ -33,7 +33,7 @@ impl LimbActivity {
         }
     }
 
-    /// The network of a limb: the values that its neurons read, and the neurons. A neuron that is off has no links.
+    /// Returns the network of a limb: its neurons, and the values that they read. A neuron that is off has no links.
     pub fn network(&self, limb: usize) -> Option<NetworkActivity> {
         let ActiveLimb { neurons, outputs, values } = self.limbs.get(limb)?;
         let works = |neuron: &&LimbNeuron| neuron.kind != NeuronKind::Off;
@@ -41,7 +41,7 @@ impl LimbActivity {
         let is_read = |source| inputs().any(|input| input.source == source && input.weight != 0.0);
         let mut shown = NetworkActivity::default();
         let mut places = [0; NEURON_SOURCES];
-        // The first sources are the limb's own neurons.
+        // The first sources are the limb's own neurons, which are not inputs.
         for (index, source) in NeuronSource::ALL.into_iter().enumerate().skip(LIMB_NEURONS) {
             if is_read(source) {
                 places[index] = shown.nodes.len();

@@ -1,4 +1,4 @@
-//! Neurons of limbs at work.
+//! The controller with neurons in the limbs.
 
 mod activity;
 #[cfg(test)]
@@ -10,25 +10,25 @@ use super::{Activity, Controller, Observation, Senses};
 use crate::genome::controllers::{LIMB_NEURONS, LimbNeurons, NEURON_SOURCES, ServoGenes};
 use crate::world::JointTorque;
 
-/// Lets the neurons of all limbs respond, step after step.
+/// Computes the neurons of all limbs, step after step.
 #[derive(Debug, Clone)]
 pub struct LimbNeuronController {
     genes: LimbNeurons,
     servo: JointServos,
     /// Outputs of the neurons of each limb, head first.
     outputs: Vec<[f32; LIMB_NEURONS]>,
-    /// Working memory: those of the step that begins.
+    /// Outputs of the step that begins: working memory.
     next: Vec<[f32; LIMB_NEURONS]>,
 }
 
 impl LimbNeuronController {
-    /// The controller before the first step: all outputs are 0.
+    /// Creates the controller before the first step, with all outputs 0.
     pub fn new(genes: LimbNeurons) -> Self {
         let outputs = vec![[0.0; LIMB_NEURONS]; genes.limb_count()];
         Self { servo: servos(&genes.servo), next: outputs.clone(), outputs, genes }
     }
 
-    /// The values of all sources of a limb, in the order of `NeuronSource::ALL`. Those of a limb or a joint that is not there
+    /// Returns the values of all sources of a limb, in the order of `NeuronSource::ALL`. Values of a limb or a joint that does not exist
     /// are 0.
     fn values(
         &self,
@@ -97,7 +97,7 @@ impl Controller for LimbNeuronController {
         self.servo.pull(observation, targets, torques);
     }
 
-    /// The outputs of neurons among the values are those that they read next.
+    /// Shows the neurons of all limbs. Outputs among the values are those that are read in the next step.
     fn activity(&self, observation: &Observation, _joint: usize) -> Option<Activity> {
         self.limbs(observation).map(Activity::Limbs)
     }
@@ -122,7 +122,7 @@ pub(super) mod tests {
         genes
     }
 
-    /// A snake of five limbs that senses nothing.
+    /// Returns an observation of a snake of five limbs that senses nothing.
     pub fn standing() -> Observation {
         let mut observation = Observation { steps_per_s: 60, ..Observation::default() };
         observation.joints = vec![Default::default(); 4];
@@ -131,14 +131,14 @@ pub(super) mod tests {
         observation
     }
 
-    /// A neuron of tanh that reads one value.
+    /// Returns a tanh neuron that reads one value.
     fn relay(source: NeuronSource) -> LimbNeuron {
         let unused = NeuronInput { source: NeuronSource::Own1, weight: 0.0 };
         let inputs = [NeuronInput { source, weight: 1.0 }, unused, unused];
         LimbNeuron { kind: NeuronKind::Tanh, bias: 0.0, inputs }
     }
 
-    /// The outputs after each of four steps while only the head touches, or only the tail.
+    /// Returns the outputs after each of four steps while only this limb touches.
     fn outputs_after_touch(limb: usize, neurons: [LimbNeuron; 4]) -> Vec<Vec<[f32; 4]>> {
         let mut genes = random(true);
         genes.limbs = vec![neurons];
@@ -156,7 +156,7 @@ pub(super) mod tests {
     #[test]
     fn a_touch_travels_one_limb_a_step_and_absent_neighbours_are_silent() {
         use NeuronSource::{Front1, Front3, Rear2, Rear4, Touch};
-        // The first neuron hands backwards, the second forwards; the others listen to both.
+        // The first neuron passes the touch on backwards, the second forwards; the others read both.
         let mut back = relay(Front1);
         back.inputs[1] = NeuronInput { source: Touch, weight: 1.0 };
         let mut ahead = relay(Rear2);
@@ -167,7 +167,7 @@ pub(super) mod tests {
                 for (index, output) in outputs.iter().enumerate() {
                     let distance = index.abs_diff(limb);
                     assert_eq!(output[channel] != 0.0, distance <= step, "limb {index} at {step}");
-                    // Nothing but a neighbour could make these speak.
+                    // Only a neighbouring limb could make these neurons respond.
                     assert_eq!(output[2..], [0.0; 2]);
                 }
             }

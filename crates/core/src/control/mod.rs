@@ -1,6 +1,6 @@
-//! From genes and observations to torques.
+//! Controllers: from genes and observations to torques.
 //!
-//! A new kind of controller is a file here, a line in `controller_of`, and its genes, which are registered in
+//! A new kind of controller needs a file in this folder, a line in `controller_of`, and genes, which are registered in
 //! `genome/controllers`.
 
 mod activity;
@@ -51,7 +51,7 @@ use crate::genome::{ControllerGenes, Genome};
 use crate::learn::Episode;
 use crate::world::{BodyPlan, JointTorque, PhysicsSettings, Simulation, WorldPlan};
 
-/// The controller that a genome encodes for its body, in its state before the first step.
+/// Creates the controller that a genome encodes for its body, in its state before the first step.
 fn controller_of(genome: &Genome, body: &BodyPlan) -> Box<dyn Controller> {
     match &genome.controller {
         ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
@@ -78,7 +78,7 @@ fn controller_of(genome: &Genome, body: &BodyPlan) -> Box<dyn Controller> {
     }
 }
 
-/// A controller at work in one world: it observes, then acts. A clone goes on with the state of the original.
+/// A controller in a world: it observes the world, then acts. A clone continues with the state of the original.
 #[derive(Clone)]
 pub struct ControlLoop {
     controller: Box<dyn Controller>,
@@ -87,7 +87,7 @@ pub struct ControlLoop {
 }
 
 impl ControlLoop {
-    /// The control loop of a genome in a world of this plan, with the senses that work.
+    /// Creates the control loop of a genome in a world of this plan, with these active senses.
     pub fn new(genome: &Genome, plan: &WorldPlan, active: ActiveSenses) -> Self {
         Self::of(controller_of(genome, &plan.body), &plan.physics, active)
     }
@@ -100,8 +100,7 @@ impl ControlLoop {
         Self { controller, observation: Observation::at_start(physics), active }
     }
 
-    /// Goes on in a world with other settings of the engine, with steps of the same length, and with the senses that
-    /// work from now on.
+    /// Continues in a world with other settings of the engine, but the same step length, and with other active senses.
     pub fn continue_in(&mut self, physics: &PhysicsSettings, active: ActiveSenses) {
         self.observation.take_lead(physics);
         self.active = active;
@@ -113,12 +112,13 @@ impl ControlLoop {
         self.controller.act(&self.observation, torques);
     }
 
-    /// How often each wave of a library was chosen so far; none for a controller without one.
+    /// Returns how often each wave of a library was chosen so far; `None` for a controller without a library.
     pub fn wave_uses(&self) -> Option<WaveUses> {
         self.controller.wave_uses()
     }
 
-    /// Ends the episode after step number `step - 1`, the last: the experience of a controller that learns from it.
+    /// Ends the episode after step number `step - 1`, the last, and returns the experience of a controller that learns from it; otherwise
+    /// `None`.
     pub fn finish(
         &mut self,
         step: u32,
@@ -131,17 +131,17 @@ impl ControlLoop {
         self.controller.finish(&self.observation, is_disqualified)
     }
 
-    /// The state of the controller for display at a joint, the first of which is 0: see [`Controller::activity`].
+    /// Returns the state of the controller for display at a joint; the first joint is 0. See [`Controller::activity`].
     pub fn activity(&self, joint: usize) -> Option<Activity> {
         self.controller.activity(&self.observation, joint)
     }
 
-    /// The senses that work now.
+    /// Returns the senses that work now.
     pub fn active_senses(&self) -> ActiveSenses {
         self.active
     }
 
-    /// The senses before the last step; empty for a controller that does not sense its surroundings.
+    /// Returns the senses before the last step; empty for a controller that does not sense its surroundings.
     pub fn perception(&self) -> &Perception {
         &self.observation.perception
     }
@@ -154,7 +154,7 @@ mod tests {
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;
 
-    /// Counts its steps, and expects joint states only when it needs them.
+    /// A controller that counts its steps, and expects joint states only if it needs them.
     #[derive(Clone)]
     struct Counter {
         senses: Senses,

@@ -1,4 +1,4 @@
-//! Networks of tanh neurons: one for each joint, or one for the whole snake.
+//! The controllers with networks of tanh neurons: one network for each joint, or one for the whole snake.
 
 use super::perception::Perception;
 use super::servo::JointServos;
@@ -8,23 +8,23 @@ use crate::genome::controllers::{
 };
 use crate::world::JointTorque;
 
-/// The servos of a network's genes.
+/// Creates the servos of a network's genes.
 pub(super) fn servos(genes: &ServoGenes) -> JointServos {
     JointServos::new(genes.stiffness_nm_per_rad, genes.damping_nms_per_rad)
 }
 
-/// Place of a joint along the body, from -1 at the head to 1 at the tail.
+/// Returns the place of a joint along the body, from -1 at the head to 1 at the tail; 0 for a single joint.
 pub(super) fn place(joint: usize, joints: usize) -> f32 {
     if joints < 2 { 0.0 } else { 2.0 * joint as f32 / (joints - 1) as f32 - 1.0 }
 }
 
-/// Sine and cosine of a beat after this many periods, delayed by an angle.
+/// Returns the sine and cosine of a beat after this many periods, delayed by an angle in radians.
 pub(super) fn beat(periods: f64, delay_rad: f32) -> [f32; 2] {
     let (sine, cosine) = libm::sincos(std::f64::consts::TAU * periods - f64::from(delay_rad));
     [sine as f32, cosine as f32]
 }
 
-/// Lets the same network act at each joint.
+/// Computes the same network at each joint.
 #[derive(Debug, Clone)]
 pub struct ModularController {
     genes: ModularNetwork,
@@ -36,7 +36,7 @@ pub struct ModularController {
 }
 
 impl ModularController {
-    /// The controller before the first step.
+    /// Creates the controller before the first step.
     pub fn new(genes: ModularNetwork) -> Self {
         let joints = genes.joints as usize;
         Self {
@@ -47,7 +47,7 @@ impl ModularController {
         }
     }
 
-    /// The inputs of a joint's module; messages are those of the last step.
+    /// Returns the inputs of a joint's module. Messages are those of the last step.
     fn inputs(
         &self,
         joint: usize,
@@ -97,7 +97,7 @@ impl Controller for ModularController {
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let periods = observation.periods(self.genes.frequency_hz);
         let senses = &observation.perception;
-        // All modules read the messages of the last step before one of them writes.
+        // All modules read the messages of the last step before any of them writes.
         let (neurons, outputs) = (self.genes.hidden.neurons(), self.genes.outputs.neurons());
         for joint in 0..senses.joints.len() {
             let inputs = self.inputs(joint, senses, periods);
@@ -119,7 +119,7 @@ impl Controller for ModularController {
         self.servo.pull(observation, targets, torques);
     }
 
-    /// The messages among the inputs are those that it reads next.
+    /// Shows the module of a joint. Messages among the inputs are those that are read in the next step.
     fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {
         let senses = &observation.perception;
         senses.joints.get(joint)?;
@@ -142,7 +142,7 @@ impl Controller for ModularController {
     }
 }
 
-/// Lets one network act for the whole snake.
+/// Computes one network for the whole snake.
 #[derive(Debug, Clone)]
 pub struct CentralController {
     genes: CentralNetwork,
@@ -153,7 +153,7 @@ pub struct CentralController {
 }
 
 impl CentralController {
-    /// The controller before the first step.
+    /// Creates the controller before the first step.
     pub fn new(genes: CentralNetwork) -> Self {
         Self {
             servo: servos(&genes.servo),
@@ -236,7 +236,7 @@ mod tests {
     fn a_touch_at_the_head_reaches_the_tail_by_messages_one_joint_a_step() {
         let mut genes = modular();
         genes.frequency_hz = 0.01;
-        // Saturated neurons would swallow a small message.
+        // The weights are reduced, because saturated neurons would hide a small message.
         let rows = genes.hidden.rows.iter_mut().chain(&mut genes.outputs.rows);
         rows.flatten().for_each(|weight| *weight *= 0.25);
         let mut plain = ModularController::new(genes);

@@ -1,4 +1,4 @@
-//! Neurons of a creature at work.
+//! The controller with the neurons of a creature.
 
 use super::{Controller, Observation, Perception, SenseKind, Senses};
 use crate::genome::controllers::{
@@ -7,40 +7,40 @@ use crate::genome::controllers::{
 use crate::genome::{Genome, GrownPart, grow};
 use crate::world::{BodyPlan, JointTorque};
 
-/// Updates of the neurons in a physics step, after Sims (1994).
+/// Number of updates of the neurons in a physics step, after Sims (1994).
 const UPDATES: u32 = 2;
-/// Time constant of the torques behind the neurons, in s: four steps of a sixtieth, so that a neuron that flips does not hit
+/// Time constant with which the torques follow the neurons, in s: four steps of a sixtieth, so that a neuron that switches does not hit
 /// its joint like a hammer.
 const SMOOTH_S: f32 = 4.0 / 60.0;
 
-/// Lets the neurons of all parts respond, step after step.
+/// Computes the neurons of all parts, step after step.
 #[derive(Debug, Clone)]
 pub struct PartNeuronController {
     genes: PartNeurons,
     parts: Vec<NervousPart>,
-    /// Outputs of the neurons of each part, and last those that belong to none.
+    /// Outputs of the neurons of each part, followed by those of the shared neurons.
     outputs: Vec<Vec<f64>>,
-    /// Working memory: the outputs of the update that is computed.
+    /// Outputs of the present update: working memory.
     next: Vec<Vec<f64>>,
     states: Vec<Vec<NeuronState>>,
     /// Greatest torques of each joint about its bend and its twist axis, in N·m.
     most_nm: Vec<[f32; 2]>,
-    /// Torques of the last step as shares of the greatest, one pair for each joint.
+    /// Torques of the last step as shares of the greatest torques, one pair for each joint.
     shares: Vec<[f32; 2]>,
 }
 
-/// A part as its neurons know it.
+/// A part with the data that its neurons need.
 #[derive(Debug, Clone)]
 struct NervousPart {
     node: usize,
     parent: Option<usize>,
     children: Vec<usize>,
-    /// The sign of its twists and of its sideways senses: -1 in a mirror image, which moves as its original does then.
+    /// Sign of the part's twists and sideways senses: -1 in a mirror image, so that it moves like the mirror image of the original.
     side: f32,
 }
 
 impl PartNeuronController {
-    /// The controller of a genome with this body before the first step: all outputs are 0.
+    /// Creates the controller of a genome with this body before the first step, with all outputs 0.
     pub fn new(genes: PartNeurons, genome: &Genome, body: &BodyPlan) -> Self {
         let grown = grow(&genome.body.nodes);
         let part = |(index, part): (usize, &GrownPart)| NervousPart {
@@ -71,14 +71,14 @@ impl PartNeuronController {
         }
     }
 
-    /// Output of a neuron in a list that starts again at its end.
+    /// Returns the output of a neuron. An index beyond the end of the list continues from its start.
     fn output(&self, group: usize, index: u8) -> f64 {
         let outputs = &self.outputs[group];
         outputs.get(usize::from(index) % outputs.len().max(1)).copied().unwrap_or(0.0)
     }
 
-    /// The value of an input of a neuron of a part; one that belongs to no part reads the senses of the first, and has neither
-    /// parent nor children.
+    /// Returns the value of an input of a neuron of a part. A shared neuron reads the senses of the first part, and has neither parent nor
+    /// children.
     fn value(&self, input: &PartInput, group: usize, senses: &Perception) -> f64 {
         let part = self.parts.get(group);
         let value = match input.source {
@@ -102,7 +102,7 @@ impl PartNeuronController {
         value * f64::from(input.weight)
     }
 
-    /// Computes all neurons from the outputs of the last update.
+    /// Computes the outputs of all neurons from those of the last update.
     fn update(&mut self, observation: &Observation, update: u32) {
         let step_s = 1.0 / (f64::from(observation.steps_per_s.max(1)) * f64::from(UPDATES));
         let mut next = std::mem::take(&mut self.next);
@@ -130,7 +130,8 @@ impl PartNeuronController {
     }
 }
 
-/// The value of a sense of a part. The joint that holds it has the number of the part less one. `side` is -1 for a mirror image.
+/// Returns the value of a sense of a part. The index of the joint that holds the part is that of the part minus one. `side` is -1 for a
+/// mirror image.
 fn sensed(senses: &Perception, sense: PartSense, part: usize, side: f32) -> f32 {
     let joint = |kind| part.checked_sub(1).map_or(0.0, |joint| senses.value(kind, joint));
     match sense {

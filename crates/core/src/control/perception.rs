@@ -1,7 +1,7 @@
-//! The senses as controllers receive them: scaled to about one, clamped, and independent of the place.
+//! The senses as controllers receive them: scaled to a magnitude of about one, clamped, and independent of the place.
 //!
-//! There is no time since the start and no absolute place among them, so a controller cannot learn one staircase by
-//! heart through its senses.
+//! The senses contain neither the time since the start nor an absolute place, so a controller cannot memorise one staircase through its
+//! senses.
 
 use super::sense::{
     ANGLE_SCALE_RAD, ActiveSenses, GAP_SCALE_M, RATE_SCALE_RAD_S, SPEED_SCALE_M_S, SenseKind,
@@ -12,77 +12,76 @@ use crate::world::{JointState, LimbReading, PhysicsSettings, Simulation};
 /// Everything that a snake senses at a moment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Perception {
-    /// The joints, from the head.
+    /// Senses of the joints, from the head.
     pub joints: Vec<JointSenses>,
-    /// The limbs, head first.
+    /// Senses of the limbs, head first.
     pub limbs: Vec<LimbSenses>,
-    /// The snake as a whole.
+    /// Senses of the snake as a whole.
     pub snake: SnakeSenses,
-    /// Share of a new force that the filter takes over in a step.
+    /// Share with which the filter of contact forces follows a new force in a step.
     force_share: f32,
-    /// Working memory.
+    /// Readings of the limbs: working memory.
     readings: Vec<LimbReading>,
 }
 
 /// The senses of one joint: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointSenses {
-    /// [`SenseKind::Bend`].
+    /// Angle of the joint's bend: [`SenseKind::Bend`].
     pub bend: f32,
-    /// [`SenseKind::Twist`].
+    /// Angle of the joint's twist: [`SenseKind::Twist`].
     pub twist: f32,
-    /// [`SenseKind::BendRate`].
+    /// Rate of the joint's bend: [`SenseKind::BendRate`].
     pub bend_rate: f32,
-    /// [`SenseKind::TwistRate`].
+    /// Rate of the joint's twist: [`SenseKind::TwistRate`].
     pub twist_rate: f32,
 }
 
 /// The senses of one limb: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LimbSenses {
-    /// [`SenseKind::Touch`].
+    /// Whether the limb touches ground or stairs: [`SenseKind::Touch`].
     pub touch: f32,
-    /// [`SenseKind::Load`]: F / (F + W/n) of a force F, for the weight W of a snake of n limbs.
+    /// Upward force of contacts: [`SenseKind::Load`]. A force F has the value F / (F + W/n), for the weight W of a snake of n limbs.
     pub load: f32,
-    /// [`SenseKind::Blocked`], scaled like the load.
+    /// Force of contacts against the limb's direction, scaled like the load: [`SenseKind::Blocked`].
     pub blocked: f32,
-    /// [`SenseKind::Pitch`].
+    /// Sine of the limb's pitch: [`SenseKind::Pitch`].
     pub pitch: f32,
-    /// [`SenseKind::Roll`].
+    /// Sine of the limb's roll: [`SenseKind::Roll`].
     pub roll: f32,
-    /// [`SenseKind::Gap`]; 1 without a riser ahead.
+    /// Distance to the next riser: [`SenseKind::Gap`]. It is 1 without a riser ahead.
     pub gap: f32,
-    /// [`SenseKind::StepUp`]; 0 without a riser ahead.
+    /// Height of the next tread: [`SenseKind::StepUp`]. It is 0 without a riser ahead.
     pub step_up: f32,
-    /// [`SenseKind::Clearance`].
+    /// Height over the surface below: [`SenseKind::Clearance`].
     pub clearance: f32,
 }
 
 /// The senses of the snake as a whole: see [`SenseKind`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SnakeSenses {
-    /// [`SenseKind::Yaw`].
+    /// Sine of the head's yaw: [`SenseKind::Yaw`].
     pub yaw: f32,
-    /// [`SenseKind::SpeedAhead`].
+    /// Velocity towards the stairs: [`SenseKind::SpeedAhead`].
     pub speed_ahead: f32,
-    /// [`SenseKind::SpeedUp`].
+    /// Upward velocity: [`SenseKind::SpeedUp`].
     pub speed_up: f32,
-    /// [`SenseKind::Aside`].
+    /// Offset from the middle of the stairs: [`SenseKind::Aside`].
     pub aside: f32,
 }
 
-/// Time constant of the filter of the contact forces, in s. Those of a substep jump by all of their size from step to
-/// step.
+/// Time constant of the filter of the contact forces, in s. Without a filter, the forces of a substep would jump by their whole size from
+/// step to step.
 const FORCE_FILTER_S: f32 = 0.1;
 
 impl Perception {
-    /// Takes the length of a step, on which the filter of forces depends.
+    /// Computes the share of the filter of forces for the length of a step.
     pub(super) fn take_step(&mut self, physics: &PhysicsSettings) {
         self.force_share = 1.0 - libm::expf(-physics.step_s() / FORCE_FILTER_S);
     }
 
-    /// Senses the world before a step. Organs that do not work keep their values; nothing is allocated after the first
-    /// step.
+    /// Senses the world before a step. Values of organs that do not work stay as they are. Nothing is allocated after the first step.
     pub(super) fn update(
         &mut self,
         world: &Simulation,
@@ -99,7 +98,7 @@ impl Perception {
         if is_first {
             self.limbs.resize(self.readings.len(), LimbSenses::default());
         }
-        // At the first step every organ takes its value, and the filters begin with what they see.
+        // At the first step every organ gets its value, and the filters begin with the present forces.
         let works = |organ: bool| organ || is_first;
         let force_share = if is_first { 1.0 } else { self.force_share };
         let limb_weight_n = world.weight_n() / self.readings.len() as f32;
@@ -137,7 +136,7 @@ impl Perception {
         }
     }
 
-    /// The value of a sense of part number `part`; 0 for a part that there is not.
+    /// Returns the value of a sense of part number `part`, a joint or a limb; 0 for a part that does not exist.
     pub fn value(&self, kind: SenseKind, part: usize) -> f32 {
         let joint = |of: fn(&JointSenses) -> f32| self.joints.get(part).map_or(0.0, of);
         let limb = |of: fn(&LimbSenses) -> f32| self.limbs.get(part).map_or(0.0, of);
@@ -161,12 +160,12 @@ impl Perception {
         }
     }
 
-    /// Number of values that a snake with this many joints senses.
+    /// Returns the number of values that a snake with this many joints senses.
     pub const fn count(joints: usize) -> usize {
         sense_count(joints)
     }
 
-    /// All values in a fixed order: joint after joint, limb after limb, then those of the snake.
+    /// Returns all values in a fixed order: joint by joint, limb by limb, then those of the whole snake.
     pub fn values(&self) -> impl Iterator<Item = f32> + '_ {
         let joints = self
             .joints
@@ -180,7 +179,7 @@ impl Perception {
         joints.chain(limbs).chain([yaw, speed_ahead, speed_up, aside])
     }
 
-    /// Name of value number `index` of [`Self::values`] for a snake with this many joints, as "limb 2 gap".
+    /// Returns the name of value number `index` of [`Self::values`] for a snake with this many joints, such as "limb 2 gap".
     pub fn name(index: usize, joints: usize) -> String {
         let [of_joints, of_limbs, of_snake] =
             [&SenseKind::ALL[..4], &SenseKind::ALL[4..12], &SenseKind::ALL[12..]];
@@ -211,7 +210,7 @@ impl JointSenses {
     }
 }
 
-/// F / (F + W) of a force F and a weight W: half at the weight, less than 1 for any force.
+/// Returns F / (F + W) for a force F and a weight W: one half if the force equals the weight, and less than 1 for any force.
 fn share_of(force_n: f32, weight_n: f32) -> f32 {
     if force_n > 0.0 { (force_n / (force_n + weight_n)).min(1.0) } else { 0.0 }
 }
@@ -243,7 +242,7 @@ mod tests {
             let mut rollouts = [&near, &far].map(|trial| Rollout::new(&genome, trial));
             let mut perceptions = [Perception::default(), Perception::default()];
             perceptions.iter_mut().for_each(|perception| perception.take_step(&near.physics));
-            // Later the rounding of the places has grown, as any difference does.
+            // After these steps, the difference by rounding of the places has grown, as any difference does.
             for step in 0..25 {
                 for (perception, rollout) in perceptions.iter_mut().zip(&rollouts) {
                     updated(perception, rollout, &ActiveSenses::default());

@@ -1,20 +1,20 @@
-//! Which posture a decision takes, by what is known of each.
+//! The choice of a posture in a decision, by the known values of all postures.
 //!
-//! A decision always takes another posture than the one before. If it could keep a posture, a snake in a situation that
-//! does not change would decide alike for ever, and little would speak against it: a pause costs hardly more than a few
-//! percent of what the future is worth, less than the noise of what was learned.
+//! A decision always takes another posture than the one before. If a snake could keep a posture, it would decide alike for ever in a
+//! situation that does not change. Learning would hardly prevent this: a pause costs only a few percent of the value of the future, less
+//! than the noise of the learned values.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// The posture of the largest worth beside the present one, the first among equals. One of unknown worth comes last.
+/// Returns the posture of the largest value other than the present one, the lowest index among equal ones. A posture with an unknown value
+/// comes last.
 pub fn best_posture(worths: &[Option<f32>], present: usize) -> usize {
     best_postures(worths, present).first().copied().unwrap_or(present)
 }
 
-/// The posture that an explorer takes: the best one, a random one among equals; with probability `epsilon` (0 to 1) any
-/// other posture than the present one. It draws two numbers whatever it knows, so that its stream does not depend on what
-/// it knows.
+/// Returns the posture that an explorer takes: the best one, a random one among equal ones; with probability `epsilon` (0 to 1) any
+/// posture other than the present one. It always draws two numbers, so that its stream does not depend on what it has learned.
 pub fn explored_posture(
     worths: &[Option<f32>],
     present: usize,
@@ -30,7 +30,7 @@ pub fn explored_posture(
     among.get(index).or(among.last()).copied().unwrap_or(present)
 }
 
-/// All postures of the largest worth beside the present one, rising.
+/// Returns all postures of the largest value other than the present one, in ascending order.
 fn best_postures(worths: &[Option<f32>], present: usize) -> Vec<usize> {
     let worth = |posture: usize| worths[posture].unwrap_or(f32::NEG_INFINITY);
     let others = || (0..worths.len()).filter(|posture| *posture != present);

@@ -3,8 +3,8 @@
 //! A snake climbs by folding: neighbouring joints bend to opposite sides, and the fold travels along the body. The gaits
 //! that evolution finds move between such folds and a straight body, so the postures are folds of parts of the body.
 
-/// The bend of a joint in a posture, as a share of a full bend. A negative bend of the first joint raises the head. A
-/// number beyond the postures is straight.
+/// Returns the bend of a joint in a posture, as a share of a full bend, from -1 to 1. A negative bend of the first joint raises the head.
+/// An index beyond the postures is straight.
 pub fn bend(posture: usize, joint: usize, joints: usize) -> f32 {
     let side = if joint.is_multiple_of(2) { -1.0 } else { 1.0 };
     let is_front = 2 * joint < joints;

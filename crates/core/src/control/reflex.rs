@@ -1,4 +1,4 @@
-//! A gait whose targets and phases yield to the senses.
+//! The controller with a gait whose targets and phases are changed by the senses.
 
 use super::perception::{JointSenses, LimbSenses};
 use super::servo::JointServos;
@@ -13,12 +13,12 @@ pub struct ReflexFollower {
     servo: JointServos,
     /// Shift of each joint's phase since the start, in radians.
     shifts_rad: Vec<f64>,
-    /// Share of its reach by which a reflex moves the targets of bend and twist of each joint, from -1 to 1: working memory.
+    /// Share of the reach by which the reflex moves the bend and the twist target of each joint, from -1 to 1: working memory.
     shares: Vec<f32>,
 }
 
 impl ReflexFollower {
-    /// The follower before the first step.
+    /// Creates the follower before the first step.
     pub fn new(genes: ReflexGait) -> Self {
         let servo =
             JointServos::new(genes.gait.stiffness_nm_per_rad, genes.gait.servo_damping_nms_per_rad);
@@ -27,7 +27,7 @@ impl ReflexFollower {
     }
 }
 
-/// The weighted sum of the senses; its hyperbolic tangent is the share of its reach by which a reflex moves a target.
+/// Returns the weighted sum of the senses. Its hyperbolic tangent is the share of the reach by which a reflex moves a target.
 fn weigh(weights: &[f32; REFLEX_INPUTS.len()], own: [f32; 2], around: [f32; 6]) -> f32 {
     let inputs = own.into_iter().chain(around).chain([1.0]);
     let mut sum = 0.0;
@@ -37,12 +37,12 @@ fn weigh(weights: &[f32; REFLEX_INPUTS.len()], own: [f32; 2], around: [f32; 6]) 
     sum
 }
 
-/// The senses of the limbs before and behind a joint that a reflex uses.
+/// Returns the senses of the limbs before and behind a joint that a reflex uses.
 fn around(front: &LimbSenses, rear: &LimbSenses) -> [f32; 6] {
     [front.touch, front.blocked, front.gap, front.step_up, rear.touch, rear.pitch]
 }
 
-/// Phase of a wave's fundamental, in radians, after this many periods.
+/// Returns the phase of a wave's fundamental, in radians, after this many periods.
 fn phase_rad(wave: &Wave, periods: f64) -> f64 {
     let start_rad = wave.harmonics.first().map_or(0.0, |harmonic| f64::from(harmonic.phase_rad));
     std::f64::consts::TAU * periods + start_rad
@@ -69,7 +69,7 @@ impl Controller for ReflexFollower {
         tanh_each(&mut self.shares);
         let moves = self.shares.chunks_exact(2).zip(&self.shifts_rad);
         let targets = waves.joints.iter().zip(moves).map(|(joint, (shares, shift_rad))| {
-            // Without a shift this is the very number that a gait has.
+            // Without a shift, the result has the same bits as the target of a gait.
             let shifted = periods + shift_rad / std::f64::consts::TAU;
             let [bend, twist] = [reach * shares[0], reach * shares[1]];
             [joint.bend.at(shifted) + bend, joint.twist.at(shifted) + twist]
@@ -134,7 +134,7 @@ mod tests {
         let trace = |genome: &Genome| evaluate(genome, &trial).trace_hash;
         assert_eq!(trace(&genome), evaluation.trace_hash);
         assert_eq!(trace(&with_reflexes(&genome, |_| ())), evaluation.trace_hash);
-        // A reach without a weight moves nothing either, and a weight without a reach.
+        // A reach without weights moves nothing, and neither do weights without a reach.
         let only_reach = with_reflexes(&genome, |genes| genes.reach_rad = 0.5);
         assert_eq!(trace(&only_reach), evaluation.trace_hash);
         let only_weights = with_reflexes(&genome, |genes| genes.bend_weights = [2.0; 9]);

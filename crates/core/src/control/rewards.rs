@@ -1,32 +1,32 @@
 //! The rewards of an episode, from which decisions are learned.
 //!
-//! Contacts, height and speed are not rewarded: each can be had without climbing.
+//! Contacts, height and speed are not rewarded, because a snake can have each of them without climbing.
 
 use crate::genome::controllers::DECISION_DISCOUNT;
 use crate::learn::q_table::shaped;
 use crate::world::ClimbProgress;
 
-/// Cost of each decision, so that a shorter way is worth more.
+/// Reward of each decision. It is negative, so that a faster climb is worth more.
 const DECISION: f32 = -0.02;
-/// Reward of a tread's depth of new ground.
+/// Reward for covering the depth of one tread for the first time.
 const GROUND_PER_TREAD: f32 = 1.0;
-/// Reward of the landing.
+/// Reward for reaching the landing.
 const LANDING: f32 = 10.0;
-/// Cost of a disqualification. A greater one would teach to lie still.
+/// Reward for a disqualification. A greater loss would teach the snake to lie still.
 const DISQUALIFICATION: f32 = -5.0;
-/// Potential lost for each tread's depth by which the snake is behind its furthest way. Differences of potential are added
-/// to the reward, which leaves the best policy as it is (Ng, Harada and Russell, 1999). A potential of the place itself
-/// would be shaped as well, but the situations do not tell places apart, so that its size would be noise to a learner.
+/// Loss of potential for each tread by which the snake is behind its furthest position. Differences of potential are added to the reward,
+/// which leaves the best policy unchanged (Ng, Harada and Russell, 1999). A potential of the position itself would also leave it
+/// unchanged. But the situations do not distinguish positions, so its size would be noise to a learner.
 const POTENTIAL_PER_TREAD: f32 = 0.5;
-/// Reward of rules for a tread's depth of new ground, and for the landing.
+/// Reward for rules for covering the depth of one tread for the first time, and for reaching the landing.
 const RULE_REWARD: f32 = 1000.0;
 
-/// Adds up the rewards of the decision that holds.
+/// Adds up the rewards of the present decision.
 #[derive(Debug, Clone, Default)]
 pub struct RewardMeter {
     start_m: Option<f32>,
     now: ClimbProgress,
-    /// The furthest way so far, in treads from the start, and that at the beginning of the decision.
+    /// Furthest distance so far, in treads from the start, and its value at the beginning of the decision.
     furthest: [f32; 2],
     /// Potential at the beginning of the decision.
     potential: f32,
@@ -41,24 +41,24 @@ impl RewardMeter {
         self.furthest[0] = self.furthest[0].max(self.treads());
     }
 
-    /// Whether the snake is on the landing.
+    /// Returns whether the snake is on the landing.
     pub fn has_landed(&self) -> bool {
         self.now.is_on_landing
     }
 
-    /// Takes in a disqualification.
+    /// Records a disqualification.
     pub fn disqualify(&mut self) {
         self.is_disqualified = true;
     }
 
-    /// Begins a decision.
+    /// Begins a decision at the present state.
     pub fn begin_decision(&mut self) {
         self.potential = self.potential_now();
         self.furthest[1] = self.furthest[0];
     }
 
-    /// The reward of the decision that ends now. At the end of an episode the potential is 0: otherwise it could change
-    /// the best policy.
+    /// Returns the reward of the decision that ends now. At the end of an episode the potential is 0, because shaping could otherwise
+    /// change the best policy.
     pub fn of_decision(&self, is_end: bool) -> f32 {
         let mut reward = DECISION + GROUND_PER_TREAD * self.new_ground();
         if is_end && self.has_landed() {
@@ -71,14 +71,14 @@ impl RewardMeter {
         shaped(reward, self.potential, next, DECISION_DISCOUNT)
     }
 
-    /// The reward of the decision that ends now, for rules: 0 or more, because a roulette needs it, and only for ground
-    /// that is won for the first time, so that nothing is gained by going back and forth.
+    /// Returns the reward for rules of the decision that ends now. It is at least 0, because a roulette needs it, and only counts ground
+    /// that is covered for the first time, so that moving back and forth gains nothing.
     pub fn of_rules(&self, is_end: bool) -> f32 {
         let landing = if is_end && self.has_landed() { RULE_REWARD } else { 0.0 };
         RULE_REWARD * self.new_ground().min(1.0) + landing
     }
 
-    /// The ground that the decision won for the first time, in treads.
+    /// Returns the ground that the decision covered for the first time, in treads.
     fn new_ground(&self) -> f32 {
         self.furthest[0] - self.furthest[1]
     }
@@ -87,7 +87,7 @@ impl RewardMeter {
         POTENTIAL_PER_TREAD * (self.treads() - self.furthest[0])
     }
 
-    /// The way from the start, in treads.
+    /// Returns the distance from the start, in treads.
     fn treads(&self) -> f32 {
         let way_m = self.now.way_m - self.start_m.unwrap_or(self.now.way_m);
         if self.now.tread_m > 0.0 { way_m / self.now.tread_m } else { 0.0 }

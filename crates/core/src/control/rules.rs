@@ -1,4 +1,4 @@
-//! Waves chosen by rules.
+//! The controller with waves that rules choose.
 
 mod activity;
 
@@ -9,35 +9,35 @@ use super::{Activity, Controller, Observation, Senses, WaveUses};
 use crate::genome::controllers::{JointGroup, RULE_SENSES, RuleGenes, WaveRule, bits_of};
 use crate::world::JointTorque;
 
-/// Decisions per second.
+/// Number of decisions per second.
 const DECISIONS_PER_S: u64 = 4;
-/// Time in which the targets pass from one wave to the next, in s: less than the time between decisions.
+/// Time in which the targets change from one wave to the next, in s: less than the time between decisions.
 const BLEND_S: f64 = 0.2;
-/// The middle limb has moved ahead if it went further than this since the last decision, in m.
+/// Distance since the last decision above which the middle limb counts as moved ahead, in m.
 const MOVED_M: f32 = 0.1;
-/// The halves of the joints, each of which has a wave.
+/// The two halves of the joints. Each half follows a wave.
 const HALVES: [JointGroup; 2] = [JointGroup::Front, JointGroup::Rear];
 
 /// Follows the waves that rules choose, a few times per second and for each half of the joints.
 ///
-/// All waves run from the start on, so that a wave that is chosen again has the phase that it would have had.
+/// All waves run from the start on, so that a wave that is chosen again continues with the phase that it would have had.
 #[derive(Debug, Clone)]
 pub struct RuleFollower {
     genes: RuleGenes,
     servo: JointServos,
-    /// Wave of the front and of the rear half since the last decision.
+    /// Index of the wave of the front and of the rear half since the last decision.
     chosen: [usize; 2],
-    /// Wave of the front and of the rear half before the last decision.
+    /// Index of the wave of the front and of the rear half before the last decision.
     before: [usize; 2],
-    /// The bits that the conditions looked at when it decided last; none before the first decision.
+    /// Bits to which the conditions referred at the last decision; `None` before the first decision.
     bits: Option<u32>,
-    /// Way of the middle limb since the last decision, by its speed as it is sensed, in m.
+    /// Distance of the middle limb since the last decision, integrated from its sensed speed, in m.
     way_m: f32,
     uses: WaveUses,
 }
 
 impl RuleFollower {
-    /// The follower before the first step.
+    /// Creates the follower before the first step.
     pub fn new(genes: RuleGenes) -> Self {
         Self {
             servo: JointServos::new(genes.stiffness_nm_per_rad, genes.servo_damping_nms_per_rad),
@@ -50,14 +50,14 @@ impl RuleFollower {
         }
     }
 
-    /// Chooses the waves of both halves.
+    /// Chooses the waves of both halves for a new decision.
     fn decide(&mut self, observation: &Observation, front_joints: usize) {
         let bits = bits(&observation.perception, self.way_m);
         self.way_m = 0.0;
         self.bits = Some(bits);
         self.before = self.chosen;
         self.chosen = HALVES.map(|half| chosen_wave(&self.genes.rules, bits, half));
-        // The first waves follow no others.
+        // Before the first decision there are no waves to blend from.
         if observation.step == 0 {
             self.before = self.chosen;
         }
@@ -73,12 +73,12 @@ impl RuleFollower {
         self.genes.library.first().map_or(0, |waves| waves.joints.len())
     }
 
-    /// Number of joints in the front half.
+    /// Returns the number of joints in the front half.
     fn front_joints(&self) -> usize {
         self.joints().div_ceil(2)
     }
 
-    /// The target of a joint while the waves of its half pass into one another, of which `share` is done.
+    /// Returns the target of a joint while its half blends from one wave to the next; `share` of the blend is done.
     fn target_rad(&self, joint: usize, half: usize, share: f64, periods: &[f64]) -> [f32; 2] {
         let of = |wave: usize| {
             let joint = &self.genes.library[wave].joints[joint];
@@ -96,7 +96,8 @@ impl RuleFollower {
     }
 }
 
-/// Index of the rule that decides for a half of the joints: the strongest that holds, the lowest of equals.
+/// Returns the index of the rule that decides for a half of the joints: the strongest rule that holds, the lowest index among equal ones;
+/// `None` if no rule holds.
 fn deciding_rule(rules: &[WaveRule], bits: u32, half: JointGroup) -> Option<usize> {
     let mut strongest: Option<(usize, &WaveRule)> = None;
     for (index, rule) in rules.iter().enumerate().filter(|(_, rule)| rule.holds(bits, half)) {
@@ -107,13 +108,13 @@ fn deciding_rule(rules: &[WaveRule], bits: u32, half: JointGroup) -> Option<usiz
     strongest.map(|(index, _)| index)
 }
 
-/// Index of the wave for a half of the joints: that of the rule that decides, and the first wave if none does.
+/// Returns the index of the wave for a half of the joints: that of the deciding rule, or the first wave if no rule decides.
 fn chosen_wave(rules: &[WaveRule], bits: u32, half: JointGroup) -> usize {
     let rule = deciding_rule(rules, bits, half).and_then(|index| rules.get(index));
     rule.map_or(0, |rule| (rule.wave as usize).saturating_sub(1))
 }
 
-/// The bits that the conditions of rules look at, in the order of [`RULE_SENSES`].
+/// Returns the bits to which the conditions of rules refer, in the order of [`RULE_SENSES`].
 fn bits(senses: &Perception, way_m: f32) -> u32 {
     let limb = |index: usize| senses.limbs.get(index).copied().unwrap_or_default();
     let (head, middle) = (limb(0), limb(senses.limbs.len() / 2));
@@ -140,7 +141,7 @@ impl Controller for RuleFollower {
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let (joints, front_joints) = (self.joints(), self.front_joints());
-        // Decisions are due at whole numbers of their period, whatever the step rate.
+        // Decisions are due at multiples of their period, whatever the step rate.
         let steps_per_s = u64::from(observation.steps_per_s);
         let time = u64::from(observation.step) * DECISIONS_PER_S;
         if time % steps_per_s < DECISIONS_PER_S {

@@ -1,9 +1,9 @@
-//! The catalogue of senses: their names, units and scales, and the organs that they belong to.
+//! The catalogue of senses: their names, units and scales, and the organs to which they belong.
 
 use crate::schema::{listed_values, setting_group, switch};
 
 listed_values! {
-    /// A sense of a joint, of a limb, or of the snake as a whole, in this order.
+    /// A sense. Senses of a joint come first, then those of a limb, then those of the whole snake.
     #[derive(PartialOrd, Ord)]
     pub enum SenseKind {
         /// Angle of a joint's bend.
@@ -16,15 +16,15 @@ listed_values! {
         TwistRate;
         /// Whether a limb touches ground or stairs.
         Touch;
-        /// Force of the contacts upwards.
+        /// Upward force of the contacts on a limb.
         Load;
-        /// Force of the contacts against the direction in which the limb points.
+        /// Force of the contacts on a limb against its forward direction.
         Blocked;
         /// Sine of a limb's pitch.
         Pitch;
         /// Sine of a limb's roll.
         Roll;
-        /// Way from a limb's front face to the next riser.
+        /// Distance from a limb's front face to the next riser.
         Gap;
         /// Height of the next tread over a limb's lowest corner.
         StepUp;
@@ -36,63 +36,63 @@ listed_values! {
         SpeedAhead;
         /// Velocity of the middle limb upwards.
         SpeedUp;
-        /// Distance of the middle limb from the middle of the stairs, over half their width.
+        /// Offset of the middle limb from the middle of the stairs, divided by half their width.
         Aside;
     }
 }
 
-/// A group of senses. A person can take each away: see [`ActiveSenses`].
+/// A group of senses, which can be switched off together: see [`ActiveSenses`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SenseOrgan {
-    /// The snake's own joints; always there.
+    /// The senses of the snake's own joints, which always work.
     Joints,
-    /// The stairs ahead.
+    /// The senses of the stairs ahead.
     Sight,
-    /// Contacts with ground and stairs.
+    /// The senses of contacts with ground and stairs.
     Touch,
-    /// Attitude and motion in space.
+    /// The senses of attitude and motion in space.
     Balance,
 }
 
-/// The part of the snake that a sense belongs to.
+/// The part of the snake to which a sense belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SensePlace {
-    /// Each joint has one.
+    /// The sense exists once per joint.
     Joint,
-    /// Each limb has one.
+    /// The sense exists once per limb.
     Limb,
-    /// The snake has one.
+    /// The sense exists once per snake.
     Snake,
 }
 
-/// The facts about a sense.
+/// Properties of a sense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SenseInfo {
-    /// Its name, in lower case.
+    /// Name of the sense, in lower case.
     pub name: &'static str,
-    /// Its unit in read-outs; empty for a pure number.
+    /// Unit of the sense in displays; empty for a pure number.
     pub unit: &'static str,
-    /// The value 1 that controllers receive, in that unit; none where the scale is not linear.
+    /// Quantity that controllers receive as 1, in `unit`; `None` where the scale is not linear.
     pub scale: Option<f32>,
-    /// The least and the greatest value that controllers receive.
+    /// Least and greatest value that controllers receive.
     pub range: [f32; 2],
-    /// The organ to which it belongs.
+    /// Organ to which the sense belongs.
     pub organ: SenseOrgan,
-    /// The part that it belongs to.
+    /// Part to which the sense belongs.
     pub place: SensePlace,
 }
 
-/// The angle in radians that controllers receive as 1: a fixed scale, because a genome's own limit may be 0.
+/// Angle in radians that controllers receive as 1. The scale is fixed, because a genome's own limit may be 0.
 pub const ANGLE_SCALE_RAD: f32 = 1.8;
-/// The rate in rad/s that controllers receive as 1.
+/// Rate in rad/s that controllers receive as 1.
 pub const RATE_SCALE_RAD_S: f32 = 10.0;
-/// The gap in metres that controllers receive as 1.
+/// Gap in metres that controllers receive as 1.
 pub const GAP_SCALE_M: f32 = 2.0;
-/// The speed in m/s that controllers receive as 1.
+/// Speed in m/s that controllers receive as 1.
 pub const SPEED_SCALE_M_S: f32 = 5.0;
 
 impl SenseKind {
-    /// Its facts.
+    /// Returns the properties of the sense.
     pub fn info(self) -> SenseInfo {
         use SenseOrgan::{Balance, Joints, Sight, Touch};
         let of = |name, unit, scale, range, organ, place| SenseInfo {
@@ -131,7 +131,7 @@ impl SenseKind {
         }
     }
 
-    /// A value within the range that controllers receive; a number that is not finite becomes 0.
+    /// Clamps a value to the range that controllers receive. A number that is not finite becomes 0.
     pub(super) fn clamped(self, value: f32) -> f32 {
         let [least, most] = self.info().range;
         if value.is_finite() { value.clamp(least, most) } else { 0.0 }
@@ -139,21 +139,20 @@ impl SenseKind {
 }
 
 setting_group! {
-    /// The senses that work. One that does not keeps the value that it had when it stopped: at the start, that of the
-    /// snake at rest.
+    /// The senses that work. A sense that does not work keeps its last value; if it never worked, that of the snake at rest at the start.
     #[derive(Copy)]
     pub struct ActiveSenses in "Senses": "Senses that work; one that does not keeps its last value." {
-        /// Gap, step up and clearance.
+        /// Whether the senses of the stairs work: gap, step up and clearance.
         sight: bool = true,
             switch("Sight")
                 .hint("Whether the snake sees the stairs ahead: gap to the next riser, its height, clearance");
 
-        /// Touch, load and blocked.
+        /// Whether the senses of contacts work: touch, load and blocked.
         touch: bool = true,
             switch("Touch")
                 .hint("Whether the snake feels contacts: touch, load, and resistance ahead");
 
-        /// Pitch, roll, yaw, speed and distance from the middle.
+        /// Whether the senses of attitude and motion work: pitch, roll, yaw, speed and distance from the middle.
         balance: bool = true,
             switch("Balance")
                 .hint("Whether the snake feels its attitude and motion: pitch, roll, yaw, speed, distance aside");
@@ -161,10 +160,10 @@ setting_group! {
 }
 
 impl ActiveSenses {
-    /// No senses but the joints' own.
+    /// No senses except those of the joints.
     pub const NONE: Self = Self { sight: false, touch: false, balance: false };
 
-    /// Whether an organ works.
+    /// Returns whether an organ works.
     pub fn has(&self, organ: SenseOrgan) -> bool {
         match organ {
             SenseOrgan::Joints => true,

@@ -1,24 +1,24 @@
-//! Servos that pull the joints towards target angles.
+//! Servos that turn the joints towards target angles.
 
 use super::Observation;
 use crate::world::JointTorque;
 
-/// A proportional-derivative servo on each joint axis: a torque of `stiffness · (target − angle) − damping · rate`.
+/// A proportional-derivative servo on each joint axis, with a torque of `stiffness · (target − angle) − damping · rate`.
 #[derive(Debug, Clone)]
 pub struct JointServos {
     stiffness_nm_per_rad: f32,
     damping_nms_per_rad: f32,
-    /// Rates of each joint before the last step, bend and twist, in rad/s.
+    /// Rates of each joint's bend and twist before the last step, in rad/s.
     last_rates: Vec<[f32; 2]>,
 }
 
 impl JointServos {
-    /// Servos before the first step, with a stiffness in N·m/rad and a damping in N·m·s/rad.
+    /// Creates servos before the first step, with a stiffness in N·m/rad and a damping in N·m·s/rad.
     pub fn new(stiffness_nm_per_rad: f32, damping_nms_per_rad: f32) -> Self {
         Self { stiffness_nm_per_rad, damping_nms_per_rad, last_rates: Vec::new() }
     }
 
-    /// Writes the torques that pull the joints, from the head, towards these angles of bend and twist, in radians.
+    /// Writes the torques that turn the joints, from the head, towards these angles of bend and twist, in radians.
     pub fn pull(
         &mut self,
         observation: &Observation,
@@ -33,7 +33,8 @@ impl JointServos {
             self.stiffness_nm_per_rad * (target_rad - angle_rad)
                 - self.damping_nms_per_rad * rate_rad_s
         };
-        // The rate in the middle of the step, by the method of Adams and Bashforth: the torque holds for all of it.
+        // The damping uses the rate in the middle of the step, extrapolated by the method of Adams and Bashforth, because the torque holds
+        // for the whole step.
         let middle = |now: f32, last: f32| 1.5 * now - 0.5 * last;
         let joints = targets.zip(observation.joints_ahead()).zip(&self.last_rates);
         for (torque, (([bend_rad, twist_rad], state), last)) in torques.iter_mut().zip(joints) {

@@ -1,10 +1,10 @@
-//! Torque signals, played back.
+//! The controller that plays back torque signals.
 
 use super::{Controller, Observation};
 use crate::genome::controllers::TorqueSignals;
 use crate::world::JointTorque;
 
-/// Plays back torque signals: each point holds until the next takes effect, the last one to the end.
+/// Plays back torque signals. Each point holds until the next one takes effect, the last one to the end.
 #[derive(Debug, Clone)]
 pub struct SignalPlayer(pub TorqueSignals);
 

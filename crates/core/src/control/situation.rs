@@ -1,51 +1,51 @@
-//! A few situations, by which decisions are learned, as the senses show them.
+//! A small set of situations, computed from the senses, by which decisions are learned.
 
 use super::Perception;
 use super::postures::bend;
 use super::sense::{ANGLE_SCALE_RAD, GAP_SCALE_M, SPEED_SCALE_M_S};
 use crate::genome::controllers::{SITUATION_BITS, bits_of};
 
-/// The edges between near and far gaps of the head, in metres.
+/// Borders between near, reachable and far gaps of the head, in metres.
 const GAP_EDGES_M: [f32; 2] = [0.25, 1.0];
-/// The edges between flat ground, a low step and a high one ahead of the head, in metres.
+/// Borders between no step, a low step and a high step ahead of the head, in metres.
 const STEP_EDGES_M: [f32; 2] = [0.05, 0.6];
-/// The edges between a lowered, a level and a raised head, as sines of its pitch.
+/// Borders between a lowered, a level and a raised head, as sines of its pitch.
 const PITCH_EDGES: [f32; 2] = [-0.3, 0.3];
-/// The way since the last decision from which on the snake has moved, in metres.
+/// Distance since the last decision above which the snake counts as moved, in metres.
 pub(super) const MOVED_M: f32 = 0.1;
-/// The bend from which on a joint is folded, in radians.
+/// Bend from which on a joint counts as folded, in radians.
 const FOLDED_RAD: f32 = 0.9;
-/// The gap below which the head is near a riser for a rule, in metres.
+/// Gap below which the head counts as near a riser for rules, in metres.
 const NEAR_M: f32 = 0.5;
-/// The gap below which the middle limb is near a riser, in metres.
+/// Gap below which the middle limb counts as near a riser, in metres.
 const MIDDLE_GAP_M: f32 = 1.0;
 
 /// A situation in which a decision is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SensedSituation {
-    /// The last posture that was taken: an index of the postures.
+    /// Index of the last posture.
     pub posture: usize,
-    /// Gap of the head: 0 near, 1 within reach, 2 far.
+    /// Class of the head's gap: 0 near, 1 within reach, 2 far.
     pub gap: usize,
-    /// The step ahead of the head: 0 none, 1 low, 2 high.
+    /// Class of the step ahead of the head: 0 none, 1 low, 2 high.
     pub step: usize,
-    /// Pitch of the head: 0 down, 1 level, 2 up.
+    /// Class of the head's pitch: 0 down, 1 level, 2 up.
     pub pitch: usize,
     /// Whether the snake has moved ahead since the last decision.
     pub has_moved: bool,
     /// Whether the middle limb is near a riser.
     pub middle_near: bool,
-    /// Whether the joint before the middle limb is folded, and the one behind it.
+    /// Whether the joint before the middle limb is folded, and whether the joint behind it is.
     pub folded: [bool; 2],
 }
 
-/// The half-open bin of a value: `edges[i-1] <= value < edges[i]`.
+/// Returns the number of the half-open class of a value: `edges[i-1] <= value < edges[i]`.
 fn bin(value: f32, edges: [f32; 2]) -> usize {
     edges.iter().filter(|edge| value >= **edge).count()
 }
 
 impl SensedSituation {
-    /// The situation that the senses show, after a way in metres since the last decision.
+    /// Computes the situation from the senses, the last posture, and the distance since the last decision, in metres.
     pub fn of(senses: &Perception, posture: usize, moved_m: f32) -> Self {
         let head = senses.limbs.first().copied().unwrap_or_default();
         let middle_limb = senses.limbs.len() / 2;
@@ -64,7 +64,7 @@ impl SensedSituation {
         }
     }
 
-    /// Its number among the states of a table, in mixed radix.
+    /// Returns the number of the situation among the states of a table, in mixed radix.
     pub fn table_state(&self) -> usize {
         let mut state = self.posture;
         for (digit, radix) in [
@@ -81,7 +81,7 @@ impl SensedSituation {
         state
     }
 
-    /// The bits by which rules distinguish it: see [`SITUATION_BITS`].
+    /// Returns the bits by which rules distinguish situations: see [`SITUATION_BITS`].
     pub fn bits(&self, senses: &Perception) -> u32 {
         let head = senses.limbs.first().copied().unwrap_or_default();
         let joints = senses.limbs.len().saturating_sub(1);
@@ -102,7 +102,7 @@ impl SensedSituation {
         bits_of(&bits)
     }
 
-    /// The situation in words.
+    /// Describes the situation in words.
     pub fn words(&self) -> String {
         let of = |words: [&'static str; 3], index: usize| words[index.min(2)];
         let mut parts = vec![
@@ -124,7 +124,7 @@ impl SensedSituation {
     }
 }
 
-/// The way ahead that a perceived speed makes in a step, in metres.
+/// Returns the distance ahead in a step at the perceived speed, in metres.
 pub fn way_m(senses: &Perception, steps_per_s: u32) -> f32 {
     senses.snake.speed_ahead * SPEED_SCALE_M_S / steps_per_s as f32
 }

@@ -1,10 +1,10 @@
-//! Periodic torques.
+//! The controller with periodic torques.
 
 use super::{Controller, Observation};
 use crate::genome::controllers::Waves;
 use crate::world::JointTorque;
 
-/// Follows waves of torque.
+/// Plays waves of torque.
 #[derive(Debug, Clone)]
 pub struct WavePlayer(pub Waves);
 

@@ -1,42 +1,42 @@
-//! The state of waves that rules choose at a moment, for display.
+//! The waves that rules choose, at a moment, for display.
 
 use crate::genome::controllers::{JointGroup, JointWaves, WaveRule};
 
-/// Waves, and the rules that have chosen among them.
+/// The waves of a library, and the rules that have chosen among them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaveChoiceActivity {
-    /// The joint whose part of the waves is shown; the first is 0.
+    /// Joint for which the waves are shown; the first joint is 0.
     pub joint: usize,
-    /// The waves of the library.
+    /// Waves of the library.
     pub waves: Vec<ActiveWave>,
-    /// The wave that each joint follows, by its place in the list.
+    /// Index of the wave that each joint follows.
     pub of_joints: Vec<usize>,
     /// Number of joints in the front half.
     pub front_joints: usize,
-    /// The rules, in their order.
+    /// Rules, in their order.
     pub rules: Vec<ActiveWaveRule>,
 }
 
 /// A wave of the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActiveWave {
-    /// Its frequency, in Hz.
+    /// Frequency of the wave, in Hz.
     pub frequency_hz: f32,
-    /// The part of its period that has passed, from 0 to 1.
+    /// Share of the wave's period that has passed, from 0 to 1.
     pub phase: f32,
-    /// The target angles of the joint that is shown, in radians.
+    /// Waves of the target angles of the shown joint, in radians.
     pub targets: JointWaves,
-    /// Share of the decisions so far that were for it, from 0 to 1.
+    /// Share of the decisions so far that chose the wave, from 0 to 1.
     pub share: f32,
 }
 
-/// A rule, and whether it has decided.
+/// A rule, and whether it decided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActiveWaveRule {
     /// The rule.
     pub rule: WaveRule,
-    /// Whether its condition held at the last decision.
+    /// Whether the rule's condition held at the last decision.
     pub holds: bool,
-    /// The joints for which it decided then; none if a stronger one did, or it did not hold.
+    /// Joints for which the rule decided at the last decision; `None` if it did not hold or a stronger rule decided.
     pub decides: Option<JointGroup>,
 }

@@ -1,12 +1,12 @@
-//! How often a snake chose each wave of its library.
+//! Counts how often a snake chose each wave of its library.
 
 use serde::{Deserialize, Serialize};
 
 use crate::check::{Invalid, within};
 use crate::genome::MOST_LIBRARY_WAVES;
 
-/// For each wave of a library, the number of decisions for it: one for each half of the joints at a time. Files have it
-/// as a list of numbers.
+/// For each wave of a library, the number of decisions that chose it. Each decision counts once per half of the joints. Files store it as
+/// a list of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "Vec<u32>", try_from = "Vec<u32>")]
 pub struct WaveUses {
@@ -15,29 +15,29 @@ pub struct WaveUses {
 }
 
 impl WaveUses {
-    /// No use yet of any of so many waves, at least one.
+    /// Creates counts of zero for this number of waves, at least one.
     pub fn new(waves: usize) -> Self {
         Self { waves: waves.clamp(1, MOST_LIBRARY_WAVES), counts: [0; MOST_LIBRARY_WAVES] }
     }
 
-    /// Counts a decision for a wave; the first is 0.
+    /// Counts a decision for a wave; the first wave is 0.
     pub fn count(&mut self, wave: usize) {
         if let Some(count) = self.counts.get_mut(wave) {
             *count = count.saturating_add(1);
         }
     }
 
-    /// The counts, one for each wave.
+    /// Returns the counts, one for each wave.
     pub fn counts(&self) -> &[u32] {
         self.counts.get(..self.waves).unwrap_or_default()
     }
 
-    /// Index of the wave that was chosen most often, the lowest of equals.
+    /// Returns the index of the wave that was chosen most often, the lowest among equal ones.
     pub fn most_used(&self) -> usize {
         self.first_by(|count, best| count > best)
     }
 
-    /// Index of the wave that was chosen least often, the lowest of equals.
+    /// Returns the index of the wave that was chosen least often, the lowest among equal ones.
     pub fn least_used(&self) -> usize {
         self.first_by(|count, best| count < best)
     }

@@ -5,9 +5,9 @@ use crate::control::{ActiveLimb, LimbActivity, Observation};
 use crate::genome::controllers::LIMB_NEURONS;
 
 impl LimbNeuronController {
-    /// The limbs; none before the first step.
+    /// Returns the neurons of all limbs; `None` before the first step.
     pub(super) fn limbs(&self, observation: &Observation) -> Option<LimbActivity> {
-        // An observation before the first step has no senses.
+        // Before the first step, an observation has no senses.
         if observation.perception.limbs.is_empty() {
             return None;
         }

@@ -5,7 +5,7 @@ use crate::control::{ActiveWave, ActiveWaveRule, Observation, WaveChoiceActivity
 use crate::genome::controllers::{JointGroup, WaveRule, Waves};
 
 impl RuleFollower {
-    /// The last decision, with the waves of a joint; none before the first decision.
+    /// Returns the last decision, with the waves of a joint; `None` before the first decision.
     pub(super) fn choice(
         &self,
         observation: &Observation,
@@ -52,7 +52,7 @@ impl RuleFollower {
     }
 }
 
-/// The share of each wave in all decisions.
+/// Returns the share of each wave in all decisions.
 fn shares(uses: &WaveUses) -> Vec<f32> {
     let total: f32 = uses.counts().iter().map(|count| *count as f32).sum();
     uses.counts().iter().map(|count| *count as f32 / total.max(1.0)).collect()

@@ -26,7 +26,7 @@ fn rule(condition: &str, group: JointGroup, wave: u32, strength: f32) -> WaveRul
     WaveRule { condition, group, wave, strength }
 }
 
-/// A moment of a snake of five limbs that senses nothing but what `change` says.
+/// Returns an observation of a snake of five limbs that senses nothing except what `change` sets.
 fn moment(steps_per_s: u32, change: impl FnOnce(&mut Perception)) -> Observation {
     let physics = PhysicsSettings { steps_per_s, ..PhysicsSettings::default() };
     let mut observation = Observation::at_start(&physics);
@@ -109,7 +109,7 @@ fn the_choice_that_is_shown_is_the_one_that_was_made() {
             (shown.targets.bend.at(shown.phase.into()), waves.joints[1].bend.at(periods));
         assert!((0.0..1.0).contains(&shown.phase) && (now - then).abs() < 1e-4, "{now} {then}");
     }
-    // Senses between decisions change nothing of the choice that is shown.
+    // Senses between decisions do not change the displayed choice.
     let mut later = moment(60, |_| ());
     later.step = 46;
     follower.act(&later, &mut [JointTorque::default(); 4]);
@@ -144,7 +144,7 @@ fn decisions_fall_on_whole_numbers_of_their_period_at_every_step_rate() {
 fn the_target_passes_from_one_wave_to_the_next_within_a_fifth_of_a_second() {
     let trial = Trial::default();
     let mut genes = genes(&genome(0, &trial));
-    // A stiffness of 1 and joints at rest in the middle: the torque is the target.
+    // With a stiffness of 1 and joints at rest in the middle, the torque is the target.
     (genes.stiffness_nm_per_rad, genes.servo_damping_nms_per_rad) = (1.0, 0.0);
     for (waves, offset) in genes.library.iter_mut().zip([0.0, 1.0, -1.0, 0.5]) {
         for wave in waves.all_mut() {
@@ -156,7 +156,7 @@ fn the_target_passes_from_one_wave_to_the_next_within_a_fifth_of_a_second() {
     let mut targets = Vec::new();
     for step in 0..60 {
         let mut observation = moment(60, |p| p.limbs[2].touch = 1.0);
-        // A touch from the second decision on that ends before the fourth.
+        // A touch begins at the second decision and ends before the fourth.
         if !(10..40).contains(&step) {
             observation.perception.limbs[2].touch = 0.0;
         }
@@ -200,7 +200,7 @@ fn a_clone_decides_as_the_original_does() {
     let trial = Trial { duration_s: 3.0, start_y_m: -2.0, ..Trial::default() };
     for individual in 0..4 {
         let mut rollout = Rollout::new(&genome(individual, &trial), &trial);
-        // Within a blend, and with a part of a way.
+        // The clone is made within a blend, with a part of a distance covered.
         (0..22).for_each(|_| assert!(rollout.advance()));
         let mut copy = rollout.clone();
         while rollout.advance() {}
@@ -232,7 +232,7 @@ fn without_senses_the_rules_never_choose_anew() {
         };
         changing += usize::from(waves(&trial) > 2);
         trial.agent.senses = ActiveSenses::NONE;
-        // A wave for each half.
+        // Each half has a wave.
         assert!(waves(&trial) <= 2);
     }
     assert!(changing >= 3, "with senses, {changing} of 12 use more than one wave for each half");
