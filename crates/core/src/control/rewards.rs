@@ -28,7 +28,7 @@ pub struct RewardMeter {
     now: ClimbProgress,
     /// Furthest distance so far, in treads from the start, and its value at the beginning of the decision.
     furthest: [f32; 2],
-    /// Potential at the beginning of the decision.
+    /// Potential of the snake's progress at the beginning of the decision.
     potential: f32,
     is_disqualified: bool,
 }

@@ -13,7 +13,7 @@ pub struct WaveChoiceActivity {
     pub of_joints: Vec<usize>,
     /// Number of joints in the front half.
     pub front_joints: usize,
-    /// Rules, in their order.
+    /// Rules of the genome, in their order.
     pub rules: Vec<ActiveWaveRule>,
 }
 

@@ -159,7 +159,7 @@ pub enum GeneRange<'a> {
     Ratio(f32, f32),
     /// Any angle in radians; a full turn is equal to 0.
     Turn,
-    /// One of these values.
+    /// Any value of this list.
     OneOf(&'a [f32]),
 }
 

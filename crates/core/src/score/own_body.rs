@@ -6,8 +6,9 @@ use crate::world::{BodyPlan, JointPlan, PartPlan, neighbours_pass};
 
 /// Builds the body of these blocks, with the torques, the damping and the softness of the agent's joints.
 ///
-/// Torque and damping of a joint grow with the cross-section of its weaker block, and with the block's height as the lever: `min(A1, A2) ·
-/// min(h1, h2) / 1 m³`. This factor is 1 for the blocks of the report. The strength of a muscle grows with its cross-section (Sims 1994).
+/// Torque and damping of a joint grow with the cross-section of its weaker block, and with the block's height as the lever:
+/// `min(A1, A2) · min(h1, h2) / 1 m³`. This factor is 1 for the blocks of the report. The strength of a muscle grows with its
+/// cross-section (Sims 1994).
 pub(super) fn own_body(agent: &AgentSettings, segments: &[Segment]) -> BodyPlan {
     let limb = |(limb, segment): (usize, &Segment)| PartPlan {
         limb,

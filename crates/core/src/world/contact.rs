@@ -99,8 +99,8 @@ impl ContactSoftness {
 /// CFM that the engine manual of the report calls hard, in m/s per N.
 const HARD_CFM_M_S_PER_N: f32 = 1.0e-5;
 
-/// Returns rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is `1 - (1 -
-/// erp)^(s / ERP_TIME_S)` in each substep of length s.
+/// Returns rapier's softness for a hard contact that corrects the share `erp` of a penetration in [`ERP_TIME_S`], that is
+/// `1 - (1 - erp)^(s / ERP_TIME_S)` in each substep of length s.
 ///
 /// Rapier has `erp = dt·w / (dt·w + 2z)` for the angular frequency w and the damping ratio z; a large z
 /// makes the contact's compliance vanish.
@@ -170,8 +170,9 @@ pub(super) fn joint_coefficients(
 /// Share of a soft joint's error that is corrected in [`ERP_TIME_S`]: ODE's default per step.
 pub(super) const JOINT_ERP: f32 = 0.2;
 
-/// Returns the effective mass, in kg, at a contact in a corner of a limb that lies flat: `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² +
-/// h²)) / m`, from the inertia of a box. For a limb of the report, 1 by 2 by 1, the result is m / 4.9.
+/// Returns the effective mass, in kg, at a contact in a corner of a limb that lies flat:
+/// `1 / m_eff = (1 + 3 l² / (l² + h²) + 3 w² / (w² + h²)) / m`, from the inertia of a box. For a limb of the report, 1 by 2 by 1, the
+/// result is m / 4.9.
 fn corner_mass_kg(limb: &PartPlan) -> f32 {
     let [w2, l2, h2] = limb.size_m().map(|size| size * size);
     limb.mass_kg() / (1.0 + 3.0 * l2 / (l2 + h2) + 3.0 * w2 / (w2 + h2))

@@ -1,9 +1,9 @@
 //! Soft limbs: elastic beams as chains of parts with springs between them.
 //!
 //! A limb of length l is cut into n parts of length d = l / n. A spring between two parts acts about each axis. It is as stiff as a piece
-//! of the beam of length d: `E I / d` for bending, with Young's modulus E and the second moment of area I of the cross-section, and `G J /
-//! d` for torsion, with the shear modulus G and the torsion constant J. The deflection of a clamped beam then differs from that of Euler
-//! and Bernoulli by the factor `1 + 1 / (2 n²)` under a load at its tip, if half a piece of beam clamps its root.
+//! of the beam of length d: `E I / d` for bending, with Young's modulus E and the second moment of area I of the cross-section, and
+//! `G J / d` for torsion, with the shear modulus G and the torsion constant J. The deflection of a clamped beam then differs from that of
+//! Euler and Bernoulli by the factor `1 + 1 / (2 n²)` under a load at its tip, if half a piece of beam clamps its root.
 
 use super::WorldPlan;
 use super::body::{BodyPlan, PartPlan, SpringPlan};

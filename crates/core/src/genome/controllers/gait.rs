@@ -10,8 +10,8 @@ use super::wave::Waves;
 use crate::genome::gene::{Genes, GenomeShape};
 use crate::genome::space::GenomeSpace;
 
-/// Target angles of the joints, and the servo that turns the joints towards them with a torque of `stiffness · (target − angle) − damping
-/// · rate`, clamped to the joint's limit.
+/// Target angles of the joints, and the servo that turns the joints towards them with a torque of
+/// `stiffness · (target − angle) − damping · rate`, clamped to the joint's limit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gait {

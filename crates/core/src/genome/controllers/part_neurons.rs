@@ -65,7 +65,7 @@ pub struct PartNeuron {
 pub struct PartInput {
     /// Source of the input's value.
     pub source: PartSource,
-    /// Factor of the value.
+    /// Factor by which the value is multiplied.
     pub weight: f32,
 }
 

@@ -162,9 +162,9 @@ impl<const N: usize> JointRow<N> {
 }
 
 /// Returns how far a joint is beyond a limit about one axis, in radians, from the imaginary part x of its rotation about the axis and the
-/// real part w; 0 within the limits, and negative beyond the lower limit. `None` if no lane is beyond a limit. The angle is `2 atan(x /
-/// w)`. The addition theorem subtracts half the limit from half the angle, and the sign of the result tells whether the limit is exceeded,
-/// without trigonometric functions.
+/// real part w; 0 within the limits, and negative beyond the lower limit. `None` if no lane is beyond a limit. The angle is
+/// `2 atan(x / w)`. The addition theorem subtracts half the limit from half the angle, and the sign of the result tells whether the limit
+/// is exceeded, without trigonometric functions.
 #[inline(always)]
 fn beyond<const N: usize>(x: Wide<N>, w: Wide<N>, [sin, cos]: [Wide<N>; 2]) -> Option<Wide<N>> {
     let (over, under) = (x * cos - w * sin, -(x * cos + w * sin));

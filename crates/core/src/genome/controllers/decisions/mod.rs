@@ -26,7 +26,7 @@ pub const DECISIONS_PER_S: u32 = 4;
 /// Weight of a reward one decision later relative to a reward now, for a table. It corresponds to a horizon of five seconds.
 pub const DECISION_DISCOUNT: f32 = 0.95;
 
-/// Names of the postures among which a decision chooses. It never chooses the same posture again.
+/// Names of the postures among which a decision chooses. A decision never keeps the posture of the decision before.
 pub const POSTURES: [&str; 11] = [
     "straight",
     "fold in front",

@@ -83,7 +83,8 @@ fn on_a_damping_slope_a_limb_slides_at_gravity_over_damping() {
     });
 }
 
-/// Returns the world of two limbs that float without weight in air with this damping, connected by a joint with this damping.
+/// Returns the world of two limbs that float without weight in air that damps at the rate `angular_damping_per_s`. Their joint has the
+/// damping `damping_nms_per_rad`.
 fn floating_pair(
     physics: &PhysicsSettings,
     angular_damping_per_s: f32,
