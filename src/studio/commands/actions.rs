@@ -1,5 +1,5 @@
-//! The list of all named actions. Menus, keys, the command palette and the list of shortcuts all read this one list, so
-//! they cannot disagree.
+//! The list of all named actions. Menus, keys, the command palette and the list of shortcuts all read it, so they
+//! cannot disagree.
 
 use std::sync::LazyLock;
 
@@ -17,24 +17,24 @@ use super::{
 };
 use snakes_lab::export::ExportFormat;
 
-/// A menu, and a group in the list of shortcuts.
+/// A menu, which is also a group in the list of shortcuts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Menu {
-    /// Files, pictures, and the end of the program.
+    /// Menu for files, pictures, and the end of the program.
     File,
-    /// Files of other formats, from the champions on the stage.
+    /// Menu that writes the champions on the stage to files of other formats.
     Share,
-    /// Evolution, and the choice of champions.
+    /// Menu for evolution and the choice of champions.
     Run,
-    /// Undo and redo.
+    /// Menu for undo and redo.
     Edit,
-    /// Playback.
+    /// Menu for playback.
     Stage,
-    /// Camera, overlays, theme and pictures.
+    /// Menu for camera, overlays, theme and size of the panels.
     View,
-    /// Panels.
+    /// Menu that opens panels.
     Panels,
-    /// Help.
+    /// Menu for shortcuts, the command palette and the tour.
     Help,
 }
 
@@ -51,7 +51,7 @@ impl Menu {
         Self::Help,
     ];
 
-    /// Label.
+    /// Returns the menu's label.
     pub fn name(self) -> &'static str {
         match self {
             Self::File => "File",
@@ -66,48 +66,48 @@ impl Menu {
     }
 }
 
-/// The state that decides which command an action stands for.
+/// State of the program that decides which command an action sends.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Situation {
-    /// Evolution is running.
+    /// Whether evolution is running.
     pub is_running: bool,
-    /// The stage shows a what-if.
+    /// Whether the stage shows a what-if: the snake beside a copy with a changed setting.
     pub is_what_if: bool,
-    /// The latest lane of the what-if can stay beside another one.
+    /// Whether the latest changed lane of the what-if can stay while another one is added.
     pub can_try_another: bool,
-    /// The stage shows a race or a whole generation.
+    /// Whether the stage shows a race or a whole generation.
     pub is_race: bool,
-    /// A modal view is open, the panels are hidden, or the stage is presented on the full screen.
+    /// Whether a modal view is open, the panels are hidden, or the stage is presented in full screen.
     pub is_covered: bool,
-    /// The stage is presented on the full screen, with nothing over it.
+    /// Whether the stage is presented in full screen with no modal view over it.
     pub is_presenting: bool,
-    /// A file is being written from the stage.
+    /// Whether a file is being written from the stage.
     pub is_sharing: bool,
-    /// There is a change to undo.
+    /// Whether there is a change to undo.
     pub can_undo: bool,
-    /// There is a change to redo.
+    /// Whether there is a change to redo.
     pub can_redo: bool,
-    /// The digit key that was pressed, if any.
+    /// Digit key that was pressed, if any. It selects a generation.
     pub digit: Option<u32>,
 }
 
-/// A named action.
+/// A named action of the menus, the keys and the command palette.
 #[derive(Clone)]
 pub(crate) struct Action {
     /// Menu that lists the action.
     pub menu: Menu,
-    /// Label.
+    /// Label in menus and in the command palette.
     pub name: &'static str,
-    /// Keyboard shortcuts, such as `Ctrl Z`. The first is the one that is displayed.
+    /// Keyboard shortcuts, such as `Ctrl Z`. Only the first is displayed.
     pub keys: &'static [&'static str],
-    /// Explanation for the mouse; may be empty.
+    /// Tooltip; empty for none.
     pub hint: &'static str,
-    /// The usual command.
+    /// Command that the action sends in most situations.
     command: Command,
 }
 
 impl Action {
-    /// The command in this situation; `None` if there is nothing to do.
+    /// Returns the command of the action in the situation `now`, or `None` if the action has no effect.
     pub fn command(&self, now: Situation) -> Option<Command> {
         match &self.command {
             Run(RunCommand::Start) if now.is_running => return Some(Run(RunCommand::Pause)),
@@ -136,7 +136,7 @@ impl Action {
         is_possible.then(|| self.command.clone())
     }
 
-    /// The displayed shortcut, or an empty text.
+    /// Returns the displayed shortcut, or an empty text.
     pub fn key(&self) -> &'static str {
         match self.keys {
             ["1", ..] => "1 ... 9",
@@ -146,15 +146,15 @@ impl Action {
     }
 }
 
-/// The action of a shortcut. Without an exact match, Shift is ignored.
+/// Finds the action of a shortcut. If there is no exact match, ignores Shift.
 pub(crate) fn of_keys(keys: &str) -> Option<&'static Action> {
     let exact = |keys: &str| actions().iter().find(|action| action.keys.contains(&keys));
     exact(keys).or_else(|| exact(keys.strip_prefix("Shift ")?))
 }
 
-/// A hint for the mouse, with the shortcut of a command behind it if the command has one.
+/// Returns a tooltip, followed by the command's shortcut if it has one.
 pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
-    // Pausing and discarding are actions in these situations only.
+    // An action sends commands such as pausing or discarding only in these situations.
     let situations = [
         Situation::default(),
         Situation { is_running: true, ..Situation::default() },
@@ -173,22 +173,22 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
-/// The actions of a menu.
+/// Builds the actions of a menu.
 fn in_menu(menu: Menu, rows: impl IntoIterator<Item = ActionRow>) -> Vec<Action> {
     let action = |(name, keys, command)| Action { menu, name, keys, hint: "", command };
     rows.into_iter().map(action).collect()
 }
 
-/// The action that writes a file of a format.
+/// Builds the action that writes a file of this format.
 fn file_of(format: ExportFormat) -> Action {
     let info = format.info();
-    // The list of actions is made once, and its names last as long as the program.
+    // The list of actions is built once, so its leaked names last as long as the program.
     let name = format!("{} (.{})…", info.title, info.ending).leak();
     let command = Share(ShareCommand::Ask(format));
     Action { menu: Menu::Share, name, keys: &[], hint: info.sentence, command }
 }
 
-/// All actions, grouped by menu.
+/// Returns all actions, grouped by menu.
 pub(crate) fn actions() -> &'static [Action] {
     static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
         let overlay = |of: Overlay| (of.entry(), of.keys(), View(ViewCommand::ToggleOverlay(of)));
@@ -211,7 +211,7 @@ pub(crate) fn actions() -> &'static [Action] {
     &ALL
 }
 
-/// Files and pictures.
+/// Returns the rows of the file menu.
 fn file_rows() -> [ActionRow; 8] {
     [
         ("New run…", &["Ctrl N"], Window(WindowCommand::OpenPanel(PanelKind::Run))),
@@ -233,12 +233,12 @@ fn file_rows() -> [ActionRow; 8] {
     ]
 }
 
-/// Files of other formats, without those that a format gives.
+/// Returns the rows of the share menu, except those of the file formats.
 fn share_rows() -> [ActionRow; 1] {
     [("Cancel writing the file", &[], Share(ShareCommand::Cancel))]
 }
 
-/// Evolution, and the choice of champions.
+/// Returns the rows of the run menu.
 fn run_rows() -> [ActionRow; 12] {
     [
         ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
@@ -260,7 +260,7 @@ fn run_rows() -> [ActionRow; 12] {
     ]
 }
 
-/// Changes.
+/// Returns the rows of the edit menu.
 fn edit_rows() -> [ActionRow; 5] {
     [
         ("Undo", &["Ctrl Z"], Command::Undo),
@@ -271,7 +271,7 @@ fn edit_rows() -> [ActionRow; 5] {
     ]
 }
 
-/// Playback.
+/// Returns the rows of the stage menu.
 fn stage_rows() -> [ActionRow; 8] {
     [
         ("Pause / Play", &["Space"], Player(PlayerCommand::Toggle)),
@@ -285,7 +285,7 @@ fn stage_rows() -> [ActionRow; 8] {
     ]
 }
 
-/// The camera.
+/// Returns the rows of the view menu for the camera.
 fn camera_rows() -> [ActionRow; 5] {
     [
         ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
@@ -296,7 +296,7 @@ fn camera_rows() -> [ActionRow; 5] {
     ]
 }
 
-/// Other parts of the view.
+/// Returns the other rows of the view menu.
 fn window_rows() -> [ActionRow; 7] {
     [
         ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
@@ -313,7 +313,7 @@ fn window_rows() -> [ActionRow; 7] {
     ]
 }
 
-/// The layout of panels.
+/// Returns the rows of the panel menu for the layout.
 fn layout_rows() -> [ActionRow; 2] {
     [
         ("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)),
@@ -321,7 +321,7 @@ fn layout_rows() -> [ActionRow; 2] {
     ]
 }
 
-/// Help.
+/// Returns the rows of the help menu.
 fn help_rows() -> [ActionRow; 3] {
     [
         ("Keyboard shortcuts", &["?", "F1"], Window(WindowCommand::ToggleModal(Modal::Keys))),

@@ -1,32 +1,32 @@
-//! The numbers of a block of a body.
+//! The editable numbers of a body's block.
 
 use snakes_core::genome::Segment;
 use snakes_core::world::modulus_at_pa;
 
-/// A number of a block.
+/// An editable number of a body's block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BlockSize {
-    /// Length, in metres.
+    /// Length of the block, in metres.
     Length,
-    /// Width, in metres.
+    /// Width of the block, in metres.
     Width,
-    /// Height, in metres.
+    /// Height of the block, in metres.
     Height,
-    /// Density, in kg/m³.
+    /// Density of the block, in kg/m³.
     Density,
-    /// Largest bend of the joint in front of it, in radians.
+    /// Largest bend of the joint in front of the block, in radians.
     BendLimit,
-    /// Largest twist of that joint, in radians.
+    /// Largest twist of the joint in front of the block, in radians.
     TwistLimit,
-    /// Share of the torque that the joint could have.
+    /// Strength of the joint in front of the block, as a share of its possible torque.
     Strength,
-    /// Young's modulus, in Pa. To set it makes a rigid block soft.
+    /// Young's modulus of the block, in Pa. Setting it makes a rigid block soft.
     Modulus,
 }
 
 impl BlockSize {
-    /// Young's modulus of a block that has just become soft, in Pa: a block of any size then bends by a similar part of its
-    /// length as those of the preset `squishy`, which have 40,000 Pa.
+    /// Returns Young's modulus for a block that has just become soft, in Pa. Relative to its length, it bends about as
+    /// much as a block of the preset `squishy`, which has 40,000 Pa.
     pub fn usual_modulus_pa(segment: &Segment) -> f32 {
         const SQUISHY_M4_S2: f32 = 370.0;
         let sides_m = [segment.width_m, segment.height_m];
@@ -34,7 +34,7 @@ impl BlockSize {
         (modulus_pa / 100.0).round() * 100.0
     }
 
-    /// The number in a block.
+    /// Returns a mutable reference to this number in a block.
     pub fn of_mut(self, segment: &mut Segment) -> &mut f32 {
         match self {
             Self::Length => &mut segment.length_m,

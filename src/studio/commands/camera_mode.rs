@@ -2,17 +2,17 @@
 
 use snakes_core::check::Invalid;
 
-/// A way in which the camera looks at the stage.
+/// View that the camera has of the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CameraMode {
-    /// At an angle, following the snake or all snakes.
+    /// View at an angle. The camera follows the snake or all snakes.
     #[default]
     Follow,
-    /// From the side, following.
+    /// View from the side. The camera follows.
     Side,
-    /// From above, following.
+    /// View from above. The camera follows.
     Top,
-    /// Fixed where it is.
+    /// The camera stays where it is.
     Free,
 }
 
@@ -20,7 +20,7 @@ impl CameraMode {
     /// All modes, in the order of the buttons.
     pub const ALL: [Self; 4] = [Self::Follow, Self::Side, Self::Top, Self::Free];
 
-    /// Label of the button.
+    /// Returns the label of the mode's button.
     pub fn name(self) -> &'static str {
         match self {
             Self::Follow => "Follow",
@@ -30,7 +30,7 @@ impl CameraMode {
         }
     }
 
-    /// The mode with this name in lower case.
+    /// Finds the mode with this lower-case name.
     ///
     /// # Errors
     /// No mode has this name, or it is [`Self::Free`], which has no view of its own.
@@ -41,7 +41,7 @@ impl CameraMode {
         still.ok_or_else(|| Invalid::new("camera", format!("{name:?}"), "follow, side or top"))
     }
 
-    /// The next mode; the first follows the last.
+    /// Returns the next mode. The last mode is followed by the first.
     pub fn next(self) -> Self {
         let place = Self::ALL.iter().position(|camera_mode| *camera_mode == self).unwrap_or(0);
         Self::ALL[(place + 1) % Self::ALL.len()]

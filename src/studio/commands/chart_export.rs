@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use snakes_lab::plot::Figure;
 
-/// A chart to export.
+/// Request to export a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ChartExport {
-    /// The chart's data.
+    /// Data of the chart.
     pub figure: Arc<Figure>,
-    /// First part of the file name.
+    /// First part of the exported file's name.
     pub name: String,
-    /// File format.
+    /// Format of the exported file.
     pub format: ChartFormat,
-    /// Whether it is about the current run, whose name the picture then has.
+    /// Whether the chart shows the current run. The picture then includes the run's name.
     pub is_of_run: bool,
 }
 

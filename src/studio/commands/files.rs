@@ -1,22 +1,22 @@
-//! Commands to the system: its dialogs for files, its file manager and its clipboard.
+//! Commands to the operating system's file dialogs, file manager and clipboard.
 
 use std::path::PathBuf;
 
 use snakes_core::save::library::SavePlace;
 use snakes_lab::export::ExportFormat;
 
-/// A command to the system.
+/// A command to the operating system's file dialogs, file manager or clipboard.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum FileCommand {
-    /// Ask for files or a folder with the system's dialog.
+    /// Ask for files or a folder with a file dialog.
     Ask(FileQuestion),
-    /// Ask where to export what is selected in the library.
+    /// Ask where to export the entries that are selected in the library.
     AskExport,
-    /// Carry out what the answer to a question asks for.
+    /// Process the paths that the user chose in the file dialog.
     Answer(FileQuestion, Vec<PathBuf>),
-    /// Show this folder in the system's file manager.
+    /// Show this folder in the file manager.
     OpenFolder(PathBuf),
-    /// Show the folder of saves in the system's file manager.
+    /// Show the folder of saves in the file manager.
     ShowSaves,
     /// Copy the picture in this file to the clipboard.
     CopyPicture(PathBuf),
@@ -24,15 +24,15 @@ pub(crate) enum FileCommand {
     CopyPath(PathBuf),
 }
 
-/// A question that the system's dialog for files answers.
+/// A question that the user answers in a file dialog.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum FileQuestion {
-    /// Which champion or run to show on the stage.
+    /// Choose the champion or run to show on the stage.
     Open,
-    /// Which champions or run to copy into the library.
+    /// Choose the champions or the run to copy into the library.
     Import,
-    /// Into which folder to copy these entries.
+    /// Choose the folder into which to copy these entries.
     Export(Vec<SavePlace>),
-    /// Into which file of this format to write the champions on the stage; the name is a suggestion, without its ending.
+    /// Choose the file of this format for the champions on the stage. The text is a suggested name without an extension.
     Share(ExportFormat, String),
 }

@@ -7,40 +7,40 @@ use snakes_core::save::library::SavePlace;
 /// A command to the library of saves.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum LibraryCommand {
-    /// Read the folder of saves, or reread it.
+    /// Read or reread the folder of saves.
     Refresh,
     /// Load these entries first, because they are visible.
     LoadFirst(Vec<SavePlace>),
     /// Show the champion of an entry on the stage; of a run, its best champion.
     Replay(SavePlace),
-    /// Race the champions of entries.
+    /// Race the champions of these entries. A run takes part with its best champion.
     Race(Vec<SavePlace>),
     /// Show the champion of a run's generation on the stage.
     ReplayGeneration {
-        /// The run's folder.
+        /// Folder of the run.
         run: PathBuf,
-        /// The generation; the first is 1.
+        /// Number of the generation; the first is 1.
         generation: u32,
     },
     /// Race the champions of these generations of a run. Of many generations, an evenly spaced selection races.
     RaceGenerations {
-        /// The run's folder.
+        /// Folder of the run.
         run: PathBuf,
-        /// The generations that have a champion.
+        /// Generations of the run that have a champion.
         generations: Vec<u32>,
     },
     /// Rename a champion's file, or give a run a name of its own.
     Rename {
-        /// The champion or run.
+        /// Champion or run to rename.
         place: SavePlace,
-        /// The new name; of a run, empty for its folder's name.
+        /// New name. For a run, an empty name restores that of its folder.
         name: String,
     },
     /// Change the notes of an entry.
     SetNotes {
-        /// The champion or run.
+        /// Champion or run whose notes are changed.
         place: SavePlace,
-        /// The new notes; empty for none.
+        /// New notes; empty for none.
         text: String,
     },
     /// Copy champions within the folder of saves.
@@ -49,16 +49,16 @@ pub(crate) enum LibraryCommand {
     Delete(Vec<SavePlace>),
     /// Copy entries to another folder.
     Export {
-        /// The entries.
+        /// Entries to copy.
         places: Vec<SavePlace>,
-        /// Target folder, or target file for a single champion; without it, the default export folder.
+        /// Target folder, or target file for a single champion; `None` for the default export folder.
         to: Option<PathBuf>,
     },
     /// Copy champions or runs into the folder of saves.
     Import(Vec<PathBuf>),
     /// Examine champions in the background, and write the results into their files.
     Examine(Vec<SavePlace>),
-    /// Stop a batch operation after the current file, and an exam.
+    /// Stop a batch operation after the current file, and stop an exam.
     Cancel,
     /// Show the champions that were loaded in the background.
     ShowLoaded,

@@ -1,4 +1,4 @@
-//! Commands that the user can give, as plain data, in groups. `app::apply` passes each to the part of the studio that
+//! Commands that the user can give, as plain data, in groups. `app::apply` passes each command to the module that
 //! executes its group.
 
 pub mod actions;
@@ -39,31 +39,31 @@ use turn::Turn;
 /// A command from a panel, a menu or a key.
 #[derive(Message, Debug, Clone, PartialEq)]
 pub(super) enum Command {
-    /// To the current run.
+    /// Command to the current run.
     Run(RunCommand),
-    /// To the plan of the next run.
+    /// Command to the plan of the next run.
     Plan(PlanCommand),
-    /// To the lanes of the stage.
+    /// Command to the lanes of the stage.
     Stage(StageCommand),
-    /// To the clock of the stage.
+    /// Command to the clock of the stage.
     Player(PlayerCommand),
-    /// To the view of the stage.
+    /// Command to the view of the stage.
     View(ViewCommand),
-    /// To the layout of the window.
+    /// Command to the layout of the window.
     Window(WindowCommand),
-    /// To the library of saves.
+    /// Command to the library of saves.
     Library(LibraryCommand),
-    /// To the system's dialogs for files, its file manager and its clipboard.
+    /// Command to the operating system's file dialogs, file manager and clipboard.
     File(FileCommand),
-    /// To the files of other formats that are written from the stage.
+    /// Command to the writer of files in other formats, for the champions on the stage.
     Share(ShareCommand),
-    /// To the lessons.
+    /// Command to the lessons.
     Lesson(LessonCommand),
-    /// To the exams of champions on unseen stairs.
+    /// Command to the exams of champions on unseen stairs.
     Exam(ExamCommand),
-    /// To the editor of bodies.
+    /// Command to the editor of bodies.
     Body(BodyCommand),
-    /// To the connection with other computers.
+    /// Command to the connection with other computers.
     Machines(MachinesCommand),
     /// Undo the latest change of the next run's plan or of the saves.
     Undo,
@@ -101,22 +101,22 @@ pub(super) enum RunCommand {
 /// A command to the plan of the next run. The stage shows the effect of a changed setting.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PlanCommand {
-    /// Set the seed.
+    /// Set the seed of the next run.
     SetSeed(u64),
-    /// Set the population size.
+    /// Set the population size of the next run.
     SetPopulation(u32),
     /// Change one setting.
     SetField {
         /// Name of the setting: see [`snakes_core::evolve::with_field`].
         field: String,
-        /// New value, as text.
+        /// New value of the setting, as text.
         text: String,
     },
-    /// Change several settings at once.
+    /// Change several settings at once. Each pair is the name of a setting and its new value as text.
     SetFields(Vec<(String, String)>),
-    /// Use this preset.
+    /// Use the preset with this name.
     SetPreset(String),
-    /// Store the settings as a preset with this name.
+    /// Store the settings of the next run as a preset with this name.
     StorePreset(String),
     /// Reread the list of presets.
     ListPresets,
@@ -124,13 +124,13 @@ pub(super) enum PlanCommand {
     StoreStairs(String),
     /// Reread the list of the user's stairs.
     ListStairs,
-    /// Start from this individual, in its world.
+    /// Start the next run from this individual, in its world.
     StartFrom(Pick),
-    /// Start from the champion of this entry of the library, now.
+    /// Start the next run from the champion of this library entry at once.
     StartFromSave(SavePlace),
-    /// Start from random genomes again.
+    /// Start the next run from random genomes again.
     ForgetFounder,
-    /// Keep only this changed lane of a what-if, and its world for the next run; the first lane is 0.
+    /// Keep only this changed lane of a what-if, and use its world for the next run; the first lane is 0.
     KeepLane(usize),
     /// Discard the latest change of a what-if.
     DropChange,
@@ -139,7 +139,7 @@ pub(super) enum PlanCommand {
 }
 
 impl PlanCommand {
-    /// The command that changes one setting.
+    /// Creates the command that changes one setting.
     pub fn set(field: &str, text: &str) -> Self {
         Self::SetField { field: field.to_owned(), text: text.to_owned() }
     }
@@ -148,31 +148,31 @@ impl PlanCommand {
 /// A command to the lanes of the stage.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum StageCommand {
-    /// Show this individual alone.
+    /// Show this individual alone on the stage.
     Show(Pick),
-    /// Add a lane with this individual, or remove its lane.
+    /// Add a lane with this individual, or remove its lane if it has one.
     Join(Pick),
-    /// Show all snakes of this generation at once, or of the latest one; the first generation is 1.
+    /// Show all snakes of this generation at once; `None` for the latest one. The first generation is 1.
     ShowGeneration(Option<u32>),
-    /// Show each better generation of the run from now on, or stop doing so.
+    /// Show each better generation of the run from now on, or stop following the run.
     ToggleFollowEvolution,
-    /// Show the first, the middle and the latest of the better generations in turn.
+    /// Show the first, a middle and the latest of the generations that improved the run, one after another.
     TellStory,
     /// Race the champions of the run's generations.
     RaceGenerations,
-    /// Race the best of this generation, or of the latest one; the first generation is 1.
+    /// Race the best snakes of this generation; `None` for the latest one. The first generation is 1.
     RaceLeaders(Option<u32>),
-    /// Show the snake at five values of this setting of the world, by its full dotted name, side by side.
+    /// Show the snake at five values of this world setting, side by side. The text is the setting's full dotted name.
     Sweep(String),
     /// Show the snake on its own stairs and on the built-in ones, side by side.
     RaceStairs,
-    /// Accept the change of a what-if: only the changed lane stays.
+    /// Accept the change of a what-if, and remove the lane without it.
     KeepChange,
-    /// Leave the changed lane of a what-if as it is: the next change makes another lane beside it.
+    /// Keep the changed lane of a what-if. The next change then adds another lane beside it.
     TryAnother,
-    /// Show the next, the previous or the first champion of a presentation.
+    /// Show the next, the previous or the first champion in the presenting mode.
     TakeTurn(Turn),
-    /// Keep only the selected lane.
+    /// Remove all lanes except the selected one.
     Single,
     /// Show the snake in the world in which it was found.
     ShowAsFound,
@@ -189,23 +189,23 @@ pub(super) enum PlayerCommand {
     Toggle,
     /// Play from the start.
     Restart,
-    /// Go to this moment, in simulated seconds.
+    /// Go to this time, in simulated seconds.
     Seek(f64),
-    /// Pause and go to the end.
+    /// Pause and go to the end of the rollout.
     SeekEnd,
     /// Pause and move by one physics step.
     Step {
-        /// Forward, or else back.
+        /// Whether the step goes forward rather than back.
         forward: bool,
     },
-    /// Set the playback speed, in simulated seconds per second.
+    /// Set the playback speed, in simulated seconds per real second.
     SetSpeed(f32),
     /// Select the next higher or lower playback speed.
     ChangeSpeed {
-        /// Higher, or else lower.
+        /// Whether the speed becomes higher rather than lower.
         faster: bool,
     },
-    /// Repeat from the start after the end, or stop there.
+    /// Turn the loop on or off: playback repeats from the start after the end, or stops there.
     ToggleLoop,
 }
 
@@ -218,7 +218,7 @@ pub(super) enum ViewCommand {
     NextCameraMode,
     /// Let the camera follow the snake, or stop following.
     ToggleFollow,
-    /// Return the camera to its initial view.
+    /// Return the camera to the initial view of its mode.
     ResetCamera,
     /// Show or hide an overlay of the scene.
     ToggleOverlay(Overlay),
@@ -249,7 +249,7 @@ pub(super) enum WindowCommand {
     ToggleBlack,
     /// Select the next larger or smaller UI scale.
     ChangeScale {
-        /// Larger, or else smaller.
+        /// Whether the scale becomes larger rather than smaller.
         larger: bool,
     },
     /// Reset the UI scale to 1.
@@ -258,7 +258,7 @@ pub(super) enum WindowCommand {
     FoldAdvanced {
         /// Title of the section.
         section: &'static str,
-        /// Unfolded, or else folded.
+        /// Whether the advanced settings are unfolded.
         is_open: bool,
     },
     /// Open a modal view, or close it if it is open.
@@ -274,7 +274,7 @@ pub(super) enum LessonCommand {
     Begin(usize),
     /// Show one of the lesson's scenes; the first is 0.
     ShowScene(usize),
-    /// Guess this answer to the scene's question and begin the experiment; the first answer is 0.
+    /// Select this answer to the scene's question and begin the experiment; the first answer is 0.
     Guess(usize),
     /// Begin the scene's experiment without a guess.
     Watch,
@@ -284,18 +284,18 @@ pub(super) enum LessonCommand {
     Leave,
 }
 
-/// A command to the exam on unseen stairs of the selected snake.
+/// A command to the exam of the selected snake on unseen stairs.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum ExamCommand {
-    /// Begin the exam, in the background.
+    /// Begin the exam of the selected snake in the background.
     Examine,
-    /// Stop the exam that is under way.
+    /// Stop the exam that is in progress.
     Cancel,
-    /// Show the snake on the stairs of a cell of the results.
+    /// Show the snake on the stairs of one cell of the exam's results.
     Watch {
-        /// On other stairs, or there without senses.
+        /// Group of the exam's stairs, with or without senses.
         suite: ExamSuite,
-        /// Index of the cell; the first is 0.
+        /// Index of the cell in the exam's grid; the first is 0.
         cell: usize,
     },
     /// Show the snake on its own stairs again.
@@ -307,48 +307,48 @@ pub(super) enum ExamCommand {
 pub(super) enum BodyCommand {
     /// Edit the body of the selected snake on the stage.
     Edit,
-    /// Set a number of a block; the head is 0.
+    /// Set a number of a block.
     Set {
-        /// The block.
+        /// Index of the block; the head is 0.
         block: usize,
-        /// The number.
+        /// Which number of the block to set.
         size: BlockSize,
-        /// Its new value, in its unit.
+        /// New value, in the unit of that number.
         value: f32,
     },
-    /// Make a block rigid; the head is 0.
+    /// Make a block rigid.
     MakeRigid {
-        /// The block.
+        /// Index of the block; the head is 0.
         block: usize,
     },
-    /// Change the structure at a block; the head is 0.
+    /// Change the structure of the body at a block.
     Change {
-        /// The block, or the first of two.
+        /// Index of the block, or of the first of two; the head is 0.
         block: usize,
-        /// The change.
+        /// Change of the structure.
         change: BodyChange,
     },
     /// Undo the latest change of the body.
     Undo,
     /// Redo the latest undone change.
     Redo,
-    /// Show the body beside the original.
+    /// Show the edited body beside the original.
     Preview,
-    /// Adapt the gait to the body by a few evaluations, in the background.
+    /// Adapt the gait to the edited body by a few evaluations, in the background.
     Tune,
-    /// Stop adapting the gait; the best so far stays.
+    /// Stop adapting the gait, and keep the best one found.
     CancelTuning,
-    /// Start the next run from this body.
+    /// Start the next run from the edited body.
     Evolve,
-    /// Close the editor, and show the original alone.
+    /// Close the editor, and show the original body alone.
     Close,
 }
 
 /// A command to the connection with other computers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum MachinesCommand {
-    /// Connect to the server with this address. Runs then compute on its workers, too.
+    /// Connect to the server at this address. Runs then also use the server's workers.
     Connect(String),
-    /// Leave the server. Runs then compute on this computer only.
+    /// Disconnect from the server. Runs then use this computer only.
     Disconnect,
 }

@@ -2,14 +2,14 @@
 
 use snakes_core::check::Invalid;
 
-/// An overlay of the scene.
+/// An overlay that can be drawn over the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Overlay {
     /// Contact points and forces.
     Contacts,
     /// Joint torques.
     Torques,
-    /// Path of the middle limb.
+    /// Path that the middle limb has taken.
     Trail,
     /// Distance of the middle limb along the lane.
     FitnessLine,
@@ -22,7 +22,7 @@ impl Overlay {
     pub const ALL: [Self; 5] =
         [Self::Contacts, Self::Torques, Self::Trail, Self::FitnessLine, Self::Wireframe];
 
-    /// Label of the button, entry of the menu, shortcuts, and tooltip.
+    /// Returns the label of the button, the menu entry, the shortcuts and the tooltip.
     fn words(self) -> (&'static str, &'static str, &'static [&'static str], &'static str) {
         match self {
             Self::Contacts => {
@@ -44,27 +44,27 @@ impl Overlay {
         }
     }
 
-    /// Label of the button.
+    /// Returns the label of the overlay's button.
     pub fn name(self) -> &'static str {
         self.words().0
     }
 
-    /// Name of the menu entry.
+    /// Returns the label of the menu entry.
     pub fn entry(self) -> &'static str {
         self.words().1
     }
 
-    /// Shortcuts that show or hide the overlay.
+    /// Returns the shortcuts that show or hide the overlay.
     pub fn keys(self) -> &'static [&'static str] {
         self.words().2
     }
 
-    /// Tooltip of the button, without its shortcut.
+    /// Returns the tooltip of the overlay's button, without the shortcut.
     pub fn hint(self) -> &'static str {
         self.words().3
     }
 
-    /// The overlay with this one-word, lower-case name.
+    /// Finds the overlay with this one-word, lower-case name.
     ///
     /// # Errors
     /// No overlay that can be drawn in a picture has this name.
@@ -74,7 +74,7 @@ impl Overlay {
         known.ok_or_else(|| Invalid::new("show", format!("{name:?}"), allowed))
     }
 
-    /// The name that [`Self::named`] knows, if pictures can have the overlay.
+    /// Returns the name by which [`Self::named`] finds the overlay, or `None` if it cannot be drawn in pictures.
     pub fn short_name(self) -> Option<&'static str> {
         match self {
             Self::Contacts => Some("contacts"),

@@ -2,30 +2,30 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A tab of the window. Panels can be docked anywhere; the stage stays in the main window.
+/// A panel, shown as a tab of the window. Panels can be docked anywhere, except that the stage stays in the main window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum PanelKind {
-    /// The 3D view with its player.
+    /// Panel with the 3D view and its player.
     Stage,
-    /// Start, pause and configure evolution.
+    /// Panel to start, pause and configure evolution.
     Run,
-    /// Settings of the world and the snake.
+    /// Panel for the settings of the world and the snake.
     World,
-    /// Charts of the run.
+    /// Panel with charts of the run.
     Charts,
-    /// Champions of the generations.
+    /// Panel with the champions of the run's generations.
     Champions,
-    /// Saved champions and runs.
+    /// Panel with saved champions and runs.
     Library,
-    /// Lessons that reproduce findings of the report.
+    /// Panel with lessons that reproduce findings of the report.
     Lessons,
-    /// Senses and controller of the snake on the stage.
+    /// Panel with the senses and the controller of the snake on the stage.
     Senses,
-    /// Other computers that compute, too.
+    /// Panel for other computers that take part in the evaluations.
     Machines,
-    /// The blocks of the snake on the stage, to be edited.
+    /// Panel to edit the blocks of the snake on the stage.
     Body,
-    /// The stairs of the next run, to be edited.
+    /// Panel to edit the stairs of the next run.
     Stairs,
 }
 
@@ -44,11 +44,11 @@ impl PanelKind {
         Self::Stairs,
     ];
 
-    /// The panels of the initial layout, in the order of their tabs. Few people have several computers, so the others open
-    /// on demand.
+    /// Panels of the initial layout, in the order of their tabs. The remaining ones are rarely needed and open on
+    /// demand.
     pub const INITIAL: &'static [Self] = Self::ALL.split_at(7).0;
 
-    /// Label of the tab, shortcuts, and what the panel is for.
+    /// Returns the label of the tab, the shortcuts, and the panel's purpose.
     fn words(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
             Self::Stage => ("Stage", &[], "The snake on its stairs"),
@@ -75,17 +75,17 @@ impl PanelKind {
         }
     }
 
-    /// Label of the tab.
+    /// Returns the label of the panel's tab.
     pub fn name(self) -> &'static str {
         self.words().0
     }
 
-    /// Shortcuts that open the panel.
+    /// Returns the shortcuts that open the panel.
     pub fn keys(self) -> &'static [&'static str] {
         self.words().1
     }
 
-    /// Tooltip.
+    /// Returns the tooltip, with the first shortcut if there is one.
     pub fn hint(self) -> String {
         let (_, keys, hint) = self.words();
         keys.first().map_or_else(|| hint.to_owned(), |key| format!("{hint} ({key})"))

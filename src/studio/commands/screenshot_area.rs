@@ -5,7 +5,7 @@ use bevy::prelude::*;
 /// The part of the window to save as a picture.
 #[derive(Message, Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ScreenshotArea {
-    /// The stage without panels.
+    /// Only the stage, without panels.
     Stage,
     /// The whole window.
     Window,

@@ -2,11 +2,11 @@
 
 use snakes_lab::export::ExportFormat;
 
-/// A command to share what is on the stage.
+/// A command about sharing the champions on the stage as a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ShareCommand {
-    /// Ask for a file of this format, and write it.
+    /// Ask where to save a file of this format, and write it.
     Ask(ExportFormat),
-    /// Cancel what is being written.
+    /// Cancel the file that is being written.
     Cancel,
 }

@@ -1,12 +1,12 @@
-//! The turns of the presenting mode.
+//! The steps through the champions in the presenting mode.
 
-/// A step through the champions that the presenting mode shows in turn.
+/// A step through the champions that the presenting mode shows one after another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Turn {
-    /// The next champion; after the last, the first.
+    /// Show the next champion; after the last, show the first.
     Next,
-    /// The champion before this one; before the first, the last.
+    /// Show the previous champion; before the first, show the last.
     Previous,
-    /// The first.
+    /// Show the first champion.
     First,
 }
