@@ -1,4 +1,4 @@
-//! Buttons and check boxes that send a command. Their hints name the shortcut of that command.
+//! Buttons and check boxes that send a command. Their tooltips include the command's shortcut.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use super::theme;
 use crate::studio::commands::Command;
 use crate::studio::commands::actions::hint_with_key;
 
-/// A button that sends a command.
+/// A button that sends a command when it is clicked.
 pub(crate) struct CommandButton<'a> {
     button: egui::Button<'a>,
     hint: Cow<'a, str>,
@@ -18,7 +18,7 @@ pub(crate) struct CommandButton<'a> {
 }
 
 impl<'a> CommandButton<'a> {
-    /// A button with this label. An empty hint is not shown.
+    /// Creates a button with this label. An empty hint adds no tooltip.
     pub fn new(
         label: impl egui::IntoAtoms<'a>,
         hint: impl Into<Cow<'a, str>>,
@@ -27,7 +27,7 @@ impl<'a> CommandButton<'a> {
         Self::of(egui::Button::new(label), hint, command)
     }
 
-    /// A low button with this label.
+    /// Creates a low button with this label.
     pub fn small(
         label: impl egui::IntoAtoms<'a>,
         hint: impl Into<Cow<'a, str>>,
@@ -36,22 +36,22 @@ impl<'a> CommandButton<'a> {
         Self::of(egui::Button::new(label).small(), hint, command)
     }
 
-    /// A button with a look of its own.
+    /// Makes an existing egui button send a command.
     pub fn of(button: egui::Button<'a>, hint: impl Into<Cow<'a, str>>, command: Command) -> Self {
         Self { button, hint: hint.into(), refusal: None, command }
     }
 
-    /// Disables the button if there is a reason, which it shows in place of the hint unless it is empty.
+    /// Disables the button if `refusal` is a reason. The reason replaces the tooltip unless it is empty.
     pub fn unless(self, refusal: Option<&'a str>) -> Self {
         Self { refusal, ..self }
     }
 
-    /// Disables the button unless this holds.
+    /// Disables the button unless `is_possible`.
     pub fn only_if(self, is_possible: bool) -> Self {
         self.unless((!is_possible).then_some(""))
     }
 
-    /// Draws the button. A click sends the command. Returns whether it was clicked.
+    /// Draws the button, and sends its command when it is clicked. Returns whether it was clicked.
     pub fn show(self, ui: &mut egui::Ui, commands: &mut Vec<Command>) -> bool {
         let Self { button, hint, refusal, command } = self;
         let mut response = ui.add_enabled(refusal.is_none(), button);
@@ -81,20 +81,20 @@ pub(crate) fn command_box(
     }
 }
 
-/// Adds the hint of a command. The shortcut is looked up only while the hint is shown.
+/// Adds a tooltip with the hint and the command's shortcut, which is looked up only while the tooltip is shown.
 pub(crate) fn hint_of_command(
     response: egui::Response,
     hint: &str,
     command: &Command,
 ) -> egui::Response {
     response.on_hover_ui(|ui| {
-        // Hover texts of egui have this width, too.
+        // The same width as that of egui's own tooltips.
         ui.set_max_width(ui.spacing().tooltip_width);
         ui.label(hint_with_key(hint, command));
     })
 }
 
-/// A button in the accent's colour, for what is most likely wanted.
+/// Returns a button in the accent colour, for the most likely action.
 pub(crate) fn accent_button(ui: &egui::Ui, label: &str) -> egui::Button<'static> {
     let palette = theme::of(ui);
     let text = egui::RichText::new(label).strong().color(palette.on_accent);

@@ -1,18 +1,18 @@
-//! Check boxes with the shape and the contrast of a check box: egui's default takes the round corners and the pale edge
-//! of buttons, which looks like a radio button.
+//! Check boxes with square corners and a clear edge. egui's default has the round corners and the pale edge of its
+//! buttons, which looks like a radio button.
 
 use bevy_egui::egui;
 
 use super::theme;
 
-/// Side of the box, in points.
+/// Side length of the box, in points.
 pub(crate) const CHECK_BOX_SIDE: f32 = 16.0;
 /// Width of the tick, in points.
 const TICK: f32 = 10.0;
-/// Radius of the corners, in points: small beside the side, so that the box is a square.
+/// Corner radius of the box, in points: small, so that the box looks square.
 const CORNER: egui::CornerRadius = egui::CornerRadius::same(2);
 
-/// A check box with its label. The label may be empty, if another widget names the box.
+/// Draws a check box with its label. The label may be empty if another widget names the box.
 pub(crate) fn check_box(
     ui: &mut egui::Ui,
     is_on: &mut bool,
@@ -41,7 +41,7 @@ pub(crate) fn check_box(
     .inner
 }
 
-/// Paints a check box that belongs to another widget, such as the entry of a menu.
+/// Paints a check box that is part of another widget, such as a menu entry.
 pub(crate) fn paint_check_box(ui: &egui::Ui, rect: egui::Rect, is_on: bool) {
     let palette = theme::of(ui);
     let fill = if is_on { palette.accent } else { palette.panel };
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn a_check_box_is_a_square_with_sharp_corners() {
-        // A radius of half the side would be a circle.
+        // A corner radius of half the side would make a circle.
         assert!(f32::from(CORNER.nw) * 4.0 <= CHECK_BOX_SIDE / 2.0);
     }
 }

@@ -1,13 +1,13 @@
 //! Numbers as text.
 
-/// The number with this many decimals. One that rounds to zero has no minus: "0.00" instead of "-0.00".
+/// Formats a number with this many decimals. A number that rounds to zero has no minus sign: "0.00" instead of "-0.00".
 pub(crate) fn decimals(value: impl Into<f64>, count: usize) -> String {
     let text = format!("{:.count$}", value.into());
     let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
 
-/// The number with at most this many decimals, without zeros at its end.
+/// Formats a number with at most this many decimals, without trailing zeros.
 pub(crate) fn short(value: f64, count: usize) -> String {
     let text = format!("{value:.count$}");
     if text.contains('.') {
@@ -17,7 +17,7 @@ pub(crate) fn short(value: f64, count: usize) -> String {
     }
 }
 
-/// A share as whole percents.
+/// Formats a share, where 1 is the whole, as whole percents.
 pub(crate) fn in_percent(share: f32) -> String {
     format!("{:.0} %", share * 100.0)
 }

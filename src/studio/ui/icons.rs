@@ -6,7 +6,7 @@ use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke, WidgetType};
 use super::accessible::{named, named_selected};
 use super::theme;
 
-/// An icon.
+/// An icon of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Icon {
     ToStart,
@@ -15,21 +15,21 @@ pub(crate) enum Icon {
     Pause,
     StepForward,
     Loop,
-    /// Reset to the preset's value.
+    /// Reset a setting to the preset's value.
     Reset,
     Undo,
     Redo,
-    /// A setting at several values side by side.
+    /// Show a setting at several values side by side.
     Sweep,
 }
 
-/// Side length of a button, in points.
+/// Side length of an icon button, in points.
 const SIDE: f32 = 28.0;
-/// Side length of a small button, in points.
+/// Side length of a small icon button, in points.
 const SMALL_SIDE: f32 = 22.0;
 
 impl Icon {
-    /// Label for screen readers.
+    /// Returns the icon's label for screen readers.
     fn label(self) -> &'static str {
         match self {
             Self::ToStart => "Play from start",
@@ -45,7 +45,7 @@ impl Icon {
         }
     }
 
-    /// Shapes of the icon within a square.
+    /// Returns the shapes of the icon within a square.
     fn shapes(self, square: Rect, stroke: Stroke) -> Vec<Shape> {
         let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(x, y));
         let filled = |points: Vec<Pos2>| Shape::convex_polygon(points, stroke.color, Stroke::NONE);
@@ -76,7 +76,7 @@ impl Icon {
     }
 }
 
-/// Three quarters of a circle with an arrow head; mirrored, it points counterclockwise.
+/// Returns the shapes of three quarters of a circle with an arrow head. The arrow points clockwise, or counterclockwise if mirrored.
 fn round_arrow(square: Rect, stroke: Stroke, is_mirrored: bool) -> Vec<Shape> {
     let (centre, radius) = (square.center(), square.width() * 0.46);
     let side = if is_mirrored { -1.0 } else { 1.0 };
@@ -93,7 +93,7 @@ fn round_arrow(square: Rect, stroke: Stroke, is_mirrored: bool) -> Vec<Shape> {
     vec![Shape::line(line.collect(), stroke), head]
 }
 
-/// An arrow that starts below and turns to the left, or else to the right.
+/// Returns the shapes of an arrow that starts at the bottom and turns to the left, or else to the right.
 fn turned_arrow(square: Rect, stroke: Stroke, is_left: bool) -> Vec<Shape> {
     let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(if is_left { x } else { 1.0 - x }, y));
     let line = (0..=12).map(|part| {
@@ -106,7 +106,7 @@ fn turned_arrow(square: Rect, stroke: Stroke, is_left: bool) -> Vec<Shape> {
     vec![Shape::line(line, stroke), Shape::convex_polygon(head, stroke.color, Stroke::NONE)]
 }
 
-/// A small icon button. `label` tells screen readers its purpose.
+/// Draws a small icon button. `label` tells screen readers its purpose.
 pub(crate) fn small_icon_button(
     ui: &mut egui::Ui,
     icon: Icon,
@@ -126,7 +126,7 @@ pub(crate) fn small_icon_button(
     response.on_hover_text(hint).on_disabled_hover_text(hint)
 }
 
-/// An icon button.
+/// Draws an icon button, highlighted if it is on.
 pub(crate) fn icon_button(ui: &mut egui::Ui, icon: Icon, is_on: bool) -> egui::Response {
     let palette = theme::of(ui);
     let fill = |is_hovered| match (is_on, is_hovered) {
@@ -140,7 +140,7 @@ pub(crate) fn icon_button(ui: &mut egui::Ui, icon: Icon, is_on: bool) -> egui::R
     named_selected(response, WidgetType::Button, is_on, icon.label())
 }
 
-/// A square button. `fill` is its background, which depends on whether the pointer is over it; `shapes` are drawn on that.
+/// Draws a square button. `fill` returns its background, given whether the pointer is over it; `shapes` are drawn on the background.
 fn square_button(
     ui: &mut egui::Ui,
     side: f32,
@@ -162,7 +162,7 @@ fn square_button(
     response
 }
 
-/// The middle of a square, of this share of its side.
+/// Returns the central square whose side is this share of the given square's side.
 fn middle_of(square: Rect, share: f32) -> Rect {
     Rect::from_center_size(square.center(), square.size() * share)
 }

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use super::theme;
 
-/// Draws the dot that marks a lane (the first is 0) by its colour, of this diameter in points.
+/// Draws a dot in the colour of a lane (the first is 0), with this diameter in points.
 pub(crate) fn lane_dot(ui: &mut egui::Ui, lane: usize, diameter: f32) -> egui::Response {
     dot(ui, theme::of(ui).lane_color(lane), diameter)
 }

@@ -10,7 +10,7 @@ use super::theme;
 use super::viewport::StageArea;
 use crate::studio::commands::Command;
 
-/// Displayed messages, the oldest first.
+/// Messages that are displayed over the stage, the oldest first.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Notices {
     list: Vec<Notice>,
@@ -21,27 +21,27 @@ pub(crate) struct Notices {
 #[derive(Debug)]
 struct Notice {
     text: String,
-    /// Messages about the same subject replace each other.
+    /// Subject of the message; a new message on the same subject replaces it. `None` for no subject.
     subject: Option<&'static str>,
-    /// Buttons: their labels, and the commands that they send.
+    /// Label of each button of the message, and the command that it sends.
     offers: Vec<(String, Command)>,
     is_problem: bool,
-    /// Whether it is drawn in a presentation, too.
+    /// Whether the message is also drawn in the presenting mode.
     is_important: bool,
-    /// Display time.
+    /// Display time of the message.
     lasts: Duration,
     shown_for: Duration,
-    /// Height when it was drawn last, in points.
+    /// Height of the message's card when it was drawn last, in points.
     height: f32,
 }
 
-/// Display time of news.
+/// Display time of a message without a problem or a button.
 const NEWS: Duration = Duration::from_secs(8);
-/// Display time of a problem, which takes longer to read, and of a message with a button, which takes time to reach.
+/// Display time of a problem, which takes longer to read, and of a message with buttons, which take time to reach.
 const PROBLEM: Duration = Duration::from_secs(16);
-/// Display time of an offer that is not made again.
+/// Display time of a message with a button that appears only once.
 const LASTING: Duration = Duration::from_secs(60);
-/// Maximum number of messages. More would cover the stage; the oldest is removed.
+/// Maximum number of messages; a new one then removes the oldest. More would cover the stage.
 const MAX_NOTICES: usize = 4;
 
 impl Notice {
@@ -62,7 +62,7 @@ impl Notice {
         self.shown_for >= self.lasts
     }
 
-    /// Draws its card, at most this wide in points. Returns the card's height and the command of a clicked button.
+    /// Draws the message's card, at most this wide in points. Returns the card's height and the command of a clicked button.
     fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, Option<Command>) {
         let palette = theme::of(ui);
         let edge = if self.is_problem { palette.problem } else { palette.accent };
@@ -100,23 +100,23 @@ impl Notices {
         self.push(Notice::new(text));
     }
 
-    /// Shows a message that a presentation does not hide.
+    /// Shows a message that is also drawn in the presenting mode.
     pub fn important(&mut self, text: String) {
         self.push(Notice { is_important: true, ..Notice::new(text) });
     }
 
-    /// Draws only problems and important news, or all messages again.
+    /// Selects whether to draw only problems and important news, or all messages.
     pub fn set_quiet(&mut self, is_quiet: bool) {
         self.is_quiet = is_quiet;
     }
 
-    /// Shows a message that replaces earlier ones about the same subject.
+    /// Shows a message that replaces earlier ones on the same subject.
     pub fn update(&mut self, subject: &'static str, text: String) {
         self.push(Notice { subject: Some(subject), ..Notice::new(text) });
     }
 
-    /// Shows a message with buttons, which replaces earlier ones about the same subject. Each button has a label and
-    /// sends a command.
+    /// Shows a message with buttons, which replaces earlier ones on the same subject. Each button has a label and sends
+    /// a command.
     pub fn offer<const N: usize>(
         &mut self,
         subject: &'static str,
@@ -144,8 +144,8 @@ impl Notices {
         });
     }
 
-    /// Shows why a command was refused, if it was. That is an answer to the user and no error of the program, so the log
-    /// has it as a warning.
+    /// Shows why a command was refused, if it was. A refusal is not an error of the program, so it is logged as a
+    /// warning.
     pub fn refusal(&mut self, text: Option<String>) {
         if let Some(text) = text {
             warn!("not done: {text}");
@@ -153,36 +153,36 @@ impl Notices {
         }
     }
 
-    /// Shows and logs a problem, if there is one.
+    /// Shows and logs a problem, if `text` is one.
     pub fn problems(&mut self, text: Option<String>) {
         text.into_iter().for_each(|text| self.problem(text));
     }
 
-    /// Number of displayed messages.
+    /// Returns number of displayed messages.
     #[cfg(test)]
     pub fn len(&self) -> usize {
         self.list.len()
     }
 
-    /// The latest message.
+    /// Returns the latest message.
     #[cfg(test)]
     pub fn last(&self) -> Option<&str> {
         self.list.last().map(|notice| notice.text.as_str())
     }
 
-    /// The buttons of the latest message.
+    /// Returns the buttons of the latest message.
     #[cfg(test)]
     pub fn last_offers(&self) -> &[(String, Command)] {
         self.list.last().map_or(&[], |notice| &notice.offers)
     }
 
-    /// The messages to draw, with their indices.
+    /// Returns the messages to draw, with their indices, the oldest first.
     fn drawn(&self) -> impl DoubleEndedIterator<Item = (usize, &Notice)> {
         let all = self.list.iter().enumerate();
         all.filter(|(_, notice)| !self.is_quiet || notice.is_important)
     }
 
-    /// Number of messages, the latest first, that have room in this height, in points; the latest in any case.
+    /// Counts the latest messages that fit into this height, in points; at least one.
     fn fitting(&self, height: f32) -> usize {
         let heights = self.drawn().rev().map(|(_, notice)| notice.height + theme::GAP);
         let ends = heights.scan(0.0, |sum, height| {
@@ -192,22 +192,22 @@ impl Notices {
         ends.take_while(|end| *end <= height).count().max(1)
     }
 
-    /// Draws the messages in the lower right corner of a room. Returns the rectangle that they cover, and the command of a
-    /// clicked button, whose message goes.
+    /// Draws the messages in the lower right corner of `room`. Returns the rectangle that they cover, and the command
+    /// of a clicked button, whose message is removed.
     fn show(
         &mut self,
         context: &egui::Context,
         room: egui::Rect,
     ) -> (Option<egui::Rect>, Option<Command>) {
-        // Older messages for which there is no room wait behind the later ones.
+        // Older messages that do not fit are hidden until later ones disappear.
         let fitting = self.fitting(room.height());
-        // The remaining width is for the card's margins.
+        // The rest of the room's width is for the card's margins.
         let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
         let (mut heights, mut taken) = (Vec::new(), None);
         let shown = egui::Area::new(egui::Id::new("notices"))
             .pivot(egui::Align2::RIGHT_BOTTOM)
             .fixed_pos(room.max)
-            // Without a button, clicks reach the stage behind the messages.
+            // If no message has a button, clicks reach the stage behind the messages.
             .interactable(self.drawn().any(|(_, notice)| !notice.offers.is_empty()))
             .show(context, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
@@ -222,8 +222,8 @@ impl Notices {
         for (index, height) in heights {
             let before = std::mem::replace(&mut self.list[index].height, height);
             if before.to_bits() != height.to_bits() {
-                // The area is placed by the size that it had. Drawn there, the buttons would move away from the pointer
-                // in the next frame.
+                // egui places the area by its previous size. If the buttons were drawn there, they would move away from
+                // the pointer in the next frame.
                 context.request_discard("a message of another height");
             }
         }
@@ -261,7 +261,7 @@ fn draw(
 ) -> Result {
     notices.list.iter_mut().for_each(|notice| notice.shown_for += time.delta());
     notices.list.retain(|notice| !notice.is_over());
-    // The stairs rise to the upper right, so there is most room over the ground at the lower right.
+    // The stairs rise to the upper right, so the largest free area is above the ground at the lower right.
     let room = area.messages_room().shrink(theme::GAP * 1.5);
     let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
     area.set_messages(covered);

@@ -1,4 +1,4 @@
-//! Text field for a number. It validates input and commits the value on leaving the field.
+//! Text field for a number. It validates its text, and commits the value when the field loses the focus.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -9,10 +9,10 @@ use bevy_egui::egui;
 use super::text_rows::text_field;
 use super::theme;
 
-/// A number field and its unfinished input.
+/// A text field for a number, with its unfinished text.
 #[derive(Debug, Default)]
 pub(crate) struct NumberField {
-    /// The text while it is edited or invalid; `None` while the field shows the value itself.
+    /// Text of the field while it is edited or invalid; `None` while the field shows the value itself.
     text: Option<String>,
     problem: Option<String>,
 }
@@ -46,7 +46,7 @@ impl NumberField {
         None
     }
 
-    /// Error message for the current text, if it is invalid.
+    /// Returns the error message for the current text, or `None` if it is valid.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }

@@ -1,8 +1,8 @@
-//! The outlines of a body's limbs before its trial, from above and from the side.
+//! Outlines of a body's limbs at rest, from above and from the side.
 
 use snakes_core::world::{BodyPlan, Pose, Vector};
 
-/// The corners of all limbs.
+/// Corners of all limbs of a body at rest.
 #[derive(Debug)]
 pub struct Outlines {
     corners_m: Vec<[Vector; 8]>,
@@ -11,7 +11,7 @@ pub struct Outlines {
 }
 
 impl Outlines {
-    /// The outlines of a body.
+    /// Computes the outlines of a body.
     pub fn of(body: &BodyPlan) -> Self {
         let poses = body.limb_poses(&body.rest_poses());
         let corners = |(limb, pose): (usize, &Pose)| -> [Vector; 8] {
@@ -29,13 +29,14 @@ impl Outlines {
         Self { least_m, most_m, corners_m }
     }
 
-    /// Size of the whole body across, along and upwards, in metres.
+    /// Returns the size of the whole body across, along and upwards, in metres.
     pub fn size_m(&self) -> [f32; 3] {
         (self.most_m - self.least_m).to_array()
     }
 
-    /// The outline of each limb, as a convex polygon of points in metres to the right of the head and below the uppermost point.
-    /// `side` is 0 from above, where the right-hand side of the body is the lower one, and 2 from the side.
+    /// Returns the outline of each limb as a convex polygon. A point is its distance to the right of the body's front
+    /// and below its uppermost point, in metres. `side` is the axis of view: 0 is from above, with the body's
+    /// right-hand side at the bottom, and 2 is from the side.
     pub fn seen(&self, side: usize) -> Vec<Vec<[f32; 2]>> {
         let point = |at: &Vector| {
             let from_front = self.most_m.y - at.y;
@@ -46,7 +47,7 @@ impl Outlines {
     }
 }
 
-/// The convex hull of points in the order of its corners: the monotone chain of Andrew (1979).
+/// Computes the convex hull of points, with its corners in order, by the monotone chain of Andrew (1979).
 fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     points.sort_by(|[a, b], [c, d]| a.total_cmp(c).then(b.total_cmp(d)));
     points.dedup();
@@ -56,7 +57,7 @@ fn hull(mut points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
             while let [.., before, last] = chain[..] {
                 let cross = (last[0] - before[0]) * (point[1] - before[1])
                     - (last[1] - before[1]) * (point[0] - before[0]);
-                // Corners of a box that lie behind each other differ by rounding.
+                // Opposite corners of a box can coincide in this view, apart from rounding errors.
                 if cross > 1.0e-5 {
                     break;
                 }

@@ -13,7 +13,7 @@ use snakes_lab::plot::{Axis, tick_step, tick_text};
 /// Maximum number of labels along an axis.
 const MAX_LABELS: f64 = 6.0;
 
-/// A chart without pan and zoom, `height` points high.
+/// Creates a chart without pan and zoom, `height` points high.
 pub(crate) fn fixed_plot<'a>(id: &str, height: f32, [x, y]: [&Axis; 2]) -> Plot<'a> {
     let labelled = |hints: AxisHints<'a>, axis: &Axis| {
         let is_logarithmic = axis.is_logarithmic;
@@ -35,15 +35,15 @@ pub(crate) fn fixed_plot<'a>(id: &str, height: f32, [x, y]: [&Axis; 2]) -> Plot<
         .custom_y_axes(vec![labelled(AxisHints::new_y(), y).min_thickness(theme::AXIS_WIDTH)])
 }
 
-/// Label spacing from which egui_plot fades labels in, in points. Small, because [`step`] already spaces them.
+/// Distance between labels at which egui_plot fades them in, in points. It is small because [`step`] already spaces the labels.
 const LABEL_POINTS: RangeInclusive<f32> = 4.0..=8.0;
 
-/// Tick step for a range: 1, 2 or 5 times a power of ten.
+/// Returns the tick step for a range: 1, 2 or 5 times a power of ten.
 pub(crate) fn step(range: f64) -> f64 {
     tick_step(range, MAX_LABELS, false)
 }
 
-/// Grid of an axis. That of a count has lines at whole numbers only.
+/// Returns the grid of an axis. The grid of a count has lines only at whole numbers.
 fn grid<'a>(is_whole: bool) -> Box<dyn Fn(GridInput) -> Vec<GridMark> + 'a> {
     uniform_grid_spacer(move |input: GridInput| {
         let step = tick_step(input.bounds.1 - input.bounds.0, MAX_LABELS, is_whole);
@@ -62,22 +62,22 @@ pub(crate) fn number(value: f64) -> String {
     short(value, digits)
 }
 
-/// Bounds of a chart.
+/// Returns the bounds of a chart, from the ranges of its axes.
 pub(crate) fn bounds(x: &RangeInclusive<f64>, y: &RangeInclusive<f64>) -> PlotBounds {
     PlotBounds::from_min_max([*x.start(), *y.start()], [*x.end(), *y.end()])
 }
 
-/// Label of an axis, in small weak text.
+/// Returns the title of an axis in small weak text.
 pub(crate) fn axis_name(ui: &egui::Ui, text: &str) -> egui::RichText {
     weak(ui, text).small()
 }
 
-/// Title of a vertical axis, above its upper end, where it is read without turning the head.
+/// Draws the title of a vertical axis above its upper end, horizontally.
 pub(crate) fn y_title(ui: &mut egui::Ui, text: &str) -> egui::Response {
     ui.add(egui::Label::new(axis_name(ui, text)).truncate())
 }
 
-/// Title of a horizontal axis, below its middle.
+/// Draws the title of a horizontal axis below its middle.
 pub(crate) fn x_title(ui: &mut egui::Ui, text: &str) {
     ui.with_layout(egui::Layout::top_down(egui::Align::Center), |ui| {
         ui.add(egui::Label::new(axis_name(ui, text)).truncate());

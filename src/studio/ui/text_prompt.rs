@@ -1,23 +1,23 @@
 //! Text field of a dialog that opens on demand, such as one for a name.
 //!
-//! It takes the focus when it opens. While it is shown, typed letters belong to it and are never commands, even if no
-//! widget has the focus: see [`is_open`].
+//! The field takes the focus when it opens. While it is shown, typed letters go into the field and are never shortcuts,
+//! even if no widget has the focus: see [`is_open`].
 
 use bevy_egui::egui;
 
 use super::number_field::select;
 
-/// A text field that waits for Enter or Escape.
+/// A text field that Enter or Escape closes.
 #[derive(Debug)]
 pub(crate) struct TextPrompt {
     /// Text typed so far.
     pub text: String,
-    /// Until the field has taken the focus: whether it then selects the whole text, so that typing replaces it, or else
-    /// puts the cursor at the end.
+    /// What the field does when it takes the focus: `true` selects the whole text, so that typing replaces it; `false`
+    /// puts the cursor at the end. `None` once the field has the focus.
     pending: Option<bool>,
 }
 
-/// The end of a prompt.
+/// How a text prompt ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PromptEnd {
     /// Enter was pressed.
@@ -27,22 +27,22 @@ pub(crate) enum PromptEnd {
 }
 
 impl TextPrompt {
-    /// A prompt with a suggestion, which is selected.
+    /// Creates a prompt with a suggested text, which is selected.
     pub fn new(suggestion: String) -> Self {
         Self { text: suggestion, pending: Some(true) }
     }
 
-    /// The text without spaces at its ends.
+    /// Returns the text without spaces at its ends.
     pub fn trimmed(&self) -> &str {
         self.text.trim()
     }
 
-    /// Takes the focus again, for a text that was not allowed.
+    /// Takes the focus again after an invalid text.
     pub fn ask_again(&mut self) {
         self.pending = Some(false);
     }
 
-    /// Draws the field with `add`. Returns its response, and how the prompt ended if it did.
+    /// Draws the field with `add`. Returns the field's response, and how the prompt ended, if it did.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -75,7 +75,7 @@ impl TextPrompt {
         (response, end)
     }
 
-    /// Continues with letters that no widget takes, such as after a click beside the field.
+    /// Appends typed letters to the text while no widget has the focus, such as after a click beside the field.
     fn take_letters(&mut self, context: &egui::Context) {
         let typed: String = context.input(|input| {
             let text = |event: &egui::Event| match event {
@@ -91,10 +91,10 @@ impl TextPrompt {
     }
 }
 
-/// Whether a prompt is shown. Letters are then never commands.
+/// Returns whether a prompt is shown. Typed letters are then never shortcuts.
 pub(crate) fn is_open(context: &egui::Context) -> bool {
     let pass: Option<u64> = context.data(|data| data.get_temp(mark()));
-    // Between two passes, the number is already that of the next one.
+    // Between two passes, the pass number is already that of the next one.
     pass.is_some_and(|pass| pass + 1 >= context.cumulative_pass_nr())
 }
 
@@ -106,7 +106,7 @@ fn has_no_focus(context: &egui::Context) -> bool {
     context.memory(|memory| memory.focused().is_none())
 }
 
-/// Whether a modal view or a menu is open, which takes Enter and Escape itself.
+/// Returns whether a modal view or a menu is open, which handles Enter and Escape itself.
 fn is_covered(context: &egui::Context) -> bool {
     context.memory(|memory| memory.top_modal_layer().is_some()) || egui::Popup::is_any_open(context)
 }
@@ -117,10 +117,10 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// The prompt, and how it ended.
+    /// The open prompt, and the text and the way in which it ended.
     type State = (Option<TextPrompt>, Option<(String, PromptEnd)>);
 
-    /// A prompt in a dialog with a label beside the field.
+    /// Creates a prompt in a dialog with a label beside the field.
     fn dialog() -> Harness<'static, State> {
         let draw = |ui: &mut egui::Ui, (prompt, ended): &mut State| {
             ui.label("Beside");

@@ -1,29 +1,29 @@
-//! Texts that panels share: titles, explanations, problems, fields, clickable rows.
+//! Elements of text that panels share: titles, explanations, problems, fields, clickable rows.
 
 use bevy_egui::egui;
 
 use super::theme;
 
-/// Text in the style of a section's title.
+/// Returns text in the style of a section title.
 pub(crate) fn title_text(text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).size(theme::TITLE_SIZE).strong()
 }
 
-/// Explanatory text.
+/// Returns text in the colour of explanations.
 pub(crate) fn weak(ui: &egui::Ui, text: impl Into<String>) -> egui::RichText {
     egui::RichText::new(text).color(theme::of(ui).text_weak)
 }
 
-/// A section's title.
+/// Draws a section title.
 pub(crate) fn title(ui: &mut egui::Ui, text: &str) {
     ui.add_space(theme::GAP);
     ui.label(title_text(text));
 }
 
-/// A section's title, with widgets at the right end of its line.
+/// Draws a section title, with widgets at the right end of its line.
 pub(crate) fn title_and(ui: &mut egui::Ui, text: &str, right: impl FnOnce(&mut egui::Ui)) {
     ui.add_space(theme::GAP);
-    // Compensate for the height of buttons, which is larger than that of text.
+    // Reduces the row height, because buttons are higher than text.
     ui.spacing_mut().interact_size.y -= theme::GAP * 0.75;
     ui.horizontal(|ui| {
         ui.label(title_text(text));
@@ -37,24 +37,24 @@ pub(crate) fn at_right(ui: &mut egui::Ui, content: impl FnOnce(&mut egui::Ui)) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// A line of explanatory text.
+/// Draws a line of explanatory text.
 pub(crate) fn explain(ui: &mut egui::Ui, text: &str) {
     ui.label(weak(ui, text));
 }
 
-/// A sentence about something that is wrong.
+/// Draws a sentence about a problem.
 pub(crate) fn problem(ui: &mut egui::Ui, text: &str) {
     let text = egui::RichText::new(text).color(theme::of(ui).problem);
     ui.add(egui::Label::new(text).wrap());
 }
 
-/// A field for a line of text.
+/// Returns a text field for one line.
 pub(crate) fn text_field(text: &mut String) -> egui::TextEdit<'_> {
     let margin = egui::Margin::symmetric(theme::GAP as i8, theme::GAP as i8 / 2);
     egui::TextEdit::singleline(text).margin(margin)
 }
 
-/// A section that a click on its header folds, with a hint on the header.
+/// Draws a section that folds when its header is clicked. The header has a tooltip.
 pub(crate) fn folded(
     ui: &mut egui::Ui,
     header: egui::CollapsingHeader,
@@ -64,7 +64,7 @@ pub(crate) fn folded(
     header.show_unindented(ui, content).header_response.on_hover_text(hint);
 }
 
-/// Progress of work in the background beside a button that cancels it. Returns whether the button was clicked.
+/// Draws the progress of work in the background, beside a button that cancels it. Returns whether the button was clicked.
 pub(crate) fn cancellable_progress(ui: &mut egui::Ui, hint: &str, share: f32, words: &str) -> bool {
     ui.horizontal(|ui| {
         let is_cancelled = ui.button("Cancel").on_hover_text(hint).clicked();
@@ -74,7 +74,7 @@ pub(crate) fn cancellable_progress(ui: &mut egui::Ui, hint: &str, share: f32, wo
     .inner
 }
 
-/// A clickable row over the whole width: name at the left, details at the right.
+/// Draws a clickable row of full width: the name on the left, details on the right.
 pub(crate) fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Response {
     let color = if is_shown { theme::of(ui).text } else { theme::of(ui).text_weak };
     let about = egui::RichText::new(about).color(color);

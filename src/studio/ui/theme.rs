@@ -1,4 +1,4 @@
-//! Theme of the studio: palette and spacing. No other module names a colour.
+//! Theme of the studio: palette and sizes. No other module defines a colour.
 
 mod fonts;
 pub mod palette;
@@ -28,7 +28,7 @@ pub enum Theme {
 }
 
 impl Theme {
-    /// The palette of the theme.
+    /// Returns the palette of the theme.
     pub fn palette(self) -> &'static Palette {
         match self {
             Self::Light => &palette::LIGHT,
@@ -36,7 +36,7 @@ impl Theme {
         }
     }
 
-    /// Name in files and flags.
+    /// Returns the name of the theme in files and flags.
     pub fn name(self) -> &'static str {
         match self {
             Self::Light => "light",
@@ -44,7 +44,7 @@ impl Theme {
         }
     }
 
-    /// The other theme.
+    /// Returns the other theme.
     pub fn other(self) -> Self {
         match self {
             Self::Light => Self::Dark,
@@ -83,41 +83,41 @@ impl From<egui::Theme> for Theme {
     }
 }
 
-/// The palette of the active theme.
+/// Returns the palette of the active theme.
 pub fn of(ui: &egui::Ui) -> &'static Palette {
     Theme::from(egui::Theme::from_dark_mode(ui.visuals().dark_mode)).palette()
 }
 
-/// The palette of the active theme of a context.
+/// Returns the palette of the active theme of a context.
 pub fn of_context(context: &egui::Context) -> &'static Palette {
     Theme::from(context.theme()).palette()
 }
 
 /// Base unit of spacing, in points.
 pub const GAP: f32 = 8.0;
-/// Size of the program's name, in points.
+/// Font size of the program's name, in points.
 pub const HEADING_SIZE: f32 = 22.0;
-/// Size of a section's title, in points.
+/// Font size of a section title, in points.
 pub const TITLE_SIZE: f32 = 15.0;
-/// Size of captions over the stage that are read from across a room, in points.
+/// Font size of captions over the stage that viewers read from a distance, in points.
 pub const CAPTION_SIZE: f32 = 22.0;
-/// Sizes of the presenting mode's caption, in points: the largest one at which it fits is used.
+/// Font sizes of the presenting mode's caption, in points. The largest one at which the caption fits is used.
 pub const PRESENTED_SIZES: [f32; 4] = [40.0, 34.0, 29.0, 25.0];
-/// Size of the line below that caption, in points.
+/// Font size of the line below the presenting mode's caption, in points.
 pub const PRESENTED_DETAIL_SIZE: f32 = 21.0;
-/// Height of the band with both, in points.
+/// Height of the band with the presenting mode's caption and the line below it, in points.
 pub const PRESENTED_BAND: f32 = 112.0;
-/// Diameter of the dot in the colour of a lane, in points.
+/// Diameter of a dot in the colour of a lane, in points.
 pub const LANE_DOT: f32 = 10.0;
 /// Width of a field for a number, in points.
 pub const FIELD_WIDTH: f32 = 64.0;
 /// Width of a combo box, in points.
 pub const COMBO_WIDTH: f32 = 190.0;
-/// Maximum height of an open list, in points: all presets of the program and some of the user's.
+/// Maximum height of an open list, in points: enough for all built-in presets and some of the user's.
 const LIST_HEIGHT: f32 = 660.0;
 /// Maximum share of the window's height that an open list takes.
 const LIST_SHARE: f32 = 0.92;
-/// Minimum width that panel layouts support, in points.
+/// Minimum width that the layout of panels supports, in points.
 #[cfg(test)]
 pub const PANEL_WIDTH: f32 = 320.0;
 /// Height of a tab bar, in points.
@@ -142,21 +142,21 @@ pub const TAG_SIZE: f32 = 13.0;
 pub const CHART_HEIGHT: f32 = 170.0;
 /// Minimum height of a chart, in points.
 pub const MIN_CHART_HEIGHT: f32 = 80.0;
-/// Least height of a chart in the panel of charts, and height of that of a lesson, in points.
+/// Minimum height of a chart in the charts panel, and height of a lesson's chart, in points.
 pub const PLOT_HEIGHT: f32 = 150.0;
-/// Height of the controls above and below a chart in its panel, in points.
+/// Height of the controls above and below a chart in the charts panel, in points.
 pub const CHART_CONTROLS_HEIGHT: f32 = 120.0;
 /// Maximum ratio of a chart's height to its width.
 pub const MAX_CHART_ASPECT: f32 = 1.4;
-/// Minimum width of one of several charts side by side, in points.
+/// Minimum width of each of several charts side by side, in points.
 pub const MULTIPLE_WIDTH: f32 = 230.0;
-/// Minimum height of one of several stacked charts, in points.
+/// Minimum height of each of several stacked charts, in points.
 pub const MULTIPLE_HEIGHT: f32 = 120.0;
-/// Width of a sample in a legend, in points.
+/// Width of a colour sample in a legend, in points.
 pub const SAMPLE_WIDTH: f32 = 20.0;
-/// Minimum width of the labels at the left of a chart, in points.
+/// Minimum width of the labels on the left of a chart, in points.
 pub const AXIS_WIDTH: f32 = 24.0;
-/// Font size in charts, in points.
+/// Font size of small text, such as in charts, in points.
 pub const SMALL_SIZE: f32 = 11.0;
 /// Height of a row in the library, in points.
 pub const LIBRARY_ROW_HEIGHT: f32 = 44.0;
@@ -164,13 +164,13 @@ pub const LIBRARY_ROW_HEIGHT: f32 = 44.0;
 pub const THUMBNAIL_SIZE: egui::Vec2 = egui::vec2(76.0, 36.0);
 /// Height of a row in the list of champions, in points.
 pub const CHAMPION_ROW_HEIGHT: f32 = 28.0;
-/// Size of a thumbnail in that list, in points.
+/// Size of a thumbnail in the list of champions, in points.
 pub const CHAMPION_THUMBNAIL: egui::Vec2 = egui::vec2(44.0, 24.0);
 /// Height of the picture of the selected save, in points.
 pub const PICTURE_HEIGHT: f32 = 64.0;
 /// Stage width below which cards are compact, in points.
 pub const NARROW_STAGE: f32 = 560.0;
-/// Library width from which it shows columns, in points.
+/// Minimum width of the library at which it shows columns, in points.
 pub const COLUMNS_WIDTH: f32 = 560.0;
 /// Widths of the library's columns after the name: fitness, preset, generation, date, in points.
 pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
@@ -179,7 +179,7 @@ pub const LIST_HEIGHTS: [f32; 2] = [360.0, 140.0];
 /// Height of the list of a run's champions, in points.
 pub const CHAMPIONS_HEIGHT: f32 = 130.0;
 
-/// Maximum height of an open list, in points.
+/// Returns the maximum height of an open list in this window, in points.
 pub fn list_height(ui: &egui::Ui) -> f32 {
     LIST_HEIGHT.min(ui.ctx().content_rect().height() * LIST_SHARE)
 }
@@ -197,14 +197,14 @@ pub fn apply(context: &egui::Context) {
         style.spacing.item_spacing = egui::vec2(GAP, GAP * 0.75);
         style.spacing.button_padding = egui::vec2(GAP * 1.25, GAP * 0.625);
         style.spacing.interact_size.y = GAP * 3.0;
-        // Otherwise an open list begins with a height of 400 points, whatever it holds.
+        // Otherwise an open list begins with a height of 400 points, whatever its contents.
         style.spacing.default_area_size.y = LIST_HEIGHT;
-        // Keep a faint scroll bar visible, beside the content, so that users notice hidden content.
+        // Keep a faint scroll bar visible, beside the content, so that users notice that there is more.
         style.spacing.scroll = egui::style::ScrollStyle {
             floating_width: GAP / 2.0,
             floating_allocated_width: GAP,
             dormant_handle_opacity: 0.3,
-            // egui's fade would draw grey edges here, because colours blend in linear light.
+            // egui's fade would draw grey edges, because colours blend in linear light in this window.
             fade: egui::style::ScrollFadeStyle { strength: 0.0, ..Default::default() },
             ..egui::style::ScrollStyle::floating()
         };

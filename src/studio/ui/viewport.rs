@@ -8,15 +8,15 @@ use super::text_prompt;
 /// The part of the window that panels leave for the stage.
 #[derive(Resource)]
 pub(crate) struct StageArea {
-    /// Rectangle of the stage, in egui points.
+    /// Rectangle of the stage in the window, in egui points.
     rect: egui::Rect,
-    /// Cards over the stage, in egui points.
+    /// Rectangles of the cards over the stage, in egui points.
     cards: Vec<egui::Rect>,
-    /// Messages over the stage, in egui points.
+    /// Rectangle of the messages over the stage, in egui points; `None` without messages.
     messages: Option<egui::Rect>,
-    /// Room for messages, which stand at its lower right corner, in egui points.
+    /// Area in whose lower right corner messages are drawn, in egui points.
     messages_room: egui::Rect,
-    /// The egui context, which knows the layers over the stage.
+    /// egui context, which knows the layers over the stage.
     context: egui::Context,
 }
 
@@ -33,8 +33,8 @@ impl Default for StageArea {
 }
 
 impl StageArea {
-    /// Sets the stage's rectangle, the rectangles of cards over it that must cover no snake, and the room for messages,
-    /// in points.
+    /// Sets the stage's rectangle, the rectangles of the cards that must not cover a snake, and the area for messages,
+    /// all in points.
     pub fn set(
         &mut self,
         context: &egui::Context,
@@ -47,12 +47,12 @@ impl StageArea {
         self.context = context.clone();
     }
 
-    /// Rectangle of the stage, in egui points.
+    /// Returns rectangle of the stage, in egui points.
     pub fn rect(&self) -> egui::Rect {
         self.rect
     }
 
-    /// Rectangle of the stage in the window, in logical pixels.
+    /// Returns rectangle of the stage in the window, in logical pixels.
     pub fn in_window(&self) -> Rect {
         let (min, max, scale) = (self.rect.min, self.rect.max, self.context.zoom_factor());
         Rect::new(min.x * scale, min.y * scale, max.x * scale, max.y * scale)
@@ -64,8 +64,8 @@ impl StageArea {
         egui::pos2(point.x, point.y)
     }
 
-    /// Whether a pointer action at this window position, in logical pixels, belongs to the stage: no card, menu or
-    /// floating panel covers it, and no drag in a panel is in progress.
+    /// Returns whether a pointer action at this window position, in logical pixels, belongs to the stage: no card, menu
+    /// or floating panel covers it, and no drag in a panel is in progress.
     pub fn has_pointer_at(&self, pixel: Vec2) -> bool {
         let at = self.point_of(pixel);
         let layer = || self.context.layer_id_at(at);
@@ -74,17 +74,17 @@ impl StageArea {
             && !self.context.egui_is_using_pointer()
     }
 
-    /// Whether letters are typed into a text field: one has the focus, or a dialog waits for a text.
+    /// Returns whether typed letters go into a text field: a field has the focus, or a text prompt is open.
     pub fn takes_letters(&self) -> bool {
         self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
-    /// Room for messages, which stand at its lower right corner, in egui points.
+    /// Returns the area in whose lower right corner messages are drawn, in egui points.
     pub fn messages_room(&self) -> egui::Rect {
         self.messages_room
     }
 
-    /// Size of the messages in the last frame, in egui points; zero without any.
+    /// Returns the size of the messages in the last frame, in egui points; zero without messages.
     pub fn messages_size(&self) -> egui::Vec2 {
         self.messages.map_or(egui::Vec2::ZERO, |messages| messages.size())
     }
@@ -94,7 +94,7 @@ impl StageArea {
         self.messages = rect;
     }
 
-    /// Cards and messages over the stage, as fractions of its width and height from the upper left corner.
+    /// Returns the rectangles of cards and messages, as fractions of the stage's width and height from its upper left corner.
     pub fn covers(&self) -> impl Iterator<Item = Rect> {
         let size = self.rect.size().max(egui::Vec2::splat(1.0));
         let share = move |at: egui::Pos2| {
@@ -106,7 +106,7 @@ impl StageArea {
         over_stage.map(move |cover| Rect::from_corners(share(cover.min), share(cover.max)))
     }
 
-    /// Ratio of width to height.
+    /// Returns the stage's ratio of width to height, or 1 if it is empty.
     pub fn aspect(&self) -> f32 {
         let size = self.rect.size();
         if size.x > 0.0 && size.y > 0.0 { size.x / size.y } else { 1.0 }

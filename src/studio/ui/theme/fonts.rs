@@ -10,17 +10,18 @@ use super::{
     HEADING_SIZE, PRESENTED_DETAIL_SIZE, PRESENTED_SIZES, SMALL_SIZE, TAG_SIZE, TITLE_SIZE,
 };
 
-/// Keeps every character in egui's font texture at the size that is drawn. A new character would be missing for a
-/// frame, because the texture reaches the graphics card one frame after the text.
+/// Rasterizes every character into egui's font texture before it is drawn. The texture reaches the graphics card one
+/// frame after the text, so a new character would be missing for a frame.
 #[derive(Debug, Default)]
 pub struct GlyphWarmUp {
-    /// Text options and pixels per point of the loaded glyphs, and whether those of the presenting mode are among them.
+    /// Text options and pixels per point of the loaded glyphs, and whether the presenting mode's sizes are loaded.
+    /// `None` before the first call.
     drawn: Option<(TextOptions, f32, bool)>,
 }
 
 impl GlyphWarmUp {
-    /// Rasterizes every character at the scale of the next frame, unless it is loaded. Call it after [`super::apply`]
-    /// has taken effect and after every change of the scale.
+    /// Rasterizes every character at the next frame's scale, unless that was done. Must be called after
+    /// [`super::apply`] has taken effect and after every change of the scale.
     pub fn warm_up(&mut self, context: &egui::Context, scale: f32, is_presenting: bool) {
         let pixels_per_point = scale * context.native_pixels_per_point().unwrap_or(1.0);
         let options = context.fonts(|fonts| *fonts.options());
@@ -62,7 +63,7 @@ mod tests {
     fn glyphs_are_loaded_before_they_are_drawn() {
         let context = egui::Context::default();
         let mut letters = GlyphWarmUp::default();
-        // Number of glyph uploads in a frame.
+        // Counts the glyph uploads in a frame.
         let mut frame = |text: &str, scale: f32| {
             context.begin_pass(egui::RawInput::default());
             if letters.drawn.is_none() {

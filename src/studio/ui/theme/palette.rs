@@ -1,6 +1,6 @@
 //! Colours of the light and the dark theme, for panels and scene.
 //!
-//! All text has the contrast that WCAG requires, 4.5 to 1, on every background that it is drawn on. The tests check it.
+//! All text has the contrast that WCAG requires, 4.5 to 1, on each background on which it is drawn. The tests check this.
 
 use bevy::prelude::{Color, Vec3};
 use bevy_egui::egui;
@@ -16,97 +16,97 @@ use snakes_lab::plot::{BAND_OPACITY, Role, role_color};
 /// Colours and light intensities of a theme.
 #[derive(Debug)]
 pub struct Palette {
-    /// Panel background.
+    /// Background of panels.
     pub panel: Color32,
     /// Background of a card or field.
     pub field: Color32,
     /// Background of a hovered field.
     pub field_hovered: Color32,
-    /// Text.
+    /// Colour of text.
     pub text: Color32,
-    /// Explanatory text.
+    /// Colour of explanatory text.
     pub text_weak: Color32,
-    /// Accent: buttons, news, the best.
+    /// Accent colour: buttons, news, the best individual.
     pub accent: Color32,
-    /// Text on the accent.
+    /// Colour of text on the accent colour.
     pub on_accent: Color32,
-    /// Soft accent for selection and progress. Text stays readable on it.
+    /// Soft accent colour for selection and progress. Text on it remains readable.
     pub accent_soft: Color32,
-    /// Second series in charts, such as the mean.
+    /// Colour of the second series in charts, such as the mean.
     pub second: Color32,
-    /// Problems.
+    /// Colour of problems.
     pub problem: Color32,
-    /// Empty cell of the archive map.
+    /// Colour of an empty cell in the archive map.
     pub empty_cell: Color32,
-    /// The report's red, for the first, third and fifth limb.
+    /// Red of the report, for the first, third and fifth limb.
     pub red_limb: Color,
-    /// The report's blue, for the second and fourth limb.
+    /// Blue of the report, for the second and fourth limb.
     pub blue_limb: Color,
-    /// Contact forces.
+    /// Colour of contact forces.
     pub force: Color,
-    /// Bend torques.
+    /// Colour of bend torques.
     pub bend: Color32,
-    /// Twist torques.
+    /// Colour of twist torques.
     pub twist: Color32,
-    /// Torques in the positive direction, in the scene.
+    /// Colour of torques in the positive direction, in the scene.
     pub torque_plus: Color32,
-    /// Torques in the negative direction, in the scene.
+    /// Colour of torques in the negative direction, in the scene.
     pub torque_minus: Color32,
-    /// Colours of the lanes, in their order. They stay apart for colour-blind eyes. See [`Palette::lane_color`].
+    /// Colours of the lanes, in their order. Colour-blind viewers can tell them apart. See [`Palette::lane_color`].
     lanes: [Color32; 10],
-    /// Trail.
+    /// Colour of the trail.
     pub trail: Color,
-    /// Spring of a mouse pull.
+    /// Colour of the spring by which the mouse pulls a limb.
     pub pull: Color,
-    /// Sky at the horizon, and the fog.
+    /// Colour of the sky at the horizon, and of the fog.
     pub horizon: Color,
-    /// Sky at the zenith.
+    /// Colour of the sky at the zenith.
     pub zenith: Color,
-    /// The ground.
+    /// Colour of the ground.
     pub ground: Color,
-    /// The lines on the ground.
+    /// Colour of the grid on the ground.
     pub grid: Color,
-    /// Stone: a hard surface with usual friction.
+    /// Colour of stone: a hard surface with usual friction.
     pub stair: Color,
-    /// A surface with little friction.
+    /// Colour of ice: a surface with little friction.
     pub ice: Color,
-    /// A surface with much friction.
+    /// Colour of glue: a surface with much friction.
     pub glue: Color,
-    /// A surface with so much friction that nothing slides.
+    /// Colour of resin: a surface with so much friction that nothing slides.
     pub resin: Color,
-    /// A hard surface that gives impacts back.
+    /// Colour of rubber: a hard surface from which limbs bounce.
     pub rubber: Color,
-    /// A soft surface that springs back: the mat of a trampoline.
+    /// Colour of a trampoline's mat: a soft surface that springs back.
     pub woven: Color,
-    /// A soft surface that does not spring back.
+    /// Colour of mud: a soft surface that does not spring back.
     pub mud: Color,
-    /// Shade of a dent in a soft surface.
+    /// Shade of dents in a soft surface.
     pub dent: Color,
-    /// Railing on the landing, and the door at its end.
+    /// Colour of the railing and of the door at the end of the landing.
     pub wood: Color,
-    /// The wall at the end of the landing, and the posts of the finish.
+    /// Colour of the wall at the end of the landing, and of the posts of the finish.
     pub wall: Color,
-    /// Step edge.
+    /// Colour of a step's edge.
     pub step_edge: Color,
-    /// Step edge while the step is climbed: the accent's hue, but too bright to be mistaken for a limb.
+    /// Colour of a step's edge below the snake: the accent's hue, but too bright to be mistaken for a limb.
     pub step_edge_lit: Color,
-    /// Veil for numbers on ground and risers.
+    /// Translucent colour of numbers on ground and risers.
     pub paint: Color,
-    /// Stripes along limbs, and eyes.
+    /// Colour of the stripes along limbs, and of the eyes.
     pub white: Color,
-    /// Joints, pupils and flag post.
+    /// Colour of joints, pupils and the flag's post.
     pub metal: Color,
-    /// Flag at the best distance.
+    /// Colour of the flag at the best distance.
     pub flag: Color,
-    /// Text on the flag.
+    /// Colour of text on the flag.
     pub flag_text: Color,
-    /// Sunlight.
+    /// Colour of sunlight.
     pub sun: Color,
-    /// Sunlight intensity, in lux.
+    /// Intensity of sunlight, in lux.
     pub sun_lux: f32,
-    /// Ambient light.
+    /// Colour of ambient light.
     pub ambient: Color,
-    /// Ambient intensity, in cd/m². Bright enough to show shadowed sides.
+    /// Intensity of ambient light, in cd/m²: bright enough to see shadowed sides.
     pub ambient_cd_m2: f32,
 }
 
@@ -232,39 +232,39 @@ pub const DARK: Palette = Palette {
     ambient_cd_m2: 260.0,
 };
 
-/// Colour of a snake's belly, as a factor of [`Palette::white`].
+/// Colour of a snake's belly, as a factor of [`Palette::white`] for red, green and blue.
 pub const BELLY_TONE: Vec3 = Vec3::new(0.95, 0.80, 0.55);
-/// Colour of a snake's tongue, as a factor of [`Palette::white`].
+/// Colour of a snake's tongue, as a factor of [`Palette::white`] for red, green and blue.
 pub const TONGUE_TONE: Vec3 = Vec3::new(0.80, 0.09, 0.18);
-/// Colour of a joint's axis, as a factor of [`Palette::metal`].
+/// Colour of a joint's axis, as a factor of [`Palette::metal`] for red, green and blue.
 pub const AXIS_TONE: Vec3 = Vec3::new(26.0, 20.0, 9.0);
 
-/// Minimum contrast of text (WCAG 2, level AA).
+/// Minimum contrast ratio of text (WCAG 2, level AA).
 const READABLE: f32 = 4.5;
 
 impl Palette {
-    /// Colour of a strategy in all curves, shifted towards the text colour until it is readable on the panel.
+    /// Returns the colour of a strategy in all curves, shifted towards the text colour until it is readable on the panel.
     pub fn strategy(&self, kind: StrategyKind) -> Color32 {
         self.readable(kind.info().color)
     }
 
-    /// Translucent colour of a band in a chart: over the chart's background it looks as in a picture of the chart. The
-    /// window blends light instead of colour values, in which a plainly translucent colour would lose its hue.
+    /// Returns the translucent colour of a band in a chart. Over the chart's background it looks as in an exported chart. The window
+    /// blends linear light instead of colour values, which would change the hue of a simple translucent colour.
     pub fn band(&self, color: Color32) -> Color32 {
         let seen = self.field.lerp_to_gamma(color, BAND_OPACITY);
         let light = |color: Color32| color.to_array().map(linear_f32_from_gamma_u8);
         let ([r, g, b, _], over) = (light(seen), light(self.field));
         let channels = [(r, over[0]), (g, over[1]), (b, over[2])];
         let shares = channels.map(|(seen, over)| seen / over.max(1.0e-6));
-        // Share of the light behind the band that passes through it: so low that no channel has to be darkened further.
+        // Share of the background's light that passes through the band: so low that no channel has to be darkened further.
         let left = shares.into_iter().fold(1.0 - BAND_OPACITY, f32::min);
         let added = |(seen, over): (f32, f32)| gamma_u8_from_linear_f32(seen - over * left);
         let [r, g, b] = channels.map(added);
-        // The window takes the red, green and blue of a colour as multiplied by its opacity already.
+        // egui expects red, green and blue already multiplied by the opacity.
         Color32::from_rgba_premultiplied(r, g, b, linear_u8_from_linear_f32(1.0 - left))
     }
 
-    /// Colour of a chart series by its role.
+    /// Returns colour of a chart series by its role.
     pub fn role(&self, role: Role) -> Color32 {
         match role {
             Role::First => self.accent,
@@ -282,18 +282,19 @@ impl Palette {
         }
     }
 
-    /// Colour of a member of a list whose order means nothing, such as a wave of a library; after ten the colours repeat.
+    /// Returns the colour of an item in a list without a meaningful order, such as a wave of a library. After ten items
+    /// the colours repeat.
     pub fn category(&self, number: usize) -> Color32 {
         self.role(Role::Species(number as u32))
     }
 
-    /// Colour of a lane: on the snake's collar, beside its lane, in lists and in charts. The first lane is 0; after ten
-    /// lanes the colours repeat.
+    /// Returns the colour of a lane, used on the snake's collar, beside its lane, in lists and in charts. The first
+    /// lane is 0; after ten lanes the colours repeat.
     pub fn lane_color(&self, number: usize) -> Color32 {
         self.lanes[number % self.lanes.len()]
     }
 
-    /// A colour, shifted towards the text colour until it is readable on the panel.
+    /// Shifts a colour towards the text colour until it is readable on the panel.
     fn readable(&self, [red, green, blue]: [u8; 3]) -> Color32 {
         let own = Color32::from_rgb(red, green, blue);
         let mixed = (0..=20).map(|step| own.lerp_to_gamma(self.text, step as f32 / 20.0));
@@ -301,7 +302,7 @@ impl Palette {
         readable.next().unwrap_or(self.text)
     }
 
-    /// A card with a coloured edge.
+    /// Returns the frame of a card with a coloured edge.
     pub fn card(&self, edge: Color32) -> Frame {
         Frame::new()
             .fill(self.panel.gamma_multiply(0.94))
@@ -310,17 +311,17 @@ impl Palette {
             .inner_margin(Margin::symmetric(12, 8))
     }
 
-    /// A dialog card that covers the content below it.
+    /// Returns the frame of a dialog, which hides the content below it.
     pub fn dialog(&self) -> Frame {
         self.card(self.accent).fill(self.panel).inner_margin(Margin::symmetric(16, 12))
     }
 
-    /// Sets the colours of egui's style.
+    /// Sets the palette's colours in egui's style.
     pub(super) fn dress(&self, visuals: &mut egui::Visuals) {
-        // Both themes use the same text options. Otherwise a theme change would rasterize all glyphs again, and text
-        // would be missing for a frame.
+        // Both themes use the same text options. Otherwise a change of the theme would rasterize all glyphs again, and
+        // text would be missing for a frame.
         visuals.text_options = egui::Visuals::dark().text_options;
-        // Subpixel positioning would need four glyph images per character, and no warm-up list could cover all of them.
+        // Subpixel positioning would need four images per glyph, and not all of them could be rasterized in advance.
         visuals.text_options.subpixel_binning = false;
         visuals.panel_fill = self.panel;
         visuals.window_fill = self.panel;
@@ -332,7 +333,7 @@ impl Palette {
         visuals.selection.stroke = Stroke::new(1.0, self.text);
         visuals.widgets.inactive.weak_bg_fill = self.field;
         visuals.widgets.inactive.bg_fill = self.field;
-        // Keeps empty check boxes visible.
+        // A visible edge for empty check boxes.
         visuals.widgets.inactive.bg_stroke = Stroke::new(1.0, self.field_hovered);
         visuals.widgets.hovered.weak_bg_fill = self.field_hovered;
         visuals.widgets.active.weak_bg_fill = self.accent_soft;
@@ -340,7 +341,7 @@ impl Palette {
     }
 }
 
-/// WCAG contrast ratio of two colours, from 1 (equal) to 21 (black and white).
+/// Returns the WCAG contrast ratio of two colours, from 1 (equal) to 21 (black and white).
 fn contrast(one: Color32, other: Color32) -> f32 {
     let luminance = |color: Color32| {
         let linear = egui::Rgba::from(color);
@@ -353,13 +354,13 @@ fn contrast(one: Color32, other: Color32) -> f32 {
 /// Corner radius of cards and buttons, in points.
 pub(super) const CORNER: CornerRadius = CornerRadius::same(6);
 
-/// Colour of a value between the minimum, 0, and the maximum, 1: see [`plot::ramp`].
+/// Returns the colour of a value between 0, the minimum, and 1, the maximum: see [`plot::ramp`].
 pub fn ramp(share: f32) -> Color32 {
     let [red, green, blue] = plot::ramp(share);
     Color32::from_rgb(red, green, blue)
 }
 
-/// Colour of text on a colour: black or white, whichever is easier to read.
+/// Returns black or white, whichever is easier to read on this colour.
 pub fn text_on(ground: Color32) -> Color32 {
     let texts = [Color32::BLACK, Color32::WHITE];
     if contrast(texts[0], ground) > contrast(texts[1], ground) { texts[0] } else { texts[1] }

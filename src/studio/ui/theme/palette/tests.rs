@@ -1,4 +1,4 @@
-//! Contrast and distance of the colours.
+//! Contrast and distinctness of the colours.
 
 use super::*;
 
@@ -50,19 +50,20 @@ fn charts_in_the_light_theme_match_their_exported_pictures() {
         assert_eq!(LIGHT.role(role), Color32::from_rgb(red, green, blue), "{role:?}");
         for of in [&LIGHT, &DARK] {
             let found = contrast(of.role(role), of.panel);
-            // WCAG's minimum for graphics.
+            // Minimum contrast of WCAG for graphics.
             assert!(found >= 3.0, "{role:?} has {found:.2}");
         }
     }
 }
 
-/// Linear red, green and blue as an eye without red cones or without green cones sees them (Machado et al. 2009).
+/// Matrices from linear red, green and blue to the colours that an eye without red cones, or without green cones,
+/// perceives (Machado et al. 2009).
 const COLOR_BLIND: [[[f32; 3]; 3]; 2] = [
     [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
     [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
 ];
 
-/// Distance of two colours in Oklab for the eye that tells them apart worst.
+/// Returns the distance of two colours in Oklab for the kind of eye that distinguishes them worst.
 fn apart(one: Color32, other: Color32) -> f32 {
     let usual = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let seen = |color: Color32, eye: &[[f32; 3]; 3]| {
@@ -83,7 +84,7 @@ fn lanes_have_colours_that_color_blind_eyes_tell_apart() {
     for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
         for number in 0..10 {
             let own = of.lane_color(number);
-            // WCAG's minimum for graphics.
+            // Minimum contrast of WCAG for graphics.
             assert!(contrast(own, of.panel) >= 3.0, "{theme}: lane {number}");
             for other in 0..number {
                 let apart = apart(own, of.lane_color(other));
@@ -120,7 +121,7 @@ fn strategies_have_distinct_colours_in_both_themes() {
 fn a_band_over_a_chart_has_the_hue_that_it_has_in_a_picture() {
     for palette in [&LIGHT, &DARK] {
         let color = palette.role(Role::Third);
-        // As the window's shader blends: in linear light, with colours multiplied by their opacity.
+        // Blends as the window's shader does: in linear light, with colours multiplied by their opacity.
         let band = palette.band(color);
         let left = 1.0 - f32::from(band.a()) / 255.0;
         let light = |color: Color32| color.to_array().map(linear_f32_from_gamma_u8);
