@@ -1,32 +1,32 @@
-//! Readings of contacts over a short span of simulated time, calm enough to be read while a snake moves.
+//! Readings of contacts, averaged over a short span of simulated time so that they can be read while a snake moves.
 //!
-//! A meter only reads the world, at most sixty times per simulated second, and never changes it.
+//! A meter reads the world at most sixty times per simulated second, and never changes it.
 
 use std::collections::{BTreeSet, VecDeque};
 
 use super::replay::Replay;
 use snakes_core::world::{ContactPatch, SurfaceDamping, TouchedSurface};
 
-/// Span of simulated time over which readings are taken, in seconds.
+/// Span of simulated time over which contacts are averaged, in seconds.
 pub(crate) const SPAN_S: f32 = 0.25;
-/// Time for which a reading stays while the stage plays, in simulated seconds: digits that change with each frame
+/// Time for which a reading is kept while the stage plays, in simulated seconds. Digits that change in every frame
 /// cannot be read.
 const HOLD_S: f32 = 0.125;
-/// Samples per simulated second, unless there are fewer steps.
+/// Samples per simulated second; fewer if there are fewer physics steps.
 const SAMPLES_PER_S: u32 = 60;
 
-/// Contacts of the last moments.
+/// Samples of the latest contacts of a lane.
 #[derive(Debug)]
 pub(crate) struct ContactMeter {
     samples: VecDeque<ContactSample>,
-    /// Physics steps from one sample to the next.
+    /// Number of physics steps from one sample to the next.
     every_steps: u32,
     span_steps: u32,
     hold_steps: u32,
     last_step: u32,
 }
 
-/// Contacts after one step.
+/// Contacts after one physics step.
 #[derive(Debug)]
 struct ContactSample {
     step: u32,
@@ -34,27 +34,27 @@ struct ContactSample {
     damping: Vec<SurfaceDamping>,
 }
 
-/// Readings of the contacts of limbs with a surface, over [`SPAN_S`].
+/// Readings of the contacts between limbs and a surface, over [`SPAN_S`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceReading {
-    /// Number of limbs that touched it.
+    /// Number of limbs that touched the surface.
     pub limbs: usize,
     /// Speed of the contacts along the surface, in m/s: the mean over time and limbs, weighted by the normal force, so
-    /// that a limb that only grazes the surface counts little.
+    /// that a limb that merely grazes the surface has little influence.
     pub slip_m_s: f32,
     /// Largest speed of a point of contact along the surface, in m/s.
     pub top_slip_m_s: f32,
-    /// Share of the friction that was used, from 0 to 1: the mean over time and limbs, weighted by the friction
-    /// that each contact could give. `None` without friction.
+    /// Used share of the available friction, from 0 to 1: the mean over time and limbs, weighted by the friction
+    /// available at each contact. `None` without friction.
     pub grip_share: Option<f32>,
-    /// Greatest depth to which a limb has sunk in, in metres.
+    /// Greatest depth of a limb below the surface, in metres.
     pub depth_m: f32,
     /// Mean power lost to friction and to the damping of the surface, in W.
     pub lost_w: f32,
 }
 
 impl ContactMeter {
-    /// An empty meter for a simulation with this number of physics steps per second.
+    /// Creates an empty meter for a simulation with this number of physics steps per second.
     pub fn new(steps_per_s: u32) -> Self {
         let steps = |time_s: f32| ((time_s * steps_per_s as f32) as u32).max(1);
         Self {
@@ -66,8 +66,8 @@ impl ContactMeter {
         }
     }
 
-    /// Forgets everything, before a jump. Returns the number of steps that must be noted before the moment of the jump
-    /// for its readings to be complete.
+    /// Discards all samples, before a jump in time. Returns how many steps before the target of the jump must be noted
+    /// for complete readings.
     pub fn restart(&mut self) -> u32 {
         self.samples.clear();
         self.last_step = 0;
@@ -78,7 +78,7 @@ impl ContactMeter {
         self.span_steps + self.hold_steps
     }
 
-    /// Notes the contacts of a replay after a step on the way to the step `target`, unless they will be too old by then.
+    /// Samples the contacts of a replay after a step, on the way to the step `target`. Skips samples that will be too old at the target.
     pub fn note(&mut self, replay: &Replay, target: u32) {
         let Some(simulation) = replay.simulation() else { return };
         self.last_step = replay.step();
@@ -96,8 +96,8 @@ impl ContactMeter {
         });
     }
 
-    /// Reading of the surfaces for which `is_meant` holds; `None` if no limb has touched them. While the stage plays,
-    /// it changes eight times per simulated second; paused, it is that of the shown moment.
+    /// Returns the reading of the surfaces for which `is_meant` holds; `None` if no limb has touched them. While the stage plays, the
+    /// reading changes eight times per simulated second. While paused, it is that of the displayed time.
     pub fn surface(
         &self,
         is_playing: bool,
@@ -107,9 +107,9 @@ impl ContactMeter {
         self.reading(is_playing, |patch| is_meant(patch.touched), is_damping)
     }
 
-    /// Reading of the surfaces for which `is_meant` holds, at one limb and without the damping of surfaces; `None` if the
-    /// limb has not touched them. While the stage plays, it changes eight times per simulated second; paused, it is that
-    /// of the shown moment.
+    /// Returns the reading of one limb on the surfaces for which `is_meant` holds, without the damping of surfaces;
+    /// `None` if the limb has not touched them. While the stage plays, the reading changes eight times per simulated
+    /// second. While paused, it is that of the displayed time.
     pub fn limb(
         &self,
         is_playing: bool,
@@ -157,7 +157,7 @@ impl ContactMeter {
             lost_w += damping.map(|loss| loss.power_w).sum::<f32>();
         }
         let grip_share = (limit_n > 0.0).then(|| used_n / limit_n);
-        // Sticking contacts tremble by tiny amounts in both directions.
+        // Sticking contacts vibrate slightly in both directions, so the sum can be slightly negative.
         let lost_w = (lost_w / samples).max(0.0);
         (!touching.is_empty()).then_some(SurfaceReading {
             limbs: touching.len(),

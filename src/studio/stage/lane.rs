@@ -1,7 +1,7 @@
-//! A lane of the stage: one snake on its stairs, shown at the time of the stage's clock.
+//! A lane of the stage: one snake on its stairs, displayed at the time of the stage's clock.
 //!
-//! A replay has one lane, a what-if two to five, a race several. The rollout takes whole constant steps; the clock only
-//! decides how many. The limbs are drawn between the last two steps.
+//! A replay has one lane, a what-if two to five, a race several. The rollout advances by whole physics steps of
+//! constant length; the clock only determines how many. The limbs are drawn between the last two steps.
 
 mod progress;
 mod renewed;
@@ -18,7 +18,7 @@ use snakes_core::score::{Evaluation, KeyframeHistory, Rollout, Trial};
 use snakes_core::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
 use snakes_lab::run::{Lookahead, caught};
 
-/// A lane, with the rollout that is scored.
+/// A lane of the stage, with the rollout that is scored.
 #[derive(Component)]
 #[require(RapierContextSimulation)]
 pub(crate) struct Lane {
@@ -26,38 +26,38 @@ pub(crate) struct Lane {
     body: BodyPlan,
     /// Index of the lane; the first is 0.
     number: usize,
-    /// Offset of this lane's world along x, in metres.
+    /// Offset of the lane's world along x, in metres.
     offset_x_m: f32,
-    /// Whether it stands in the place of another lane and is drawn translucent, without stairs of its own.
+    /// Whether the lane has the place of another lane and is drawn translucent, without stairs.
     is_ghost: bool,
     replay: Replay,
     lookahead: Lookahead,
-    /// For a recording: the step at which the snake first stood on the landing.
+    /// Step at which the snake of a recording first stood on the landing; `None` for a simulation.
     recorded_landing: Option<u32>,
-    /// Poses before the last step, from head to tail.
+    /// Poses of the parts before the last step, from head to tail.
     before: Vec<Pose>,
-    /// Displayed fraction of the last step, from 0 to 1.
+    /// Displayed fraction of the last step, from 0 to 1, for the interpolation of poses.
     share: f32,
     step_s: f64,
-    /// Readings after the last step.
+    /// Contacts, torques and joints after the last step.
     readings: Readings,
     /// Path of the middle limb since the first pull by the mouse, in metres.
     detour_m: Vec<Vector>,
-    /// Whether simulating this lane panicked. It then keeps its last state.
+    /// Whether simulating the lane panicked. The lane then keeps its last state.
     is_broken: bool,
-    /// Whether a pull has broken a limit.
+    /// Whether a pull by the mouse has broken a limit.
     is_pull_over: bool,
-    /// Whether the final state was compared with the champion's record.
+    /// Whether the final state has been compared with the champion's record.
     is_checked: bool,
 }
 
-/// Maximum physics steps per frame over all lanes (about 60 ms on one core).
+/// Maximum physics steps per frame, as a sum over all lanes (about 60 ms on one core).
 pub(crate) const MAX_STEPS_PER_FRAME: u32 = 3000;
-/// A time within this fraction of a step counts as exactly on the step.
+/// Tolerance as a fraction of a step, within which a time counts as exactly on the step.
 const ON_STEP: f32 = 1.0e-4;
 
 impl Lane {
-    /// A lane at the start of a replay. The lookahead starts computing the rest at once.
+    /// Creates a lane at the start of a replay. The lookahead immediately begins to compute the rest of the rollout.
     pub fn new(staged: StagedChampion, number: usize) -> Self {
         let lookahead = match staged.recording() {
             // A recording needs no lookahead.
@@ -67,8 +67,8 @@ impl Lane {
         Self::with(staged, number, lookahead)
     }
 
-    /// A ghost at the start of a replay: drawn translucent in the place of another lane, without stairs of its own.
-    /// Dozens of ghosts go without a lookahead, whose threads would take the processor from the run.
+    /// Creates a ghost at the start of a replay: a lane that is drawn translucent in the place of another lane, without
+    /// stairs. Ghosts have no lookahead, because dozens of its threads would slow the run down.
     pub fn ghost(staged: StagedChampion, number: usize) -> Self {
         Self { is_ghost: true, ..Self::with(staged, number, Lookahead::default()) }
     }
@@ -101,48 +101,48 @@ impl Lane {
         self
     }
 
-    /// This lane as a ghost.
+    /// Turns the lane into a ghost.
     #[cfg(test)]
     pub fn into_ghost(self) -> Self {
         Self { is_ghost: true, ..self }
     }
 
-    /// Whether it is drawn as a ghost.
+    /// Returns whether the lane is drawn as a ghost.
     pub fn is_ghost(&self) -> bool {
         self.is_ghost
     }
 
-    /// The champion in this lane.
+    /// Returns the champion in the lane.
     pub fn staged(&self) -> &StagedChampion {
         &self.staged
     }
 
-    /// Index of the lane; the first is 0.
+    /// Returns the index of the lane; the first is 0.
     pub fn number(&self) -> usize {
         self.number
     }
 
-    /// Offset of this lane's world along x, in metres.
+    /// Returns the offset of the lane's world along x, in metres.
     pub fn offset(&self) -> Vec3 {
         Vec3::new(self.offset_x_m, 0.0, 0.0)
     }
 
-    /// The snake's body: number, sizes and joints of its limbs.
+    /// Returns the snake's body: number, sizes and joints of its limbs.
     pub fn body(&self) -> &BodyPlan {
         &self.body
     }
 
-    /// The trial that is simulated.
+    /// Returns the trial that the lane shows.
     pub fn trial(&self) -> &Trial {
         self.staged.trial()
     }
 
-    /// Length of a physics step, in seconds.
+    /// Returns length of a physics step, in seconds.
     pub fn step_s(&self) -> f64 {
         self.step_s
     }
 
-    /// End of the lane, in simulated seconds: the end of the trial or, as far as known, the time of disqualification.
+    /// Returns the end of the lane, in simulated seconds: the time of disqualification, if it is known, or else the end of the trial.
     pub fn end_s(&self) -> f64 {
         let steps = if self.replay.is_over() {
             self.replay.step()
@@ -155,38 +155,38 @@ impl Lane {
         f64::from(steps) * self.step_s
     }
 
-    /// Evaluation of the rollout so far; at its end, the final score.
+    /// Returns the evaluation of the rollout so far. At the end of the rollout, this is the final score.
     pub fn evaluation(&self) -> Evaluation {
         self.replay.evaluation(&self.staged)
     }
 
-    /// Precomputed history of the rollout, once the lookahead has finished. A recording has none.
+    /// Returns the precomputed history of the rollout, or `None` until the lookahead has finished. A recording has none.
     pub fn history(&self) -> Option<&Arc<KeyframeHistory>> {
         self.lookahead.history()
     }
 
-    /// Progress of the lookahead from 0 to 1, while it is running.
+    /// Returns the progress of the lookahead from 0 to 1, or `None` if it is not running.
     pub fn lookahead_share(&self) -> Option<f32> {
         let steps = self.lookahead.steps_done()?;
         Some(steps as f32 / self.replay.last_step().max(1) as f32)
     }
 
-    /// Whether the rollout has ended.
+    /// Returns whether the rollout has ended.
     pub fn is_over(&self) -> bool {
         self.replay.is_over()
     }
 
-    /// Whether the mouse has pulled the snake, so that the result does not count for the genome.
+    /// Returns whether the mouse has pulled the snake, so that the result does not count for the genome.
     pub fn is_disturbed(&self) -> bool {
         self.replay.is_disturbed()
     }
 
-    /// Readings after the last step.
+    /// Returns contacts, torques and joints after the last step.
     pub fn readings(&self) -> &Readings {
         &self.readings
     }
 
-    /// Path of the middle limb so far, in metres, in lane coordinates.
+    /// Returns the path of the middle limb so far, in metres, in lane coordinates.
     pub fn trail_m(&self) -> Vec<Vector> {
         if let Some(way) = self.replay.recorded_way_m() {
             return way;
@@ -199,10 +199,10 @@ impl Lane {
         undisturbed.iter().chain(&self.detour_m).copied().collect()
     }
 
-    /// Poses to draw, between the last two steps, from head to tail, in lane coordinates.
+    /// Returns the poses to draw, interpolated between the last two steps, from head to tail, in lane coordinates.
     pub fn drawn_poses(&self) -> impl ExactSizeIterator<Item = Pose> + '_ {
         let pairs = self.before.iter().zip(self.replay.poses());
-        // Paused on a step, the pose is exactly that step's.
+        // If the stage is paused on a step, the poses are exactly those of the step.
         let is_on_step = self.share > 1.0 - ON_STEP;
         pairs.map(
             move |(before, after)| {
@@ -211,22 +211,22 @@ impl Lane {
         )
     }
 
-    /// Drawn position of the middle limb's centre, in lane coordinates.
+    /// Returns the drawn position of the middle limb's centre, in metres, in lane coordinates.
     pub fn drawn_middle(&self) -> Vec3 {
         self.drawn_poses().nth(self.body().middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
     }
 
-    /// Poses after the last step, from head to tail, in lane coordinates.
+    /// Returns the poses after the last step, from head to tail, in lane coordinates.
     pub fn last_poses(&self) -> &[Pose] {
         self.replay.poses()
     }
 
-    /// Position of a point in a part's frame after the last step, in lane coordinates.
+    /// Converts a point from a part's frame after the last step to lane coordinates, in metres.
     pub fn point_of(&self, part: usize, in_part_m: Vector) -> Vector {
         self.replay.poses().get(part).map_or(in_part_m, |pose| *pose * in_part_m)
     }
 
-    /// Speed of the middle limb between the last two steps, in m/s; at the end, that of the last step.
+    /// Returns the speed of the middle limb during the last step, in m/s.
     pub fn speed_m_s(&self) -> f32 {
         let middle = self.body().middle_part;
         match (self.before.get(middle), self.replay.poses().get(middle)) {
@@ -237,7 +237,7 @@ impl Lane {
         }
     }
 
-    /// Time of the first landing, in simulated seconds, if that is at most `time_s`.
+    /// Returns the time of the first landing, in simulated seconds, if the snake has landed by `time_s`.
     pub fn landed_s(&self, time_s: f64) -> Option<f64> {
         let known = self.history().filter(|_| !self.is_disturbed());
         let step = known.and_then(|history| history.landed_at_step()).or(self.recorded_landing)?;
@@ -245,14 +245,14 @@ impl Lane {
         (landed_s <= time_s).then_some(landed_s)
     }
 
-    /// Returns true once, when an undisturbed replay first reaches its end.
+    /// Returns true only once, when an undisturbed replay first reaches its end.
     pub fn has_just_ended(&mut self) -> bool {
         let has_ended = self.replay.is_over() && !self.is_disturbed() && !self.is_checked;
         self.is_checked |= has_ended;
         has_ended
     }
 
-    /// Returns once the limit that a pull broke, which has ended the trial.
+    /// Returns the limit that a pull has broken, which has ended the trial. Reports it only once.
     pub fn limit_just_broken_by_pull(&mut self) -> Option<Disqualification> {
         let is_pull_over = self.replay.is_over() && self.is_disturbed();
         let broken = if is_pull_over { self.evaluation().disqualified } else { None };
@@ -260,23 +260,23 @@ impl Lane {
         broken.filter(|_| !was_told)
     }
 
-    /// The simulated world after the last step; a recording has none.
+    /// Returns the simulated world after the last step; `None` for a recording.
     pub fn simulation(&self) -> Option<&Simulation> {
         self.replay.simulation()
     }
 
-    /// The rollout after the last step; a recording has none.
+    /// Returns the rollout after the last step; `None` for a recording.
     pub fn rollout(&self) -> Option<&Rollout> {
         self.replay.rollout()
     }
 
-    /// The replay of this lane.
+    /// Returns the replay of this lane.
     #[cfg(test)]
     pub fn replay(&self) -> &Replay {
         &self.replay
     }
 
-    /// Takes over results of the lookahead.
+    /// Receives results of the lookahead, if there are any.
     pub fn poll_lookahead(&mut self) {
         self.lookahead.poll();
     }
@@ -286,10 +286,10 @@ impl Lane {
         self.lookahead.wait();
     }
 
-    /// Brings the lane to a time, in simulated seconds, or towards it by at most `most_steps` physics steps.
+    /// Advances or rewinds the lane to a time, in simulated seconds, or towards it by at most `most_steps` physics steps.
     ///
     /// # Errors
-    /// Simulating panicked. The lane keeps its last state.
+    /// Simulating the lane panicked. The lane keeps its last state.
     pub fn show(&mut self, time_s: f64, pull: Option<Pull>, most_steps: u32) -> Result<(), String> {
         if self.is_broken {
             return Ok(());
@@ -302,18 +302,18 @@ impl Lane {
             return Ok(());
         }
         let known = self.history().cloned();
-        // Jumping only pays if a keyframe lies between here and the target.
+        // A jump is only faster if a keyframe lies between the current step and the target.
         let pays = |history: &Arc<KeyframeHistory>| {
             !self.is_disturbed() && pull.is_none() && history.keyframe_before(step) > now
         };
         let jumps = step < now || known.as_ref().is_some_and(pays);
         let is_on_its_way = known.is_none() && self.lookahead_share().is_some();
         if step < now && is_on_its_way && step > MAX_STEPS_PER_FRAME {
-            // The lookahead is already computing these steps; wait for it instead of repeating its work.
+            // The lookahead is already computing these steps, so the lane waits for it instead of repeating the work.
             return Ok(());
         }
         let result = caught(|| {
-            // A long distance is spread over several frames.
+            // A long distance is covered in several frames.
             if jumps && known.is_none() {
                 self.jump(step.min(most_steps), None);
             } else if jumps {
@@ -328,9 +328,9 @@ impl Lane {
         result
     }
 
-    /// The last step that has begun at a time, and the fraction of it that has passed.
+    /// Returns the last step that has begun at a time, and the elapsed fraction of the step.
     pub fn moment(&self, time_s: f64) -> (u32, f32) {
-        // Rounding can move a time slightly off the step that it means.
+        // Rounding can shift a time slightly off its step.
         let place = time_s / self.step_s;
         let step = libm::ceil(place - f64::from(ON_STEP)).max(0.0);
         let share = if step == 0.0 { 1.0 } else { 1.0 - (step - place) };
@@ -350,7 +350,7 @@ impl Lane {
             self.before.copy_from_slice(self.replay.poses());
             let goes_on = self.replay.advance();
             if self.replay.step() == now {
-                // A step that breaks a limit does not count, so the last one is that before it.
+                // A step that breaks a limit does not count, so the last step is the one before.
                 self.before.copy_from_slice(&earlier);
             }
             if goes_on && !self.is_ghost {
@@ -368,14 +368,14 @@ impl Lane {
 
     fn jump(&mut self, step: u32, history: Option<&KeyframeHistory>) {
         self.detour_m.clear();
-        // The steps before the moment are noted on the way.
+        // The meter samples the steps just before the target.
         let noted = self.readings.meter.restart();
         self.replay.go_to(step.saturating_sub(noted), &self.staged, history);
         self.before.copy_from_slice(self.replay.poses());
         self.go_on(step);
     }
 
-    /// Advances a lane outside the stage to a time, for a picture.
+    /// Advances a lane outside the stage to a time in simulated seconds, for a picture.
     pub fn skip_to(&mut self, time_s: f64) {
         let (step, share) = self.moment(time_s);
         self.share = share;
@@ -383,8 +383,7 @@ impl Lane {
         self.readings.update(&self.replay);
     }
 
-    /// Advances to the end of the rollout. Returns the poses at `moments` equally spaced times, starting with the
-    /// initial pose.
+    /// Advances to the end of the rollout. Returns the poses at `moments` times, equally spaced from the start.
     pub fn skip_to_end(&mut self, moments: u32) -> Vec<Vec<Pose>> {
         let last = self.replay.last_step();
         let every = (last / moments.max(1)).max(1);

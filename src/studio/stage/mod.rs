@@ -26,57 +26,57 @@ use playback::Playback;
 use selection::Selection;
 use staged_champion::StagedChampion;
 
-/// Request to replace the champions on the stage. The sender also sets the clock.
+/// Request to replace the champions on the stage. The sender of the request also sets the clock.
 #[derive(Message, Debug, Clone)]
 pub(super) struct Show {
-    /// One champion per lane.
+    /// Champions to show, one per lane.
     pub champions: Vec<StagedChampion>,
-    /// How the lanes are related.
+    /// Relation between the lanes.
     pub mode: StageMode,
 }
 
 /// Relation between the lanes of the stage.
 #[derive(Resource, Debug, Clone, PartialEq, Default)]
 pub(super) enum StageMode {
-    /// One snake.
+    /// One snake alone.
     #[default]
     Solo,
     /// Several snakes side by side.
     Race,
-    /// One snake in its own world and in changed ones, in the order of the changes.
+    /// One snake in its own world, and copies in changed worlds, in the order of the changes.
     WhatIf {
         /// Plan of the next run before the first change.
         before: Box<RunPlan>,
-        /// Plans of the changed lanes that stay while the next change makes another one, from lane 1 on.
+        /// Plans of the changed lanes that are kept when another lane is added, from lane 1 on.
         beside: Vec<RunPlan>,
-        /// The lane whose world the next run has. If it is the one after those that stay, the next change replaces it.
+        /// Lane whose world the next run uses. If it is the one after the kept lanes, the next change replaces it.
         current: usize,
     },
-    /// Snakes of one generation on the same stairs: its best, and the others as ghosts.
+    /// Snakes of one generation on the same stairs: the best, and others as ghosts.
     Generation {
         /// Number of the generation; the first is 1.
         number: u32,
-        /// Number of snakes in the generation, of which the stage may show some.
+        /// Number of snakes in the generation; the stage may show only some of them.
         size: u32,
     },
 }
 
-/// Maximum number of lanes side by side. More could neither be told apart nor simulated within a frame.
+/// Maximum number of lanes side by side. More lanes could neither be distinguished nor simulated within a frame.
 pub const MAX_LANES: usize = 10;
-/// Maximum number of lanes of a what-if, the original included. More would not leave room for their labels.
+/// Maximum number of lanes of a what-if, including the original. More would leave no room for their labels.
 pub const MAX_WHAT_IF_LANES: usize = 5;
-/// Maximum number of snakes of a generation on the stage: a generation of 30 as a whole, and some of a larger one.
+/// Maximum number of snakes of a generation on the stage. A generation of 30 is shown completely, a larger one in part.
 pub const MAX_GENERATION: usize = 40;
-/// Distance between two lanes, in metres.
+/// Gap between two lanes, in metres.
 const GAP_M: f32 = 1.0;
 
 impl Show {
-    /// Shows one champion alone.
+    /// Creates a request to show one champion alone.
     pub fn solo(staged: StagedChampion) -> Self {
         Self { champions: vec![staged], mode: StageMode::Solo }
     }
 
-    /// Shows champions side by side. A single champion is shown alone.
+    /// Creates a request to show champions side by side. A single champion is shown alone.
     pub fn race(champions: Vec<StagedChampion>) -> Self {
         let mode = if champions.len() > 1 { StageMode::Race } else { StageMode::Solo };
         Self { champions, mode }
@@ -84,20 +84,20 @@ impl Show {
 }
 
 impl StageMode {
-    /// A what-if of one change, beside the original, for tests.
+    /// Creates the mode of a what-if with one change, beside the original, for tests.
     #[cfg(test)]
     pub fn what_if(before: RunPlan) -> Self {
         Self::WhatIf { before: Box::new(before), beside: Vec::new(), current: 1 }
     }
 
-    /// Whether the latest lane of a what-if can stay beside a further one.
+    /// Returns whether the latest lane of a what-if can be kept while another one is added.
     pub fn can_try_another(&self) -> bool {
         let Self::WhatIf { beside, current, .. } = self else { return false };
         *current > beside.len() && current + 1 < MAX_WHAT_IF_LANES
     }
 }
 
-/// All of `count` indices if they are at most `most`, else `few` of them, evenly spread from the first to the last.
+/// Returns all indices below `count` if they are at most `most`; otherwise `few` of them, evenly spaced from the first to the last.
 pub(super) fn evenly(count: usize, most: usize, few: usize) -> impl Iterator<Item = usize> {
     let chosen = if count <= most { count } else { few };
     (0..chosen).map(move |index| index * (count - 1) / (chosen - 1).max(1))
@@ -111,21 +111,21 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(Update, (put_on_stage, advance).chain().in_set(FrameSet::Advance));
 }
 
-/// End of the longest lane, in simulated seconds.
+/// Returns the end of the longest lane, in simulated seconds.
 pub(super) fn end_s<'a>(lanes: impl IntoIterator<Item = &'a Lane>) -> f64 {
     lanes.into_iter().map(Lane::end_s).fold(0.0, f64::max)
 }
 
-/// Builds lanes for champions, the first one nearest to the default camera; in a generation all but the first are
+/// Builds lanes for champions, the first one nearest to the default camera. In a generation, all but the first are
 /// ghosts in its place.
 ///
 /// # Errors
-/// Each champion that cannot be shown, with the reason.
+/// Returns beside the lanes a message for each champion that cannot be shown, with the reason.
 pub(super) fn lanes(champions: Vec<StagedChampion>, mode: &StageMode) -> (Vec<Lane>, Vec<String>) {
     lanes_after(champions, mode, &mut [])
 }
 
-/// Builds lanes for champions as [`lanes`] does, with the steps that earlier lanes have computed.
+/// Builds lanes for champions as [`lanes`] does, and reuses the computed steps of earlier lanes.
 fn lanes_after(
     champions: Vec<StagedChampion>,
     mode: &StageMode,
@@ -163,7 +163,7 @@ fn lanes_after(
     (placed.collect(), problems)
 }
 
-/// Shows the champions that the studio was opened with.
+/// Shows the champions with which the studio was opened.
 fn show_opening(
     opening: Res<OpeningChampions>,
     mut show: MessageWriter<Show>,
@@ -187,20 +187,20 @@ fn put_on_stage(
     mut notices: ResMut<Notices>,
     mut on_stage: ResMut<StageMode>,
 ) {
-    // Only the last request of a frame would be visible.
+    // If there are several requests in a frame, only the last one would be visible.
     let Some(Show { champions, mode }) = requests.read().last().cloned() else { return };
     champions.iter().for_each(|staged| explain_other_engine(staged, &mut notices));
     let (entities, mut earlier): (Vec<Entity>, Vec<Mut<Lane>>) = earlier.iter_mut().unzip();
     let (lanes, problems) = lanes_after(champions, &mode, &mut earlier);
     problems.into_iter().for_each(|problem| notices.problem(problem));
     if lanes.is_empty() {
-        // Keep the earlier lanes if none of the new ones can be built.
+        // If none of the new lanes can be built, the earlier ones stay.
         return;
     }
     let mut outdated: Vec<(Entity, Mut<Lane>)> = entities.into_iter().zip(earlier).collect();
     *on_stage = if lanes.len() > 1 { mode } else { StageMode::Solo };
     for lane in lanes {
-        // The other lanes of a what-if stay on the stage while one lane changes.
+        // In a what-if, the unchanged lanes stay on the stage.
         let stays = matches!(*on_stage, StageMode::WhatIf { .. });
         match outdated.iter().position(|(_, earlier)| stays && earlier.is_like(&lane)) {
             Some(index) => *outdated.swap_remove(index).1 = lane,
@@ -210,12 +210,12 @@ fn put_on_stage(
     outdated.into_iter().for_each(|(lane, _)| commands.entity(lane).despawn());
 }
 
-/// Spawns a lane at its place beside the others.
+/// Spawns a lane at its offset.
 fn spawn(commands: &mut Commands, lane: Lane) {
     commands.spawn((Transform::from_translation(lane.offset()), Visibility::default(), lane));
 }
 
-/// Advances the clock and brings every lane to its time.
+/// Advances the clock, and brings every lane to the clock's time.
 fn advance(
     mut lanes: Query<(Entity, &mut Lane)>,
     mut playback: ResMut<Playback>,
@@ -223,7 +223,7 @@ fn advance(
     time: Res<Time<Real>>,
     mut notices: ResMut<Notices>,
 ) {
-    // The lanes share a frame's steps.
+    // The physics steps of a frame are divided among the lanes.
     let most_steps = MAX_STEPS_PER_FRAME / (lanes.iter().len() as u32).max(1);
     let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
     for (_, lane) in &lanes {
@@ -253,12 +253,12 @@ fn advance(
         }
     }
     if let Some(broken_at_s) = broken_at_s {
-        // The moment stays in view instead of starting over without a word.
+        // The clock stops at the broken limit instead of starting again without an explanation.
         playback.hold_at(broken_at_s);
     }
 }
 
-/// The limit whose excess disqualifies, with its value.
+/// Describes the limit that was broken, with its value.
 fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
     let reason = broken.words();
     match broken {
@@ -275,12 +275,12 @@ fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
     }
 }
 
-/// Message for a replay that does not end as recorded.
+/// Returns a message if an undisturbed replay does not end as recorded.
 fn differs_from_record(lane: &Lane) -> Option<String> {
     let recorded = lane.staged().champion().evaluation;
     let mut seen = lane.evaluation();
     if lane.trial().repeats.trials > 1 {
-        // The stage shows a single trial; the average of several repeats cannot be compared with it.
+        // The stage shows a single trial, which cannot be compared with the mean over several repeats.
         seen.fitness = recorded.fitness;
     }
     let differs = lane.staged().must_match_record() && !seen.agrees_with(&recorded);
@@ -294,7 +294,7 @@ fn differs_from_record(lane: &Lane) -> Option<String> {
     })
 }
 
-/// Explains the limits of showing a champion of another engine version.
+/// Tells the user that a champion is from another engine version, and what that means for its display.
 fn explain_other_engine(staged: &StagedChampion, notices: &mut Notices) {
     let Some(engine) = staged.other_engine() else { return };
     let text = if staged.recording().is_some() {

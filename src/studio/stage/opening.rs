@@ -1,16 +1,16 @@
-//! Champions that the studio was opened with.
+//! Champions with which the studio was opened.
 
 use bevy::prelude::*;
 
 use super::staged_champion::StagedChampion;
 use snakes_core::save::LoadedChampion;
 
-/// A named champion from a file.
+/// A champion that was read from a file, with its name.
 #[derive(Debug, Clone)]
 pub(crate) struct NamedChampion {
-    /// Name of its file.
+    /// Name of the champion's file.
     pub name: String,
-    /// The champion.
+    /// Champion that was read from the file.
     pub loaded: LoadedChampion,
 }
 
@@ -20,12 +20,12 @@ impl From<(String, LoadedChampion)> for NamedChampion {
     }
 }
 
-/// Champions that the studio was opened with.
+/// Champions with which the studio was opened.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct OpeningChampions(pub Vec<NamedChampion>);
 
 impl OpeningChampions {
-    /// The champion with this index, ready for the stage.
+    /// Returns the champion with this index, ready for the stage; `None` if there is none.
     pub fn staged(&self, index: usize) -> Option<StagedChampion> {
         self.0.get(index).map(|saved| StagedChampion::from_file(&saved.loaded, index, &saved.name))
     }

@@ -1,6 +1,6 @@
-//! The clock of the stage: play, hold, speed, loop, seek. All lanes are shown at its time.
+//! The clock of the stage: play, pause, speed, loop, seek. All lanes are displayed at the clock's time.
 //!
-//! The clock decides only which time is shown. The rollouts decide what happens then.
+//! The clock determines only which time is displayed. The rollouts determine what happens at that time.
 
 use std::ops::RangeInclusive;
 
@@ -11,30 +11,30 @@ use crate::studio::commands::PlayerCommand;
 /// The clock of the stage.
 #[derive(Resource, Debug, Clone, PartialEq)]
 pub(crate) struct Playback {
-    /// Displayed time, in simulated seconds.
+    /// Time that the stage displays, in simulated seconds.
     time_s: f64,
     speed: f32,
     is_playing: bool,
     loops: bool,
-    /// Time since the end was reached, in seconds.
+    /// Real time since the clock reached the end, in seconds.
     rested_s: f32,
-    /// Set for one frame after a seek, so that this exact time is drawn.
+    /// Whether the time was set by a seek. The next frame then draws exactly this time.
     is_sought: bool,
-    /// Moment from which changes of the world were tried last, in simulated seconds; `None` if the user has gone to
-    /// another one since, or watches something else.
+    /// Time from which changes of the world were last tried, in simulated seconds; `None` if the user has since gone to
+    /// another time or shows something else.
     tried_from_s: Option<f64>,
-    /// Number of commands that paused, played or moved the clock.
+    /// Number of commands so far that paused, played or moved the clock.
     commands: u32,
 }
 
-/// Playback speed, in simulated seconds per second.
+/// Allowed playback speeds, in simulated seconds per real second.
 pub(crate) const SPEED_RANGE: RangeInclusive<f32> = 0.1..=16.0;
-/// Speeds that the keys step through.
+/// Speeds through which the keys step, in simulated seconds per real second.
 const SPEEDS: [f32; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 /// Pause at the end before a loop restarts, in seconds.
 const REST_S: f32 = 1.5;
-/// Maximum real time that a single frame may make up for, in seconds. After a longer pause (a dragged window, a
-/// sleeping laptop) playback continues where it was instead of racing.
+/// Maximum real time by which a single frame advances the clock, in seconds. After a longer gap (a dragged window, a
+/// sleeping laptop) playback continues where it was instead of jumping ahead.
 const MAX_CATCH_UP_S: f32 = 0.5;
 
 impl Default for Playback {
@@ -53,32 +53,32 @@ impl Default for Playback {
 }
 
 impl Playback {
-    /// Displayed time, in simulated seconds.
+    /// Returns the time that the stage displays, in simulated seconds.
     pub fn time_s(&self) -> f64 {
         self.time_s
     }
 
-    /// Whether playback is running.
+    /// Returns whether playback is running.
     pub fn is_playing(&self) -> bool {
         self.is_playing
     }
 
-    /// Number of commands so far that paused, played or moved the clock. The studio also holds the clock by itself.
+    /// Returns how many commands have paused, played or moved the clock. The studio can also stop the clock without a command.
     pub fn commands(&self) -> u32 {
         self.commands
     }
 
-    /// Whether playback loops.
+    /// Returns whether playback restarts after the end.
     pub fn loops(&self) -> bool {
         self.loops
     }
 
-    /// Playback speed, in simulated seconds per second.
+    /// Returns the playback speed, in simulated seconds per real second.
     pub fn speed(&self) -> f32 {
         self.speed
     }
 
-    /// Executes a command, given the length of a physics step and of the show, in simulated seconds.
+    /// Executes a command. `step_s` is the length of a physics step and `end_s` the end of the longest lane, in simulated seconds.
     pub fn apply(&mut self, command: &PlayerCommand, step_s: f64, end_s: f64) {
         if matches!(command, PlayerCommand::Seek(_) | PlayerCommand::Step { .. }) {
             self.tried_from_s = None;
@@ -98,21 +98,21 @@ impl Playback {
         }
     }
 
-    /// Plays other champions from the start.
+    /// Plays from the start after other champions were put on the stage.
     pub fn begin(&mut self) {
         self.tried_from_s = None;
         self.restart();
     }
 
-    /// Plays from `start_s` on after a change of the world was tried from the moment `tried_from_s` on, both in
-    /// simulated seconds.
+    /// Plays from `start_s` on, after a change of the world was tried from `tried_from_s` on, both in simulated
+    /// seconds.
     pub fn play_change(&mut self, start_s: f64, tried_from_s: f64) {
         (self.time_s, self.rested_s, self.is_playing) = (start_s, 0.0, true);
         (self.is_sought, self.tried_from_s) = (true, Some(tried_from_s));
     }
 
-    /// Moment from which changes of the world were tried last, in simulated seconds, unless the user has gone to
-    /// another one since.
+    /// Returns the time from which changes of the world were last tried, in simulated seconds, unless the user has
+    /// since gone to another time.
     pub fn tried_from_s(&self) -> Option<f64> {
         self.tried_from_s
     }
@@ -122,7 +122,7 @@ impl Playback {
         (self.time_s, self.rested_s, self.is_playing) = (0.0, 0.0, true);
     }
 
-    /// Pauses or plays. At the end, plays from the start.
+    /// Toggles between pause and play. At the end, plays from the start.
     pub fn toggle(&mut self, end_s: f64) {
         if !self.is_playing && self.time_s >= end_s {
             self.restart();
@@ -136,7 +136,7 @@ impl Playback {
         self.loops = !self.loops;
     }
 
-    /// Sets the speed, clamped to the allowed range.
+    /// Sets the playback speed, clamped to the allowed range.
     pub fn set_speed(&mut self, speed: f32) {
         if speed.is_finite() {
             self.speed = speed.clamp(*SPEED_RANGE.start(), *SPEED_RANGE.end());
@@ -153,7 +153,7 @@ impl Playback {
         self.speed = next.unwrap_or(self.speed);
     }
 
-    /// Goes to a time, at most to the end.
+    /// Goes to a time in simulated seconds, at most to the end.
     pub fn seek(&mut self, time_s: f64, end_s: f64) {
         if time_s.is_finite() {
             (self.time_s, self.rested_s) = (time_s.clamp(0.0, end_s.max(0.0)), 0.0);
@@ -161,13 +161,13 @@ impl Playback {
         }
     }
 
-    /// Goes to a time and pauses.
+    /// Pauses at a time in simulated seconds.
     pub fn hold_at(&mut self, time_s: f64) {
         self.is_playing = false;
         self.seek(time_s, time_s);
     }
 
-    /// Pauses one physics step later or earlier.
+    /// Pauses, and goes to the next or the previous physics step.
     pub fn step(&mut self, forward: bool, step_s: f64, end_s: f64) {
         self.is_playing = false;
         let place = self.time_s / step_s;
@@ -185,7 +185,7 @@ impl Playback {
     /// Advances by `elapsed_s` of real time, but by at most `most_s` of simulated time. `end_s` is the end of the
     /// longest lane. Returns whether playback restarted.
     pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) -> bool {
-        // The known end can move closer while the lookahead runs.
+        // The known end can move closer while the lookahead is running.
         self.time_s = self.time_s.min(end_s);
         if std::mem::take(&mut self.is_sought) || !self.is_playing {
             return false;

@@ -1,25 +1,25 @@
-//! The order of several snakes in a race.
+//! Ranking of the snakes in a race.
 
 use super::lane::Lane;
 
-/// State of a lane in the ranking.
+/// State of a lane that determines its rank.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RankedLane {
     /// Number of the lane; the first is 0.
     pub lane: usize,
     /// Label of the lane.
     pub name: String,
-    /// Time of landing, in simulated seconds.
+    /// Time of landing, in simulated seconds; `None` if the snake has not landed.
     pub landed_s: Option<f64>,
     /// Whether the snake is disqualified.
     pub is_disqualified: bool,
-    /// Whether the snake was pulled by hand, which disqualifies it from the ranking.
+    /// Whether the mouse has pulled the snake, which removes it from the ranking.
     pub is_disturbed: bool,
-    /// Distance of the middle block, in metres.
+    /// Distance of the middle block along y, in metres.
     pub y_m: f32,
 }
 
-/// The lanes in ranking order: landed lanes by time, then lanes by distance, then pulled and disqualified ones.
+/// Returns the lanes in ranking order: landed lanes by time, then others by distance, then pulled and disqualified ones.
 pub fn ranking<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Vec<RankedLane> {
     let mut ranking: Vec<RankedLane> = lanes
         .into_iter()
@@ -49,7 +49,7 @@ fn order(ranking: &mut [RankedLane]) {
 }
 
 impl RankedLane {
-    /// Whether its result counts.
+    /// Returns whether the lane's result counts in the ranking.
     pub fn counts(&self) -> bool {
         !self.is_disqualified && !self.is_disturbed
     }

@@ -4,25 +4,25 @@ use super::contact_meter::ContactMeter;
 use super::replay::Replay;
 use snakes_core::world::{ContactForce, EnergyLost, JointState, JointTorque};
 
-/// Contacts, torques and joints after the last step.
+/// Contacts, torques and joints of a lane after the last step. Empty for a recording.
 #[derive(Debug)]
 pub(crate) struct Readings {
-    /// Contact forces on the limbs.
+    /// Contact forces on the limbs after the last step.
     pub contacts: Vec<ContactForce>,
-    /// Joint torques, from the head.
+    /// Torques of the joints, from the head.
     pub torques: Vec<JointTorque>,
-    /// Joint states, from the head.
+    /// States of the joints, from the head.
     pub joints: Vec<JointState>,
     /// Speeds of the limbs' centres, from head to tail, in m/s.
     pub speeds_m_s: Vec<f32>,
-    /// Energy that the snake has lost since the start; unknown for a recording and after a pull.
+    /// Energy that the snake has lost since the start; `None` for a recording and after a pull.
     pub energy_lost: Option<EnergyLost>,
-    /// Contacts of the limbs with the surfaces in the last moments; empty for a recording and for a ghost.
+    /// Recent contacts of the limbs with the surfaces; empty for a recording and for a ghost.
     pub meter: ContactMeter,
 }
 
 impl Readings {
-    /// Readings at the start of a replay with this number of physics steps per second.
+    /// Creates the readings at the start of a replay with this number of physics steps per second.
     pub fn new(replay: &Replay, steps_per_s: u32) -> Self {
         let mut readings = Self {
             contacts: Vec::new(),
@@ -36,8 +36,8 @@ impl Readings {
         readings
     }
 
-    /// Reads the world of a replay after a step; a recording has none. The meter is left as it is, because it notes
-    /// each step by itself.
+    /// Reads the world of a replay after a step. Does nothing for a recording, which has no world. The meter is not
+    /// updated, because it samples each step by itself.
     pub fn update(&mut self, replay: &Replay) {
         let Some(simulation) = replay.simulation() else { return };
         self.contacts = simulation.contact_forces();

@@ -6,11 +6,11 @@ use super::staged_champion::StagedChampion;
 use snakes_core::score::{Evaluation, KeyframeHistory, Recording, Rollout};
 use snakes_core::world::{Pose, Pull, Simulation, Stairs, Vector};
 
-/// A replay in progress.
+/// A replay in progress: simulated or recorded.
 pub(crate) enum Replay {
-    /// A live rollout, which scores.
+    /// A live rollout, which computes a score.
     Simulated(Box<Rollout>),
-    /// A recording of another engine version.
+    /// A recording that another engine version made.
     Recorded(PendingRecording),
 }
 
@@ -24,7 +24,7 @@ pub(crate) struct PendingRecording {
 }
 
 impl Replay {
-    /// A replay at its start.
+    /// Starts a replay of a champion.
     pub fn of(staged: &StagedChampion) -> Self {
         match staged.recording() {
             Some(recording) => Self::Recorded(PendingRecording {
@@ -53,8 +53,8 @@ impl Replay {
         }
     }
 
-    /// Goes to the state after `step` steps, at most to the end: from the nearest keyframe of the history or, without
-    /// one, from the start. The effect of any pull is lost.
+    /// Goes to the state after `step` steps, at most to the end. Starts from the nearest keyframe of the history, or
+    /// from the start without a history. The effect of any pull is lost.
     pub fn go_to(&mut self, step: u32, staged: &StagedChampion, history: Option<&KeyframeHistory>) {
         match self {
             Self::Simulated(rollout) => {
@@ -71,7 +71,7 @@ impl Replay {
         }
     }
 
-    /// The rollout after `step` steps without any pull, simulated by this engine.
+    /// Returns the rollout after `step` steps without any pull, simulated by this engine.
     pub fn rollout_at(
         &self,
         step: u32,
@@ -92,19 +92,19 @@ impl Replay {
         rollout
     }
 
-    /// Sets or clears the pull on a limb. A recording ignores it.
+    /// Sets or clears the pull on a limb. A recording ignores pulls.
     pub fn pull(&mut self, pull: Option<Pull>) {
         if let Self::Simulated(rollout) = self {
             rollout.pull(pull);
         }
     }
 
-    /// Whether the mouse has pulled the snake.
+    /// Returns whether the mouse has pulled the snake.
     pub fn is_disturbed(&self) -> bool {
         matches!(self, Self::Simulated(rollout) if rollout.is_disturbed())
     }
 
-    /// Number of steps without disqualification.
+    /// Returns the last step of the replay if the snake is not disqualified earlier.
     pub fn last_step(&self) -> u32 {
         match self {
             Self::Simulated(rollout) => rollout.last_step(),
@@ -112,7 +112,7 @@ impl Replay {
         }
     }
 
-    /// Whether the replay has ended.
+    /// Returns whether the replay has ended.
     pub fn is_over(&self) -> bool {
         match self {
             Self::Simulated(rollout) => rollout.is_over(),
@@ -120,7 +120,7 @@ impl Replay {
         }
     }
 
-    /// Steps taken so far.
+    /// Returns the number of steps taken so far.
     pub fn step(&self) -> u32 {
         match self {
             Self::Simulated(rollout) => rollout.step(),
@@ -128,7 +128,7 @@ impl Replay {
         }
     }
 
-    /// Poses of the limbs after the last step, from head to tail.
+    /// Returns the poses of the limbs after the last step, from head to tail.
     pub fn poses(&self) -> &[Pose] {
         match self {
             Self::Simulated(rollout) => rollout.poses(),
@@ -136,7 +136,7 @@ impl Replay {
         }
     }
 
-    /// Evaluation so far. For a recording: the recorded result with the current position.
+    /// Returns the evaluation so far. For a recording, this is the recorded result with the current position.
     pub fn evaluation(&self, staged: &StagedChampion) -> Evaluation {
         match self {
             Self::Simulated(rollout) => rollout.evaluation(),
@@ -147,7 +147,7 @@ impl Replay {
         }
     }
 
-    /// Recorded path of the middle limb, frame by frame, in metres; `None` for a simulation.
+    /// Returns the path of the middle limb in a recording so far, frame by frame, in metres; `None` for a simulation.
     pub fn recorded_way_m(&self) -> Option<Vec<Vector>> {
         let Self::Recorded(recorded) = self else { return None };
         let shown = recorded.step / recorded.recording.every_steps() + 1;
@@ -155,7 +155,7 @@ impl Replay {
         Some(frames.map(|parts| parts[recorded.middle_part].translation).collect())
     }
 
-    /// Step at which the middle limb of a recording first stood on the landing, if it did.
+    /// Returns the step at which the middle limb of a recording first stood on the landing, if it did.
     pub fn recorded_landing(&self, stairs: &Stairs) -> Option<u32> {
         let Self::Recorded(recorded) = self else { return None };
         let landed = |parts: &[Pose]| {
@@ -166,7 +166,7 @@ impl Replay {
         Some(frame as u32 * recorded.recording.every_steps())
     }
 
-    /// The rollout; `None` for a recording.
+    /// Returns the rollout, or `None` for a recording.
     pub fn rollout(&self) -> Option<&Rollout> {
         match self {
             Self::Simulated(rollout) => Some(rollout),
@@ -174,7 +174,7 @@ impl Replay {
         }
     }
 
-    /// The simulated world; `None` for a recording.
+    /// Returns the simulated world, or `None` for a recording.
     pub fn simulation(&self) -> Option<&Simulation> {
         self.rollout().map(Rollout::simulation)
     }

@@ -7,9 +7,9 @@ use snakes_core::world::Pull;
 /// The lane and limb that panels show in detail, and the limb that the mouse holds.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Selection {
-    /// The selected lane; the first is 0.
+    /// Selected lane; the first is 0.
     pub lane: usize,
-    /// The selected limb of that lane; the head is 0.
+    /// Selected limb of the selected lane; the head is 0. `None` if no limb is selected.
     pub limb: Option<usize>,
     held: Option<HeldLimb>,
 }
@@ -17,33 +17,33 @@ pub(crate) struct Selection {
 /// A limb that the mouse holds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldLimb {
-    /// The lane that the limb belongs to.
+    /// Lane of the held limb.
     pub lane: Entity,
-    /// Where the pull begins and ends, in the lane's own coordinates.
+    /// Start and end point of the pull, in lane coordinates.
     pub pull: Pull,
-    /// Where the button went down, in pixels.
+    /// Where the mouse button was pressed, in pixels.
     pub pressed_at: Vec2,
-    /// Whether the pointer has moved far enough for a pull; until then the press may be a click.
+    /// Whether the pointer has moved far enough for a pull; until then, the press may become a click.
     pub is_pulling: bool,
 }
 
 impl Selection {
-    /// The pull on a lane, in its own coordinates.
+    /// Returns the pull on a lane, in lane coordinates; `None` without a pull.
     pub fn pull_on(&self, lane: Entity) -> Option<Pull> {
         self.held.filter(|held| held.is_pulling && held.lane == lane).map(|held| held.pull)
     }
 
-    /// Whether a limb is held. A drag of the mouse then moves the limb instead of the camera.
+    /// Returns whether the mouse holds a limb. A drag then moves the limb instead of the camera.
     pub fn is_holding(&self) -> bool {
         self.held.is_some()
     }
 
-    /// The limb that is held.
+    /// Returns the limb that the mouse holds.
     pub fn held(&self) -> Option<&HeldLimb> {
         self.held.as_ref()
     }
 
-    /// The limb that is held, to be dragged.
+    /// Returns the limb that the mouse holds, for dragging it.
     pub fn held_mut(&mut self) -> Option<&mut HeldLimb> {
         self.held.as_mut()
     }
@@ -54,12 +54,12 @@ impl Selection {
         self.held = Some(held);
     }
 
-    /// Lets go of the limb that is held.
+    /// Releases the limb that the mouse holds.
     pub fn release(&mut self) {
         self.held = None;
     }
 
-    /// Returns to the first lane, without a limb.
+    /// Selects the first lane and no limb.
     pub fn reset(&mut self) {
         (self.lane, self.limb) = (0, None);
     }

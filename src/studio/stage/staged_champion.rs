@@ -1,4 +1,4 @@
-//! A champion on the stage: where it is from and how it is shown.
+//! A champion on the stage: its origin and the way in which it is shown.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub(crate) struct StagedChampion {
     champion: Champion,
     name: String,
     source: ChampionSource,
-    /// The engine that found it and its recording, if that was another engine version.
+    /// Engine version that found the champion, and its recording, if it was another version than this program's.
     elsewhere: Option<(Engine, Option<Arc<Recording>>)>,
     shown_as: ShownAs,
 }
@@ -23,26 +23,26 @@ pub(crate) struct StagedChampion {
 /// Origin of a staged champion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ChampionSource {
-    /// A file that the studio was opened with; the first is 0.
+    /// File with which the studio was opened, by its index; the first is 0.
     Opened(usize),
-    /// An entry of the library, by the number of its place.
+    /// Entry of the library, by the number of its place.
     Library(u64),
-    /// A run of this session; the first is 0. The champion's origin has the generation.
+    /// Run since the start of the program, by its index; the first is 0. The champion's own origin has the generation.
     Run(u32),
-    /// A lesson.
+    /// Lesson.
     Lesson,
-    /// The editor of bodies.
+    /// Editor of bodies.
     Edited,
 }
 
 /// World and engine in which a champion is shown.
 #[derive(Debug, Clone, PartialEq)]
 enum ShownAs {
-    /// In its own world. A champion of another engine plays from its recording, if there is one.
+    /// Shown in the champion's own world. A champion of another engine version plays from its recording, if it has one.
     Found,
     /// Simulated by this engine in the champion's own world.
     Simulated,
-    /// Simulated by this engine in another world.
+    /// Simulated by this engine in a changed world.
     Changed(Box<ChangedWorld>),
 }
 
@@ -50,26 +50,26 @@ enum ShownAs {
 #[derive(Debug, Clone, PartialEq)]
 struct ChangedWorld {
     trial: Trial,
-    /// Description of the difference.
+    /// Difference from the world in which the champion was found, in words.
     what_is_other: String,
     beginning: Beginning,
-    /// Whether it is a trial of the champion's exam, and no change that the user tries.
+    /// Whether the world is a trial of the champion's exam rather than a change by the user.
     is_of_exam: bool,
 }
 
-/// Moment from which a champion is shown in a changed world.
+/// Time from which a champion is shown in a changed world.
 #[derive(Debug, Clone, PartialEq)]
 enum Beginning {
-    /// From the start.
+    /// The world is changed from the start.
     Start,
-    /// From the start, because its state at the moment of the change does not fit the changed world.
+    /// The world is changed from the start, because the champion's state at the time of the change does not fit the changed world.
     StartBecause(Discontinuity),
-    /// From this physics step on, with its state at that moment; before it, in this trial.
+    /// The world is changed from this physics step on, with the champion's state at that step. Before it, this trial applies.
     Step(u32, Box<Trial>),
 }
 
 impl StagedChampion {
-    /// A champion from a file that the studio was opened with: its index and name.
+    /// Creates a staged champion from a file with which the studio was opened, with its index and name.
     pub fn from_file(loaded: &LoadedChampion, index: usize, name: &str) -> Self {
         let recording = loaded.recording.clone().map(Arc::new);
         Self {
@@ -81,12 +81,12 @@ impl StagedChampion {
         }
     }
 
-    /// A champion of the library: the number of its place, and its name.
+    /// Creates a staged champion from the library, with the number of its place and its name.
     pub fn from_library(loaded: &LoadedChampion, place: u64, name: &str) -> Self {
         Self { source: ChampionSource::Library(place), ..Self::from_file(loaded, 0, name) }
     }
 
-    /// A champion of a run of this session.
+    /// Creates a staged champion from the run with this index since the start of the program.
     pub fn from_run(champion: &Champion, run: u32) -> Self {
         Self {
             champion: champion.clone(),
@@ -97,22 +97,22 @@ impl StagedChampion {
         }
     }
 
-    /// A champion of a lesson.
+    /// Creates a staged champion for a lesson.
     pub fn from_lesson(champion: &Champion) -> Self {
         Self { source: ChampionSource::Lesson, ..Self::from_run(champion, 0) }
     }
 
-    /// A snake whose body was edited.
+    /// Creates a staged champion from a snake whose body was edited.
     pub fn from_edited(champion: &Champion) -> Self {
         Self { source: ChampionSource::Edited, ..Self::from_run(champion, 0) }
     }
 
-    /// This champion under another name.
+    /// Returns the champion under another name.
     pub fn named(self, name: String) -> Self {
         Self { name, ..self }
     }
 
-    /// This champion in another world. The genome may not fit there: see [`Self::check`].
+    /// Returns the champion in another world. The genome may not fit that world: see [`Self::check`].
     pub fn in_world(&self, trial: &Trial, what_is_other: String) -> Self {
         if *trial == self.champion.trial {
             return self.as_found();
@@ -120,8 +120,8 @@ impl StagedChampion {
         self.changed(trial, what_is_other, Beginning::Start)
     }
 
-    /// This champion in another world from a moment of its rollout on; from the start without a moment, or if the state
-    /// at that moment does not fit the other world.
+    /// Returns the champion in another world from a state of its rollout on. The other world applies from the start if
+    /// there is no state, or if the state does not fit that world.
     pub fn in_world_from(
         &self,
         moment: Option<&Rollout>,
@@ -144,19 +144,19 @@ impl StagedChampion {
         Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
     }
 
-    /// This champion in a trial of its exam; `stairs` names the other stairs in words.
+    /// Returns the champion in a trial of its exam. `stairs` describes the trial's stairs in words.
     pub fn on_stairs_of_exam(&self, trial: &Trial, stairs: String) -> Self {
         let (trial, beginning) = (trial.clone(), Beginning::Start);
         let world = ChangedWorld { trial, what_is_other: stairs, beginning, is_of_exam: true };
         Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
     }
 
-    /// Whether it is shown in a trial of its exam.
+    /// Returns whether the champion is shown in a trial of its exam.
     pub fn is_on_stairs_of_exam(&self) -> bool {
         matches!(&self.shown_as, ShownAs::Changed(world) if world.is_of_exam)
     }
 
-    /// This champion, shown in its present world from the start.
+    /// Returns the champion in its present world, from the start.
     pub fn shown_from_start(&self) -> Self {
         match &self.shown_as {
             ShownAs::Changed(world) => self.in_world(&world.trial, world.what_is_other.clone()),
@@ -164,7 +164,7 @@ impl StagedChampion {
         }
     }
 
-    /// The physics step at which its world changes, if that is not its start.
+    /// Returns the physics step at which the champion's world changes; `None` if it does not change after the start.
     pub fn changes_at_step(&self) -> Option<u32> {
         match &self.shown_as {
             ShownAs::Changed(world) => match world.beginning {
@@ -175,8 +175,8 @@ impl StagedChampion {
         }
     }
 
-    /// The moment from which it is shown in a changed world, in words: "from 5.20 s on". `None` if that is simply the
-    /// start.
+    /// Describes the time from which the champion's world is changed: "from 5.20 s on". Returns `None` if nothing has
+    /// to be explained.
     pub fn beginning_in_words(&self) -> Option<String> {
         let ShownAs::Changed(world) = &self.shown_as else { return None };
         match &world.beginning {
@@ -191,12 +191,12 @@ impl StagedChampion {
         }
     }
 
-    /// Its rollout at the start; the champion must have passed [`Self::check`].
+    /// Returns the champion's rollout at the start. The champion must have passed [`Self::check`].
     pub fn rollout(&self) -> Rollout {
         let genome = &self.champion.genome;
         if let ShownAs::Changed(world) = &self.shown_as
             && let Beginning::Step(step, earlier) = &world.beginning
-            // It fitted when the moment was chosen.
+            // The state was checked against the changed world when the change was made.
             && let Ok(rollout) =
                 Rollout::new(genome, earlier).changing_at(*step, genome, &world.trial)
         {
@@ -205,31 +205,31 @@ impl StagedChampion {
         Rollout::new(genome, self.trial())
     }
 
-    /// The result that the stage shows at the end: that of one trial, also where a record has the mean of several.
+    /// Returns the result that the stage shows at the end: that of one trial, even where the record is the mean of several.
     pub fn shown_result(&self) -> Evaluation {
         let mut rollout = self.rollout();
         while rollout.advance() {}
         rollout.evaluation()
     }
 
-    /// Its rollout at the moment of its change, continued from that of the unchanged champion.
+    /// Continues the unchanged champion's rollout in the changed world. Returns `None` unless `original` is at the step of the change.
     pub fn continued_from(&self, original: Rollout) -> Option<Rollout> {
         let step = self.changes_at_step().filter(|step| *step == original.step())?;
         original.changing_at(step, &self.champion.genome, self.trial()).ok()
     }
 
-    /// Checks that the genome fits the world in which it is shown.
+    /// Checks that the genome fits the world in which the champion is shown.
     pub fn check(&self) -> Result<(), Invalid> {
         self.trial().check().map_err(|error| error.inside("trial"))?;
         self.trial().check_genome(&self.champion.genome).map_err(|error| error.inside("genome"))
     }
 
-    /// This champion in its own world.
+    /// Returns the champion in its own world.
     pub fn as_found(&self) -> Self {
         Self { shown_as: ShownAs::Found, ..self.clone() }
     }
 
-    /// This champion, simulated by this engine instead of played from a recording.
+    /// Returns the champion, simulated by this engine instead of played from a recording.
     pub fn simulated(&self) -> Self {
         let shown_as = match &self.shown_as {
             ShownAs::Found if self.recording().is_some() => ShownAs::Simulated,
@@ -238,12 +238,12 @@ impl StagedChampion {
         Self { shown_as, ..self.clone() }
     }
 
-    /// Whether it is shown in a changed world.
+    /// Returns whether the champion is shown in a changed world.
     pub fn is_changed(&self) -> bool {
         matches!(self.shown_as, ShownAs::Changed(_))
     }
 
-    /// The recording to play instead of simulating, if any.
+    /// Returns the recording to play instead of a simulation, if any.
     pub fn recording(&self) -> Option<&Arc<Recording>> {
         match (&self.shown_as, &self.elsewhere) {
             (ShownAs::Found, Some((_, recording))) => recording.as_ref(),
@@ -251,17 +251,17 @@ impl StagedChampion {
         }
     }
 
-    /// The engine that found it and its recording, if that was another engine version.
+    /// Returns the engine version that found the champion, if it was another version than this program's.
     pub fn other_engine(&self) -> Option<Engine> {
         self.elsewhere.as_ref().map(|(engine, _)| *engine)
     }
 
-    /// Whether a simulation must end as recorded, because this engine recorded it in this world.
+    /// Returns whether a simulation must end as recorded, because this engine version recorded it in the same world.
     pub fn must_match_record(&self) -> bool {
         self.elsewhere.is_none() && !self.is_changed()
     }
 
-    /// Whether it could be shown as found but is not.
+    /// Returns whether the champion is shown otherwise than as it was found, although that is possible.
     pub fn could_be_as_found(&self) -> bool {
         let is_resimulated = self.shown_as == ShownAs::Simulated && self.has_recording();
         self.is_changed() || is_resimulated
@@ -271,17 +271,17 @@ impl StagedChampion {
         matches!(self.elsewhere, Some((_, Some(_))))
     }
 
-    /// The champion as it was found.
+    /// Returns the champion as it was found.
     pub fn champion(&self) -> &Champion {
         &self.champion
     }
 
-    /// The body that the genome builds in the world in which it is shown.
+    /// Returns the body that the genome builds in the world in which the champion is shown.
     pub fn body(&self) -> BodyPlan {
         self.trial().agent.body_plan(&self.champion.genome)
     }
 
-    /// The world in which it is shown.
+    /// Returns the world in which the champion is shown.
     pub fn trial(&self) -> &Trial {
         match &self.shown_as {
             ShownAs::Changed(world) => &world.trial,
@@ -289,27 +289,27 @@ impl StagedChampion {
         }
     }
 
-    /// Origin of the champion.
+    /// Returns origin of the champion.
     pub fn source(&self) -> ChampionSource {
         self.source
     }
 
-    /// The generation it is from, in its own run; the first is 1.
+    /// Returns the generation that found the champion in its run; the first is 1.
     pub fn generation(&self) -> u32 {
         self.champion.origin.generation
     }
 
-    /// Recorded fitness.
+    /// Returns the recorded fitness of the champion.
     pub fn fitness(&self) -> f32 {
         self.champion.evaluation.fitness
     }
 
-    /// Short name.
+    /// Returns the champion's short name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Label that distinguishes it from other lanes: its name, or the difference of its world.
+    /// Returns a label that distinguishes the champion from other lanes: its name, or the difference of its world.
     pub fn label(&self) -> &str {
         match &self.shown_as {
             ShownAs::Changed(world) => &world.what_is_other,
@@ -317,11 +317,11 @@ impl StagedChampion {
         }
     }
 
-    /// One-line description with the recorded result.
+    /// Describes the champion in one line, with the recorded result.
     pub fn caption(&self) -> String {
         let name = &self.name;
         let shown_as = match (&self.shown_as, self.other_engine()) {
-            // The description of the reached position belongs to the original world.
+            // The recorded score describes a position in the champion's own world.
             (ShownAs::Changed(world), _) => {
                 let (what, score) = (&world.what_is_other, self.champion.score());
                 return match self.beginning_in_words() {

@@ -1,7 +1,7 @@
-//! The worlds of the lanes as bevy_rapier3d holds them, for its debug lines and its ray casts.
+//! The worlds of the lanes in the form of bevy_rapier3d, for its debug lines and its ray casts.
 //!
-//! A lane's rollout owns the bodies that are scored. A context holds copies of them, at the lane's place on the stage, which
-//! are made when lines are drawn or a ray is cast. No plugin steps a context, so it cannot affect a result.
+//! A lane's rollout owns the bodies that are scored. A context holds copies of the bodies at the lane's place on the stage, which are
+//! made when lines are drawn or a ray is cast. No plugin steps a context, so it cannot affect a result.
 
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
@@ -14,12 +14,12 @@ use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, Ray};
 use super::lane::Lane;
 use snakes_core::world::{Pose, Simulation};
 
-/// A lane with the context that can hold its world.
+/// A lane, with the bevy_rapier3d context that can hold a copy of its world.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(crate) struct StagedWorld {
     entity: Entity,
-    /// The lane.
+    /// Lane whose world the context holds.
     pub lane: &'static Lane,
     context: &'static mut RapierContextSimulation,
     bodies: &'static mut RapierRigidBodySet,
@@ -27,20 +27,20 @@ pub(crate) struct StagedWorld {
     joints: &'static mut RapierContextJoints,
 }
 
-/// The surface of a lane that a ray hits.
+/// The first surface that a ray hits, on a lane.
 pub(crate) struct RayHit<'w> {
-    /// Entity of the lane.
+    /// Entity of the lane that was hit.
     pub entity: Entity,
-    /// The lane.
+    /// Lane that was hit.
     pub lane: &'w Lane,
-    /// The part of the snake; none for the stairs and the ground.
+    /// Part of the snake that was hit; `None` for the stairs and the ground.
     pub part: Option<usize>,
-    /// Along the ray, in metres.
+    /// Distance of the hit along the ray, in metres.
     pub distance_m: f32,
 }
 
 impl<'w> StagedWorldItem<'w, '_> {
-    /// Holds the world after the last step, as the engine sees it. A recording has none; it is held as it is drawn.
+    /// Copies the lane's world after the last step into the context. A recording has no world; its drawn state is copied instead.
     pub fn hold_last_step(&mut self) {
         match self.lane.simulation() {
             Some(simulation) => self.hold(simulation, simulation.poses()),
@@ -48,7 +48,7 @@ impl<'w> StagedWorldItem<'w, '_> {
         }
     }
 
-    /// The first surface that a ray hits in the world as it is drawn.
+    /// Returns the first surface that a ray hits in the world as it is drawn.
     pub fn cast_ray(&mut self, ray: Ray3d) -> Option<RayHit<'w>> {
         let drawn = self.hold_drawn();
         let RapierContextSimulation { broad_phase, integration_parameters, .. } =
@@ -71,7 +71,8 @@ impl<'w> StagedWorldItem<'w, '_> {
         Some(RayHit { entity: self.entity, lane: self.lane, part, distance_m })
     }
 
-    /// Holds the world that is drawn, with the snake between two steps. Returns that world with the snake at its start.
+    /// Copies the world as it is drawn into the context, with the snake between two steps. Returns a simulation with
+    /// the snake at its start.
     fn hold_drawn(&mut self) -> Simulation {
         let lane = self.lane;
         let plan = lane.trial().world_plan(&lane.staged().champion().genome);
@@ -80,7 +81,7 @@ impl<'w> StagedWorldItem<'w, '_> {
         simulation
     }
 
-    /// Holds a world with its parts in these poses, from head to tail.
+    /// Copies a world into the context, with its parts in these poses, from head to tail.
     fn hold(&mut self, simulation: &Simulation, poses: impl Iterator<Item = Pose>) {
         let physics = simulation.physics();
         self.context.narrow_phase = physics.narrow_phase.clone();
@@ -98,10 +99,10 @@ impl<'w> StagedWorldItem<'w, '_> {
         }
         for (_, collider) in colliders.iter_mut() {
             collider.set_position(on_stage(collider.position()));
-            // bevy_rapier3d asks each collider for its entity, and panics if there is none.
+            // bevy_rapier3d reads the entity of each collider, and panics if there is none.
             collider.user_data = self.entity.to_bits().into();
         }
-        // The colliders of bodies follow them: the engine "lanes" moves bodies only.
+        // The colliders must be moved to their bodies, because the engine "lanes" moves only bodies.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
     }
 }

@@ -19,7 +19,7 @@ fn shipped() -> LoadedChampion {
     shipped_champion().expect("well formed")
 }
 
-/// A headless stage on which these champions race.
+/// Creates a headless stage on which these champions race.
 fn stage_of(opening: Vec<LoadedChampion>) -> App {
     let saved = |loaded| NamedChampion { name: "a champion".to_owned(), loaded };
     let mut app = App::new();
@@ -36,7 +36,7 @@ fn stage_of(opening: Vec<LoadedChampion>) -> App {
     app
 }
 
-/// Runs a frame of this length.
+/// Runs a frame of this length, in seconds.
 fn frame(app: &mut App, length_s: f32) {
     let length = Duration::from_secs_f32(length_s);
     app.insert_resource(TimeUpdateStrategy::ManualDuration(length));
@@ -166,7 +166,7 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     let mut loaded = shipped();
     let Champion { genome, trial, .. } = &loaded.champion;
     let recording = Recording::of(genome, trial);
-    // The recording is shifted by a metre.
+    // The recording is shifted sideways by a metre.
     let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
     let poses = recording.frames().flatten().map(aside).collect();
     loaded.recording = Recording::new(recording.every_steps(), recording.parts(), poses);
@@ -247,7 +247,7 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     for part in ["unfit cannot be shown", "joints is 4 joints", "allowed: 6"] {
         assert!(problem.contains(part), "{part:?} in {problem}");
     }
-    // The earlier lanes stay if nothing else can be shown.
+    // The earlier lanes stay if the new ones cannot be shown.
     app.world_mut().write_message(Show::solo(StagedChampion::from_file(&unfit, 0, "unfit")));
     frame(&mut app, 0.1);
     assert_eq!(lane(&mut app).staged().name(), "a champion");

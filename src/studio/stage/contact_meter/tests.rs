@@ -6,7 +6,7 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use snakes_core::save::{load_preset, shipped_champion};
 use snakes_core::world::Vector;
 
-/// The shipped champion, on the surface of a preset if one is named.
+/// Creates a lane with the shipped champion, on the surface of a preset if one is named.
 fn lane(preset: Option<&str>) -> Lane {
     let staged = StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "one");
     let Some(preset) = preset else { return Lane::new(staged, 0) };
@@ -112,7 +112,7 @@ fn a_fast_step_rate_takes_no_more_samples() {
     assert!((20..=25).contains(&samples), "{samples} samples of 0.375 s");
 }
 
-/// Presets with every kind of surface; the first is the champion's own.
+/// Presets with all kinds of surfaces; `None` is the champion's own surface.
 const SURFACES: [Option<&str>; 6] =
     [None, Some("ice"), Some("rubber"), Some("moon"), Some("mud"), Some("trampoline")];
 
@@ -125,7 +125,7 @@ fn on_no_surface_is_the_energy_lost_in_contacts_and_stops_negative() {
             let lost = lane.readings().energy_lost.expect("undisturbed");
             let case = format!("{preset:?} after {moment} tenths of a second: {lost:?}");
             assert!(lost.elsewhere_j() > -10.0, "{case}");
-            // It rises all the time: at 5 kW, the torques at work lose some hundred watts in impacts and stops.
+            // The lost energy rises steadily: at 5 kW, the torques lose some hundred watts in impacts and stops.
             let least_j = if moment >= 5 { 0.1 * lost.total_j } else { -10.0 };
             assert!(lost.elsewhere_j() > least_j, "{case}");
         }

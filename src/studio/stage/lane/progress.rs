@@ -1,9 +1,9 @@
-//! How far the snake of a lane has come, in words.
+//! Description of a snake's progress in words.
 
 use super::Lane;
 
 impl Lane {
-    /// How far the snake has come by now, in a few words.
+    /// Describes the progress of the snake at this time in a few words.
     pub fn progress_in_words(&self, time_s: f64) -> String {
         let stairs = &self.trial().stairs;
         let middle = self.drawn_middle();

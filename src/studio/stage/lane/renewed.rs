@@ -1,4 +1,4 @@
-//! Lanes that take the places of earlier ones, with what those have already computed.
+//! Lanes that replace earlier ones and reuse their computed steps.
 
 use std::sync::Arc;
 
@@ -6,12 +6,12 @@ use super::{Lane, Readings, Replay, StagedChampion};
 use snakes_core::score::Rollout;
 
 impl Lane {
-    /// Whether what this lane has computed is also of use for a lane with this champion.
+    /// Returns whether the computed steps of this lane can be reused for a lane with this champion.
     pub fn suits(&self, staged: &StagedChampion) -> bool {
         !self.is_ghost && !self.is_broken && self.staged == *staged
     }
 
-    /// This lane at the start of a replay. The new lane takes over the steps that this one has computed in advance.
+    /// Creates a lane like this one at the start of a replay. The new lane takes over the lookahead of this one.
     pub fn renewed(&mut self) -> Self {
         let lookahead = std::mem::take(&mut self.lookahead);
         Self {
@@ -20,8 +20,8 @@ impl Lane {
         }
     }
 
-    /// The lane at the moment of its change, with the state of the original at that moment. Its own past is simulated
-    /// only when it is sought.
+    /// Continues the lane from the original's state at the time of the change. The lane's own past is simulated only
+    /// when the user goes back to it.
     pub fn after_change(mut self, original: &Lane) -> Self {
         let step = self.staged.changes_at_step();
         let state = step.map(|step| original.rollout_at(step));
@@ -33,12 +33,12 @@ impl Lane {
         self
     }
 
-    /// The undisturbed rollout after `step` steps, simulated by this engine.
+    /// Returns the undisturbed rollout after `step` steps, simulated by this engine.
     pub fn rollout_at(&self, step: u32) -> Rollout {
         self.replay.rollout_at(step, &self.staged, self.history().map(Arc::as_ref))
     }
 
-    /// Whether this lane can go on in the place of `other`: the same snake in the same world at the same place.
+    /// Returns whether this lane can replace `other` unnoticed: the same snake in the same world at the same place.
     pub fn is_like(&self, other: &Self) -> bool {
         let of = |lane: &Self| (lane.number, lane.is_ghost, lane.offset_x_m);
         of(self) == of(other) && self.staged == other.staged

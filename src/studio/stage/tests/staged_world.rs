@@ -10,7 +10,7 @@ use snakes_core::world::{PhysicsEngine, Surface};
 
 const ENGINES: [PhysicsEngine; 2] = [PhysicsEngine::Rapier, PhysicsEngine::Lanes];
 
-/// The shipped champion, simulated by an engine on soft ground, which is a body of its own in rapier.
+/// Returns the shipped champion, simulated by an engine on soft ground, which is a separate body in rapier.
 fn shipped_in(engine: PhysicsEngine) -> LoadedChampion {
     let mut loaded = shipped();
     let trial = &mut loaded.champion.trial;

@@ -1,10 +1,10 @@
-//! Copies that leave the original in the middle of its replay.
+//! Copies with a changed world that begin in the middle of the original's replay.
 
 use super::*;
 use snakes_core::evolve::{Settings, with_field};
 use snakes_core::score::{Rollout, Trial};
 
-/// Step at which the copies of these tests leave the original.
+/// Physics step at which the world of the copies changes.
 const MOMENT: u32 = 312;
 
 fn original() -> StagedChampion {
@@ -16,7 +16,7 @@ fn with_friction(text: &str) -> Trial {
     with_field(&settings, "surface.friction", text).expect("allowed").trial
 }
 
-/// The original's rollout after this number of steps.
+/// Returns the original's rollout after this number of steps.
 fn original_at(step: u32) -> Rollout {
     let mut rollout = original().rollout();
     while rollout.step() < step {
@@ -25,13 +25,13 @@ fn original_at(step: u32) -> Rollout {
     rollout
 }
 
-/// A copy with this friction from [`MOMENT`] on.
+/// Returns a copy with this friction from [`MOMENT`] on.
 fn copy(friction: &str) -> StagedChampion {
     let label = format!("friction {friction}");
     original().in_world_from(Some(&original_at(MOMENT)), &with_friction(friction), label)
 }
 
-/// A what-if of the original and copies with these frictions, of which the latest does not stay.
+/// Returns a what-if of the original and copies with these frictions, of which the latest is not kept.
 fn what_if(frictions: &[&str]) -> Show {
     let plan = RunPlan::new("climb", 1, Settings::default());
     let mut champions = vec![original()];
@@ -45,7 +45,7 @@ fn step_s() -> f64 {
     1.0 / f64::from(shipped().champion.trial.physics.steps_per_s)
 }
 
-/// Shows champions and plays from [`MOMENT`] on.
+/// Shows champions, and plays from [`MOMENT`] on.
 fn present(app: &mut App, show: Show) {
     app.world_mut().write_message(show);
     let moment_s = f64::from(MOMENT) * step_s();
@@ -53,7 +53,7 @@ fn present(app: &mut App, show: Show) {
     frame(app, 0.0);
 }
 
-/// A stage that has played the original to [`MOMENT`].
+/// Creates a stage that has played the original to [`MOMENT`].
 fn stage_at_moment() -> App {
     let mut app = stage_of(vec![shipped()]);
     finish_lookahead(&mut app);
@@ -62,7 +62,7 @@ fn stage_at_moment() -> App {
     app
 }
 
-/// The lanes by number, with their entities.
+/// Returns the lanes by number, with their entities.
 fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
     let mut query = app.world_mut().query::<(Entity, &Lane)>();
     let mut lanes: Vec<_> = query.iter(app.world()).collect();
@@ -178,7 +178,7 @@ fn the_end_of_a_copy_is_not_compared_with_the_record() {
 
 #[test]
 fn a_copy_starts_at_the_moment_without_simulating_its_past() {
-    // Ten minutes with the moment near the end: simulating its past would take hundreds of frames of steps.
+    // The trial takes ten minutes and the change is near its end: simulating the steps before would take hundreds of frames.
     let mut long = shipped();
     long.champion.trial.duration_s = 600.0;
     let mut app = stage_of(vec![long.clone()]);
