@@ -1,4 +1,4 @@
-//! Editing the blocks of a snake: changes with undo, a preview beside the original, and tuning of the gait.
+//! Editor of a snake's blocks: changes with undo, a preview beside the original, and tuning of the gait.
 
 use std::time::{Duration, Instant};
 
@@ -17,61 +17,61 @@ use snakes_core::score::{Trial, evaluate};
 use snakes_core::world::BodyPlan;
 use snakes_lab::run::{BackgroundTask, Tuned, caught, tune_controller};
 
-/// Time after the last change at which the stage shows the body.
+/// Time between the last change of the body and its preview on the stage.
 const PREVIEW_AFTER: Duration = Duration::from_millis(500);
-/// Evaluations of a tuning.
+/// Number of evaluations of one tuning.
 const TUNING: usize = 60;
-/// Maximum number of changes that can be undone.
+/// Maximum number of changes of the body that can be undone.
 const MOST_STEPS: usize = 200;
-/// Notices about the body replace each other.
+/// Subject of messages about the edited body, which replace each other.
 const SUBJECT: &str = "body editor";
 
-/// The body that is being edited.
+/// Editor of one body at a time.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct BodyEditor {
     edited: Option<Edited>,
 }
 
-/// A body that is being edited.
+/// A body that is being edited, with its history.
 #[derive(Debug)]
 struct Edited {
-    /// The snake that the changes began with.
+    /// Snake to whose body the changes apply.
     original: StagedChampion,
     genome: Genome,
     past: Vec<Genome>,
     future: Vec<Genome>,
-    /// The size that the last command set, whose further changes are the same step.
+    /// Number of a block that the last command set. Further changes of this number are part of the same undo step.
     last_set: Option<(usize, BlockSize)>,
-    /// When the body changed, if its preview has not begun.
+    /// Time of the last change of the body, until its preview begins.
     changed_at: Option<Instant>,
-    /// The evaluation of the snake for its preview.
+    /// Evaluation of the edited snake for the preview, in progress.
     evaluation: Option<BackgroundTask<Result<Champion, String>>>,
-    /// The evaluated snake, which the stage does not show yet.
+    /// Evaluated snake that the stage does not show yet.
     ready: Option<Champion>,
     tuning: Option<BackgroundTask<Option<Tuned>>>,
-    /// Number of tunings so far, each of which tries other gaits.
+    /// Number of tunings so far. Each tries other gaits.
     attempts: u32,
 }
 
-/// The state of the edited body, for the panel.
+/// State of the edited body, for its panel.
 #[derive(Debug)]
 pub(crate) struct EditedBody<'a> {
-    /// Its blocks as genes, from the head.
+    /// Blocks of the body as genes, from the head.
     pub segments: &'a [Segment],
-    /// The body that they make in the world of the original.
+    /// Body that the blocks form in the world of the original.
     pub body: BodyPlan,
-    /// The snake that the changes began with.
+    /// Snake to whose body the changes apply.
     pub original: &'a StagedChampion,
-    /// Whether there is a step to undo, and one to redo.
+    /// Whether there is a change to undo, and one to redo.
     pub steps: [bool; 2],
-    /// Evaluations of the tuning that is under way, made and in all.
+    /// Number of finished evaluations and of all evaluations of the tuning, if one is in progress.
     pub tuning: Option<[usize; 2]>,
-    /// Why the body cannot be shown, if it cannot.
+    /// Reason why the body cannot be simulated, if there is one.
     pub problem: Option<String>,
 }
 
 impl BodyEditor {
-    /// The body that is being edited.
+    /// Returns the state of the body that is being edited, if any.
     pub fn edited(&self) -> Option<EditedBody<'_>> {
         let edited = self.edited.as_ref()?;
         Some(EditedBody {
@@ -84,10 +84,11 @@ impl BodyEditor {
         })
     }
 
-    /// Executes a command, which may begin with the selected champion of the stage. Returns what the stage shows then.
+    /// Executes a command. The command to edit begins with the selected champion of the stage. Returns what to show on
+    /// the stage, if anything.
     ///
     /// # Errors
-    /// The command cannot be executed, with the reason.
+    /// The command cannot be executed, for the returned reason.
     pub fn apply(
         &mut self,
         command: &BodyCommand,
@@ -127,8 +128,8 @@ impl BodyEditor {
         Ok(None)
     }
 
-    /// Takes over what has ended in the background, and begins the preview of a change that is old enough. Returns whether
-    /// a preview is ready.
+    /// Processes finished background work, and begins the preview of a change that is old enough. Returns whether a
+    /// preview is ready.
     fn follow(&mut self, notices: &mut Notices) -> bool {
         let Some(edited) = &mut self.edited else { return false };
         edited.take_in_tuning(notices);
@@ -140,7 +141,7 @@ impl BodyEditor {
 }
 
 impl Edited {
-    /// Takes over a tuning that has ended.
+    /// Processes the result of a finished tuning.
     fn take_in_tuning(&mut self, notices: &mut Notices) {
         let Some(result) = self.tuning.as_ref().and_then(BackgroundTask::poll) else { return };
         self.tuning = None;
@@ -159,10 +160,10 @@ impl Edited {
         }
     }
 
-    /// Begins to evaluate the snake for its preview. A body that is not allowed has none; the panel says why.
+    /// Begins to evaluate the edited snake for its preview. An invalid body has no preview; the panel shows the reason.
     fn begin_preview(&mut self, notices: &mut Notices) {
         self.changed_at = None;
-        // The next change is another step.
+        // The next change is a separate undo step.
         self.last_set = None;
         self.ready = None;
         let Ok(champion) = self.unevaluated() else { return };
@@ -176,7 +177,7 @@ impl Edited {
         }
     }
 
-    /// Takes over an evaluation that has ended. Returns whether a preview is ready.
+    /// Processes the result of a finished evaluation. Returns whether a preview is ready.
     fn take_in_preview(&mut self, notices: &mut Notices) -> bool {
         let Some(result) = self.evaluation.as_ref().and_then(BackgroundTask::poll) else {
             return false;
@@ -216,13 +217,13 @@ impl Edited {
         })
     }
 
-    /// Why the body cannot be shown, if it cannot.
+    /// Returns the reason why the body cannot be simulated, if there is one.
     fn problem(&self) -> Option<String> {
         let checked = self.trial().check_genome(&self.genome);
         checked.err().map(|error| error.to_string())
     }
 
-    /// Puts another genome in place, as a step that can be undone.
+    /// Replaces the genome, as a step that can be undone.
     fn replace(&mut self, genome: Genome) {
         self.past.push(std::mem::replace(&mut self.genome, genome));
         let too_many = self.past.len().saturating_sub(MOST_STEPS);
@@ -281,12 +282,12 @@ impl Edited {
         }
     }
 
-    /// The original's trial, in rapier if its engine cannot simulate the edited body.
+    /// Returns the original's trial. Its engine becomes rapier if the original's engine cannot simulate the edited body.
     fn trial(&self) -> Trial {
         self.original.trial().clone().suited_to(&self.genome)
     }
 
-    /// The edited snake with the evaluation of the original.
+    /// Returns the edited snake, with the evaluation of the original in place of its own.
     fn unevaluated(&self) -> Result<Champion, String> {
         if let Some(problem) = self.problem() {
             return Err(problem);
@@ -297,7 +298,7 @@ impl Edited {
         Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
     }
 
-    /// The original and the edited snake side by side, if a preview is ready.
+    /// Returns the original and the edited snake side by side, if a preview is ready.
     fn show(&mut self) -> Option<Show> {
         let champion = self.ready.take()?;
         let edited = StagedChampion::from_edited(&champion).named("Edited".to_owned());
@@ -319,8 +320,8 @@ impl Edited {
     }
 }
 
-/// A genome with a change of its body at a block, within the usual limits of evolving bodies and with the same volume; none if
-/// it is not possible. The same change always has the same result.
+/// Changes the body of a genome at a block, with the same volume and within the usual limits of evolving bodies.
+/// Returns `None` if this is not possible. The same change always has the same result.
 pub(super) fn changed_body(genome: &Genome, change: BodyChange, block: usize) -> Option<Genome> {
     let mut rng = stream(genome.hash(), 1, block as u32, Purpose::Mutation);
     let space = GenomeSpace::default().widened_for(genome);

@@ -7,8 +7,8 @@ use snakes_core::save::{SavesFolder, store_csv, store_picture};
 use snakes_lab::plot;
 use snakes_lab::plot::Figure;
 
-/// Writes a chart to the exports folder under a free name; the title of a picture has the name of its run, if the
-/// chart is about it. Returns the file's path.
+/// Writes a chart to the exports folder under a free name. If the chart is about the current run, the picture's title
+/// includes the name of the run. Returns the file's path.
 pub(crate) fn export(
     saves: &SavesFolder,
     export: &ChartExport,
@@ -35,7 +35,7 @@ pub(crate) fn export(
     stored.map(|()| path).map_err(|error| error.to_string())
 }
 
-/// A figure whose title has the name of its run: the window shows that elsewhere.
+/// Adds the name of the run to the figure's title, because in the window the name is outside the chart.
 fn titled(figure: &Figure, run: &str) -> Figure {
     Figure { title: format!("{} ({run})", figure.title), ..figure.clone() }
 }

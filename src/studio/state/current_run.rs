@@ -1,4 +1,4 @@
-//! The run in the background: started, paused, reset; its reports are kept for the panels.
+//! The run in the background: starts, pauses and resets it, and keeps its reports for the panels.
 
 mod compared_runs;
 pub mod events;
@@ -27,20 +27,20 @@ use snakes_lab::run::{
 pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
 
-/// Number of generations whose best ten are kept.
+/// Number of latest generations whose ten best snakes are kept.
 const REMEMBERED_GENERATIONS: usize = 200;
 
-/// Individuals with descendants, by place.
+/// Individuals with descendants, by their place: generation and index.
 type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
 
 /// Status of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RunStatus {
-    /// Prepared, nothing evaluated yet.
+    /// Prepared; nothing is evaluated yet.
     Ready,
-    /// Evaluating.
+    /// Evaluating a generation.
     Running,
-    /// Paused.
+    /// Evolution is paused.
     Paused,
     /// All generations are finished.
     Finished,
@@ -50,38 +50,38 @@ pub(crate) enum RunStatus {
 #[derive(Resource, Debug)]
 pub(crate) struct CurrentRun {
     context: RunContext,
-    /// Number of the run within this session; the first is 0.
+    /// Number of the run since the start of the program; the first is 0.
     number: u32,
-    /// The current run, with its plan as it began.
+    /// Current run, with the plan with which it began.
     source: RunSource,
-    /// The plan of the current run after all its changes.
+    /// Plan of the current run after all its changes.
     plan_now: RunPlan,
-    /// The plan of the next run.
+    /// Plan of the next run.
     plan_next: RunPlan,
-    /// Requested changes of the current run that wait for its next generation: full dotted names and values.
+    /// Requested changes of the current run that take effect with its next generation: full dotted names and values.
     pending: Vec<(String, SettingValue)>,
     background: Option<BackgroundRun>,
-    /// Evaluates the run on other computers, too, while it may, and the number of generations that were finished before.
+    /// Evaluator that also uses other computers, while there is one, and the number of generations that were finished before it was set.
     shared: Option<(Arc<dyn Evaluator>, usize)>,
-    /// Why the run before was stopped whose results cannot be trusted, until that is shown.
+    /// Reason why the previous run was stopped because its results cannot be trusted, until the reason is shown.
     fault: Option<String>,
     /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
-    /// The generations that were better than all before them.
+    /// Generations that were better than all earlier ones.
     milestones: Milestones,
-    /// Results besides champions, after the first finished generation.
+    /// Results besides champions; `None` until the first generation is finished.
     exploration: Option<Box<Exploration>>,
-    /// Individuals with descendants, by place; computed on first use.
+    /// Individuals with descendants, by their place; computed at the first use.
     ancestors: OnceLock<Ancestors>,
-    /// Number of updates of `exploration`.
+    /// Number of updates of `exploration`, part of `Self::version`.
     times_explored: u64,
-    /// Other runs shown in the charts.
+    /// Other runs that the charts show.
     others: ComparedRuns,
-    /// The best ten of each of the latest generations of this session, the earliest first.
+    /// The ten best snakes of each of the latest generations since the start of the program, the earliest generation first.
     leaders: VecDeque<Vec<Champion>>,
     run_hash: Option<u64>,
-    /// Whether a lesson has the stage and the settings: see [`Self::lend`].
+    /// Whether a lesson uses the stage and the settings: see [`Self::lend`].
     is_lent: bool,
     /// Folder of a run that was reset; its contents are deleted when the run starts again.
     discarded: Option<PathBuf>,
@@ -94,7 +94,7 @@ impl FromWorld for CurrentRun {
 }
 
 impl CurrentRun {
-    /// Prepares the run that the studio opens with.
+    /// Prepares the run with which the studio opens.
     pub fn new(context: RunContext) -> Self {
         Self::prepared(context.first.clone(), context.first.plan.clone(), context)
     }
@@ -124,7 +124,7 @@ impl CurrentRun {
         }
     }
 
-    /// Status of the run.
+    /// Returns the status of the run.
     pub fn status(&self) -> RunStatus {
         match &self.background {
             _ if self.run_hash.is_some() => RunStatus::Finished,
@@ -134,74 +134,74 @@ impl CurrentRun {
         }
     }
 
-    /// The greatest number of generations of the current run in words, with all its changes: "40" or "at most 40".
+    /// Describes the maximum number of generations of the current run, after all its changes: "40" or "at most 40".
     pub fn most_generations_in_words(&self) -> String {
         self.plan_now.most_generations_in_words()
     }
 
-    /// The finished generations of the current run in words: "3 of 40 generations".
+    /// Describes the finished generations of the current run: "3 of 40 generations".
     pub fn generations_in_words(&self) -> String {
         self.plan_now.generations_in_words(self.reports.len() as u32, self.run_hash.is_some())
     }
 
-    /// Maximum number of evaluations of the current run, with all its changes.
+    /// Returns the maximum number of evaluations of the current run, after all its changes.
     pub fn budget(&self) -> u64 {
         self.plan_now.budget()
     }
 
-    /// Number of the run within this session; the first is 0.
+    /// Returns the number of the run since the start of the program; the first is 0.
     pub fn number(&self) -> u32 {
         self.number
     }
 
-    /// Name of the preset that the current run started from.
+    /// Returns the name of the preset with which the current run began.
     pub fn preset(&self) -> &str {
         &self.source.plan.preset
     }
 
-    /// Where the current run is saved.
+    /// Returns the folder in which the current run is saved.
     pub fn folder(&self) -> &Path {
         &self.source.folder
     }
 
-    /// Seed of the current run.
+    /// Returns seed of the current run.
     pub fn seed(&self) -> u64 {
         self.source.plan.seed
     }
 
-    /// Settings of the current run, as they are after all its changes.
+    /// Returns the settings of the current run after all its changes.
     pub fn settings(&self) -> &Settings {
         &self.plan_now.settings
     }
 
-    /// Stopped runs that can be resumed; `None` until the runs are listed.
+    /// Returns stopped runs that can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
         let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
         Some(self.others.runs()?.iter().filter(is_other))
     }
 
-    /// Reports of the finished generations, the first generation first.
+    /// Returns the reports of the finished generations, the first generation first.
     pub fn reports(&self) -> &[GenerationReport] {
         &self.reports
     }
 
-    /// Results besides champions, after the first finished generation.
+    /// Returns the results besides champions; `None` until the first generation is finished.
     pub fn exploration(&self) -> Option<&Exploration> {
         self.exploration.as_deref()
     }
 
-    /// Changes whenever something shown by charts changes.
+    /// Returns a value that differs after every change of something that charts show.
     pub fn version(&self) -> (u32, u64, usize, u64) {
         (self.number, self.times_explored, self.reports.len(), self.others.version())
     }
 
-    /// Other runs shown in the charts.
+    /// Returns the other runs that the charts show.
     pub fn others(&self) -> &ComparedRuns {
         &self.others
     }
 
-    /// The best ten of a generation, or of the latest one, best first; empty for generations of earlier sessions or
-    /// long ago.
+    /// Returns the ten best snakes of a generation, or of the latest one, the best first. Empty if the generation is
+    /// too old or was finished before the program started.
     pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
         let is_it = |leaders: &&Vec<Champion>| match (generation, leaders.first()) {
             (None, _) => true,
@@ -211,7 +211,7 @@ impl CurrentRun {
         self.leaders.iter().rev().find(is_it).map_or(&[], Vec::as_slice)
     }
 
-    /// Stores results besides champions.
+    /// Stores the results besides champions.
     fn explore(&mut self, mut exploration: Box<Exploration>) {
         let leaders = std::mem::take(&mut exploration.leaders);
         if !leaders.is_empty() {
@@ -225,7 +225,7 @@ impl CurrentRun {
         self.times_explored += 1;
     }
 
-    /// Finished and total evaluations of the current generation.
+    /// Returns the finished and the total evaluations of the current generation.
     pub fn progress(&self) -> (u32, u32) {
         match &self.background {
             Some(background) => background.progress(),
@@ -233,18 +233,18 @@ impl CurrentRun {
         }
     }
 
-    /// Hash of the run, once it is finished.
+    /// Returns the hash of the run, or `None` until the run is finished.
     pub fn run_hash(&self) -> Option<u64> {
         self.run_hash
     }
 
-    /// The best of a generation; the first generation is 1.
+    /// Returns the champion of a generation; the first generation is 1.
     pub fn champion_of(&self, generation: u32) -> Option<&Champion> {
         let index = (generation as usize).checked_sub(1)?;
         self.reports.get(index)?.champion.as_ref()
     }
 
-    /// Evolves until held or finished. After the end of a run it begins the next one.
+    /// Evolves until paused or finished. If the current run is finished, begins the next one.
     pub fn start(&mut self) -> Result<(), String> {
         self.begin_next_if_over();
         self.background()?.resume();
@@ -268,7 +268,7 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Starts another run, with the next seed if nothing else differs. The current one can be resumed later.
+    /// Starts another run, with the next seed if nothing else differs. The current run can be resumed later.
     pub fn begin_next(&mut self) -> Result<(), String> {
         if self.next_run_differs() || self.is_under_way() {
             self.prepare_another();
@@ -276,10 +276,11 @@ impl CurrentRun {
         self.start()
     }
 
-    /// Prepares the next run. If its plan is that of the current run, the current run is discarded and starts again; a
+    /// Prepares the next run. If its plan is that of the current run, the current run is discarded and starts again. A
     /// different run that was stopped earlier is resumed.
     pub fn reset(&mut self) -> Result<(), String> {
-        // A run whose settings changed midway differs from one started with the final settings.
+        // The plan with which the current run began is compared, because changes during a run make it differ from a run
+        // that began with the changed settings.
         if self.source.plan != self.plan_next {
             self.prepare_next();
         } else {
@@ -293,14 +294,14 @@ impl CurrentRun {
     fn prepare_next(&mut self) {
         let plan = self.plan_next.clone();
         let mut source = RunSource::in_saves(&self.context.saves, plan, ExistingRun::Keep);
-        // A reset still holds after switching settings back and forth.
+        // A reset remains in effect if the settings were changed and changed back.
         if self.discarded.as_ref() == Some(&source.folder) {
             source.earlier = ExistingRun::Discard;
         }
         self.replace(source);
     }
 
-    /// Replaces the current run, which stops in the background.
+    /// Replaces the current run by another one. The current run is stopped in the background.
     fn replace(&mut self, source: RunSource) {
         let before = self.background.take().or(self.before.take());
         *self = Self {
@@ -312,8 +313,8 @@ impl CurrentRun {
             ..Self::prepared(source, self.plan_next.clone(), self.context.clone())
         };
         if self.others.runs().is_some() {
-            // The list may be visible, and the replaced run belongs in it. After a failure, it is listed again on
-            // request.
+            // The list of runs may be visible, and the replaced run belongs to it. If listing fails, the user can
+            // request it again.
             let _ = self.list_runs();
         }
     }
@@ -329,7 +330,7 @@ impl CurrentRun {
         self.others.list(self.context.saves.clone())
     }
 
-    /// Goes on with a run that was stopped; the current one can be gone on with later.
+    /// Resumes a run that was stopped. The current run can be resumed later.
     pub fn go_on_with(&mut self, folder: &Path) -> Result<(), String> {
         let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
         self.plan_next = source.plan.clone();
@@ -337,17 +338,18 @@ impl CurrentRun {
         self.start()
     }
 
-    /// Lends stage and settings to a lesson, or takes them back. Meanwhile the current run ignores edits of settings.
+    /// Lends the stage and the settings to a lesson, or takes them back. During the lesson, edits of settings do not
+    /// affect the current run.
     pub fn lend(&mut self, is_lent: bool) {
         self.is_lent = is_lent;
     }
 
-    /// Whether a lesson has the stage and the settings.
+    /// Returns whether a lesson uses the stage and the settings.
     pub fn is_lent(&self) -> bool {
         self.is_lent
     }
 
-    /// Whether the current run will pause after its current generation.
+    /// Returns whether the current run will pause after its current generation.
     pub fn is_single_generation(&self) -> bool {
         self.background.as_ref().is_some_and(BackgroundRun::is_single_generation)
     }
@@ -359,14 +361,14 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// After a finished run, prepares the next one: the plan set meanwhile, or the next seed.
+    /// If the current run is finished, prepares the next one: with the plan that was set meanwhile, or with the next seed.
     fn begin_next_if_over(&mut self) {
         if self.status() == RunStatus::Finished {
             self.prepare_another();
         }
     }
 
-    /// Prepares a run that differs from the current one: with the next seed if nothing else differs.
+    /// Prepares a run that differs from the current one. Increments the seed if nothing else differs.
     fn prepare_another(&mut self) {
         if !self.next_run_differs() {
             self.plan_next.seed = self.plan_next.seed.wrapping_add(1);
@@ -374,7 +376,7 @@ impl CurrentRun {
         self.prepare_next();
     }
 
-    /// The run's background thread; started on first use.
+    /// Returns the run's background thread, and starts it if necessary.
     fn background(&mut self) -> Result<&BackgroundRun, String> {
         let background = match self.background.take() {
             Some(background) => background,

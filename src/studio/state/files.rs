@@ -1,5 +1,5 @@
-//! Files outside the library: what the system's dialogs answer, what was opened lately, and what goes to the file
-//! manager or the clipboard. Nothing here blocks the window.
+//! Files outside the library: the answers of file dialogs, recent files, and the file manager and the clipboard.
+//! Nothing blocks the window.
 
 mod clipboard;
 mod dialog;
@@ -28,23 +28,23 @@ use clipboard::{Copied, CopyTask};
 use dialog::DialogAnswer;
 pub(crate) use recent::RecentFiles;
 
-/// Files outside the library.
+/// State of file dialogs, recent files, file manager and clipboard.
 #[derive(Resource, Default)]
 pub(crate) struct Files {
-    /// Files that were opened or imported lately.
+    /// Files that were opened or imported recently.
     pub recent: RecentFiles,
-    /// Question to ask next.
+    /// Question for the next file dialog.
     wanted: Option<FileQuestion>,
-    /// Question that no dialog asks, and why.
+    /// Question that no dialog can ask, and the reason; the library panel asks it instead.
     unasked: Option<(FileQuestion, String)>,
-    /// Question that a dialog asks now.
+    /// Question of the open file dialog, and its answer in the background.
     asked: Option<(FileQuestion, BackgroundTask<DialogAnswer>)>,
-    /// Folders that the file manager is opening.
+    /// Folders that the file manager is opening, and the results in the background.
     opening: Vec<BackgroundTask<Result<(), String>>>,
     copying: CopyTask,
 }
 
-/// Reason to ask for a path in the window.
+/// Reason for asking for a path in the window when a dialog is already open.
 const OPEN_ALREADY: &str = "Another dialog for files is open, perhaps behind this window. You can also type the path here.";
 
 /// Subject of messages about copies to the clipboard.
@@ -56,7 +56,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, ask.after(FrameSet::Apply));
 }
 
-/// Opens the dialog that was asked for. On macOS only the main thread may do that.
+/// Opens the requested file dialog. On macOS this is only possible on the main thread.
 fn ask(_main_thread: NonSendMarker, mut files: ResMut<Files>, mut notices: ResMut<Notices>) {
     let Some(question) = files.wanted.take() else { return };
     match dialog::ask(&question) {
@@ -71,7 +71,7 @@ fn take_in(
     mut notices: ResMut<Notices>,
     mut send: MessageWriter<Command>,
 ) {
-    // Without a change, the library is left alone, because others react to its changes.
+    // The library is accessed mutably only if there is an answer, because other systems react to its changes.
     if let Some((question, answer)) = files.answered() {
         send.write_batch(answer_to(question, answer, &mut library));
     }
@@ -81,7 +81,7 @@ fn take_in(
     files.report(&mut notices);
 }
 
-/// The commands that follow from a dialog's answer; none if it was cancelled.
+/// Returns the commands that follow from a dialog's answer; none if the dialog was cancelled.
 fn answer_to(question: FileQuestion, answer: DialogAnswer, library: &mut Library) -> Vec<Command> {
     match answer {
         Ok(paths) if paths.is_empty() => Vec::new(),
@@ -94,10 +94,9 @@ fn answer_to(question: FileQuestion, answer: DialogAnswer, library: &mut Library
 }
 
 impl Files {
-    /// Executes a command, and returns the champions to show on the stage.
+    /// Executes a command. Returns the champions to show on the stage, if any.
     ///
-    /// # Errors
-    /// The command cannot be executed, with the reason.
+    /// The command cannot be executed, for the returned reason.
     pub fn apply(
         &mut self,
         command: &FileCommand,
@@ -106,7 +105,7 @@ impl Files {
         notices: &mut Notices,
     ) -> Result<Option<Show>, String> {
         match command {
-            // A desktop's dialog may be hidden by a window, or never answer.
+            // The open dialog may be hidden behind a window or may never return.
             FileCommand::Ask(question) if self.asked.is_some() => {
                 self.unasked = Some((question.clone(), OPEN_ALREADY.to_owned()));
             }
@@ -136,14 +135,14 @@ impl Files {
         Ok(())
     }
 
-    /// The answer of the dialog, once it is closed.
+    /// Returns the question and the answer of a dialog that was closed.
     fn answered(&mut self) -> Option<(FileQuestion, DialogAnswer)> {
         let answer = self.asked.as_ref()?.1.poll()?;
         let (question, _) = self.asked.take()?;
         Some((question, answer.flatten()))
     }
 
-    /// Reports what the file manager and the clipboard have done.
+    /// Shows messages about the results of the file manager and the clipboard.
     fn report(&mut self, notices: &mut Notices) {
         self.opening.retain(|task| match task.poll() {
             None => true,
@@ -167,13 +166,13 @@ impl Files {
     }
 }
 
-/// The library's task for the paths that answer a question.
+/// Returns the command to the library for the paths that answer a question, if there is one.
 fn request(question: &FileQuestion, paths: &[PathBuf]) -> Option<LibraryCommand> {
     let first = paths.first()?;
     Some(match question {
         FileQuestion::Open => LibraryCommand::Replay(run_of_plan(first)),
         FileQuestion::Import => LibraryCommand::Import(paths.to_vec()),
-        // A question about a file to share is no task of the library.
+        // A file to share is not written by the library.
         FileQuestion::Share(..) => return None,
         FileQuestion::Export(places) => {
             LibraryCommand::Export { places: places.clone(), to: Some(first.clone()) }

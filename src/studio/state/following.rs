@@ -1,6 +1,6 @@
-//! Shows the progress of evolution on the stage: each better generation of the current run, or its story.
+//! Shows the progress of evolution on the stage: each better generation of the current run, or a story of some of them.
 //!
-//! The user's own choice stays until the next one: every other command to the stage ends the following.
+//! Any other command to the stage ends the following, so that the user's own choice stays.
 
 use std::time::Duration;
 
@@ -15,67 +15,67 @@ use crate::studio::stage::playback::Playback;
 use crate::studio::stage::{Show, end_s, evenly};
 use crate::studio::ui::notifications::Notices;
 
-/// Decides which generation of the current run the stage shows.
+/// Determines which generation of the current run the stage shows.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Following {
     plan: FollowPlan,
-    /// Whether the run was begun in this session and its first generation is still to be shown.
+    /// Whether the run began since the program started and its first generation is still to be shown.
     is_new: bool,
-    /// Whether the stage is held at its start until the first generation comes.
+    /// Whether the playback is held at its start until the first generation is finished.
     holds: bool,
     /// Number of the run that is followed.
     run: u32,
-    /// Whether a story begins again after its end.
+    /// Whether a story is repeated after its end.
     repeats: bool,
-    /// Whether the first landing ends it. If the user asks for it later, evolution is followed on and on.
+    /// Whether the first landing ends the following of evolution. It does not if the user requested the following after that.
     until_landing: bool,
-    /// The generation on the stage.
+    /// Generation that the stage shows, if any.
     shown: Option<u32>,
-    /// The latest generation that came onto the stage or was announced.
+    /// Latest generation that the stage showed or a message announced.
     announced: u32,
-    /// Real time for which it has been played.
+    /// Real time for which the shown generation has been played.
     shown_for: Duration,
 }
 
-/// Plan of the next generations on the stage.
+/// Plan for the next generations on the stage.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 enum FollowPlan {
-    /// No plan: the user's choice stays.
+    /// There is no plan: the user's choice stays on the stage.
     #[default]
     Nothing,
-    /// Each generation that is better than all before it, until a snake lands.
+    /// Show each generation that is better than all earlier ones, until a snake lands.
     Evolution,
-    /// Evolution was followed until a snake landed, which stays.
+    /// Keep the generation on the stage whose snake was the first to land.
     Landed,
-    /// These generations in turn; `next` is the index of the one that follows.
+    /// Show these generations in turn; `next` is the index of the next one.
     Story { generations: Vec<u32>, next: usize },
 }
 
-/// Least time for which a generation is played before a better one replaces it.
+/// Minimum time for which a generation is played before a better one replaces it.
 const LEAST_SHOWN: Duration = Duration::from_secs(8);
-/// Time for which each part of a story is played, unless its snakes end earlier.
+/// Time for which each part of a story is played, unless all its snakes end earlier.
 const STORY_PART: Duration = Duration::from_secs(12);
-/// Maximum number of generations that a story shows: the first, the middle and the latest.
+/// Maximum number of generations in a story: the first, a middle one and the latest.
 const STORY_PARTS: usize = 3;
 
 impl Following {
-    /// Follows the first run from its first generation on. Until that comes, the stage is held.
+    /// Follows the first run from its first generation on. The playback is held until that generation is finished.
     pub fn from_start() -> Self {
         let plan = FollowPlan::Evolution;
         Self { plan, is_new: true, until_landing: true, holds: true, ..Self::default() }
     }
 
-    /// Whether better generations come onto the stage by themselves.
+    /// Returns whether better generations are shown automatically.
     pub fn follows_evolution(&self) -> bool {
         self.plan == FollowPlan::Evolution
     }
 
-    /// Whether the stage is held until the first generation comes.
+    /// Returns whether the playback is held until the first generation is finished.
     pub fn awaits_first(&self) -> bool {
         self.holds
     }
 
-    /// The part of the story on the stage, from 1, and the number of parts.
+    /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
     pub fn story_part(&self) -> Option<(usize, usize)> {
         match &self.plan {
             FollowPlan::Story { generations, next } => Some((*next, generations.len())),
@@ -83,26 +83,26 @@ impl Following {
         }
     }
 
-    /// Shows each better generation from now on, the latest of them at once.
+    /// Shows each better generation from now on, beginning with the latest of them.
     pub fn follow_evolution(&mut self) {
         (self.plan, self.shown) = (FollowPlan::Evolution, None);
         (self.is_new, self.until_landing) = (false, false);
     }
 
-    /// Leaves on the stage what the user has chosen.
+    /// Stops following, so that the user's choice stays on the stage.
     pub fn stop(&mut self) {
         (self.plan, self.holds) = (FollowPlan::Nothing, false);
     }
 
-    /// Repeats the story for as long as this is set. What the user chose stays.
+    /// Sets whether a story is repeated after its end. This does not change what the stage shows.
     pub fn set_repeats(&mut self, repeats: bool) {
         self.repeats = repeats;
     }
 
-    /// Shows the first, the middle and the latest of the better generations in turn.
+    /// Shows the first, a middle and the latest of the better generations in turn.
     ///
     /// # Errors
-    /// There is no story yet, in a sentence.
+    /// There are fewer than two better generations; the error is a sentence for the user.
     pub fn tell_story(&mut self, run: &CurrentRun) -> Result<(), String> {
         let milestones = run.milestones();
         if milestones.len() < 2 {
@@ -114,15 +114,15 @@ impl Following {
         Ok(())
     }
 
-    /// The generation to show now, if it is time for another one. `is_over` says that the snakes on the stage have
-    /// ended.
+    /// Returns the generation to show next, if it is time for another one. `is_over` tells whether all snakes on the
+    /// stage have ended.
     fn due(&mut self, run: &CurrentRun, is_over: bool) -> Option<u32> {
         match &mut self.plan {
             FollowPlan::Nothing | FollowPlan::Landed => None,
             FollowPlan::Evolution => {
                 let milestones = run.milestones();
                 let next = match self.shown {
-                    // A run that begins is shown from its first generation on, however quickly better ones come.
+                    // A new run is shown from its first generation on, even if better ones follow quickly.
                     None => {
                         let begins =
                             milestones.iter().find(|first| self.is_new && first.is_whole());
@@ -133,7 +133,7 @@ impl Following {
                 };
                 self.is_new = false;
                 if next.is_landed && self.until_landing {
-                    // The goal is reached. Better ones are announced, and their landing can be watched in peace.
+                    // After the first landing, better generations are only announced, so that the landing can be watched to its end.
                     self.plan = FollowPlan::Landed;
                 }
                 Some(next.generation)
@@ -148,7 +148,7 @@ impl Following {
                     return Some(generation);
                 }
                 self.plan = FollowPlan::Nothing;
-                // The next one has the generations that were better meanwhile.
+                // The repeated story includes the generations that were better meanwhile.
                 let begins_again = self.repeats && self.tell_story(run).is_ok();
                 if begins_again { self.due(run, is_over) } else { None }
             }
@@ -156,7 +156,7 @@ impl Following {
     }
 }
 
-/// The milestone to show after the one of generation `shown`: the next one or, if several were found meanwhile, the one
+/// Returns the milestone to show after that of generation `shown`. If several were found meanwhile, this is the one
 /// half way to the latest, or to the first landing.
 fn next_of(milestones: &[Milestone], shown: u32) -> Option<&Milestone> {
     let begin = milestones.partition_point(|milestone| milestone.generation <= shown);
@@ -172,14 +172,14 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(Update, (follow, announce).chain().in_set(FrameSet::TakeIn));
 }
 
-/// Lets the snake lie at the foot of the stairs until the first generation comes.
+/// Holds the playback at its start until the first generation is finished.
 fn await_first(following: Res<Following>, mut playback: ResMut<Playback>) {
     if following.awaits_first() {
         playback.hold_at(0.0);
     }
 }
 
-/// Puts the generation that is due onto the stage.
+/// Shows the generation that is due on the stage.
 fn follow(
     mut following: ResMut<Following>,
     run: Res<CurrentRun>,
@@ -190,17 +190,17 @@ fn follow(
     mut notices: ResMut<Notices>,
 ) {
     if run.is_lent() {
-        // A lesson has the stage.
+        // A lesson uses the stage.
         return;
     }
     if following.run != run.number() {
-        // The user has begun another run, and wants to see it learn.
+        // The user has begun another run, which is followed from its first generation on.
         (following.run, following.announced) = (run.number(), 0);
         following.follow_evolution();
         (following.is_new, following.until_landing) = (true, true);
     }
     if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
-        // The user plays what is there, or nothing will come.
+        // The user plays the present champion, or evolution is not running.
         following.holds = false;
         if !playback.is_playing() {
             playback.restart();
@@ -209,7 +209,7 @@ fn follow(
     if playback.is_playing() {
         following.shown_for += time.delta();
     } else if !following.holds {
-        // A paused stage is being looked at.
+        // The user is looking at the paused stage.
         return;
     }
     if lanes.iter().any(Lane::is_disturbed) {
@@ -234,14 +234,14 @@ fn follow(
     }
 }
 
-/// Announces a generation that is better than all before it, unless the stage shows better ones anyway.
+/// Announces a generation that is better than all earlier ones, unless the stage shows better ones automatically.
 fn announce(mut following: ResMut<Following>, run: Res<CurrentRun>, mut notices: ResMut<Notices>) {
     let Some(latest) = run.milestones().last() else { return };
     if following.follows_evolution() || latest.generation <= following.announced {
         return;
     }
     following.announced = latest.generation;
-    // An earlier session has seen those whose snakes are not kept.
+    // A generation without kept snakes was finished before the program started, or is of a run whose stairs evolve.
     if let Some(best) = run.champion_of(latest.generation).filter(|_| latest.is_whole()) {
         let generation = latest.generation;
         let text = format!("Generation {generation} is the best so far: {}", best.reached());

@@ -1,5 +1,5 @@
-//! Guided experiments. A lesson borrows the stage and the next run's settings and restores both at its end; the current
-//! run is paused meanwhile.
+//! Guided experiments. A lesson borrows the stage and the next run's settings, and restores them at its end. The
+//! current run is paused meanwhile.
 
 mod catalogue;
 mod found;
@@ -31,27 +31,27 @@ pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
 pub(crate) use prediction::{Asks, Progress};
 
-/// The current lesson, if any.
+/// The lessons, of which at most one is open.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Lessons {
     current: Option<Current>,
 }
 
-/// State of the current lesson.
+/// State of the open lesson.
 #[derive(Debug)]
 struct Current {
     /// Index of the lesson.
     index: usize,
     /// Index of the selected scene.
     scene: usize,
-    /// Guess and results of each scene. They stay while other scenes or panels are shown.
+    /// Guess and results of each scene, which are kept while other scenes or panels are shown.
     progress: Vec<Progress>,
     /// Runs of the selected scene that are in progress.
     under_way: Option<ParallelRuns>,
     own: Own,
 }
 
-/// State to restore after the lesson.
+/// The user's own state, which is restored after the lesson.
 #[derive(Debug)]
 struct Own {
     next: RunPlan,
@@ -60,7 +60,7 @@ struct Own {
     pace: Pace,
 }
 
-/// How the current run was advancing.
+/// Pace of the current run before the lesson: paused, running, or up to the end of a generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Pace {
     Running,
@@ -68,27 +68,27 @@ enum Pace {
     Held,
 }
 
-/// View of the current lesson for its panel.
+/// State of the open lesson, for its panel.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LessonView<'l> {
     /// Index of the lesson.
     pub index: usize,
     /// Index of the selected scene.
     pub scene: usize,
-    /// Guess and results of that scene.
+    /// Guess and results of the selected scene.
     pub progress: &'l Progress,
-    /// Whether runs are in progress.
+    /// Whether runs of the lesson are in progress.
     pub is_busy: bool,
-    /// Whether the conclusion may be seen: the results of all experiments of the lesson have been.
+    /// Whether the conclusion may be shown, because the results of all the lesson's experiments have been shown.
     pub shows_conclusion: bool,
 }
 
 impl Lessons {
-    /// The current lesson.
+    /// Returns the state of the open lesson, if any.
     pub fn view(&self) -> Option<LessonView<'_>> {
         let current = self.current.as_ref()?;
         let progress = current.progress.get(current.scene)?;
-        // The snake alone, which asks nothing, is no experiment.
+        // A scene with the snake alone has no question and is no experiment.
         let scenes = LESSONS[current.index].scenes.iter().zip(&current.progress);
         let mut experiments = scenes.filter(|(scene, _)| scene.question().is_some());
         let are_revealed = experiments.all(|(_, of)| of.is_revealed);
@@ -101,8 +101,8 @@ impl Lessons {
         })
     }
 
-    /// Whether the result of the selected scene must not be seen yet: it answers the scene's question, and the
-    /// experiment was not watched to its end.
+    /// Returns whether the result of the selected scene must be hidden: it answers the scene's question, and the
+    /// experiment has not been watched to its end.
     pub fn hides_result(&self) -> bool {
         self.current.as_ref().is_some_and(|current| {
             let asks = current.scene().is_some_and(|scene| scene.question().is_some());
@@ -110,12 +110,13 @@ impl Lessons {
         })
     }
 
-    /// Whether the selected scene waits for a guess.
+    /// Returns whether the selected scene has a question and its experiment has not begun.
     pub fn awaits_guess(&self) -> bool {
         self.current.as_ref().is_some_and(Current::awaits_guess)
     }
 
-    /// Executes a command; returns what the stage shows then. `on_show` is on it now, and returns after the lesson.
+    /// Executes a command. `on_show` is what the stage shows now; it is restored after the lesson. Returns what to show
+    /// on the stage, if anything.
     ///
     /// # Errors
     /// There is no such lesson, or its champions or runs cannot be prepared.
@@ -141,7 +142,7 @@ impl Lessons {
         }
     }
 
-    /// Begins a lesson; what is on the stage now comes back at its end.
+    /// Begins a lesson. The present contents of the stage are restored at its end.
     pub fn begin(
         &mut self,
         index: usize,
@@ -153,9 +154,9 @@ impl Lessons {
             return Err(format!("There are {} lessons.", LESSONS.len()));
         }
         let own = match self.current.take() {
-            // From one lesson to the next: keep the state from before the first.
+            // If a lesson follows another one, the state from before the first lesson is kept.
             Some(before) => {
-                // Undo steps of the previous lesson do not apply to this one.
+                // The undo steps of the previous lesson do not apply to this lesson.
                 history.give_back(UndoHistory::default());
                 before.own
             }
@@ -182,7 +183,7 @@ impl Lessons {
         self.show(0)
     }
 
-    /// Begins the experiment of the selected scene, with a guess or without. A first guess stands.
+    /// Begins the experiment of the selected scene, with or without a guess. A first guess cannot be changed.
     fn try_it(&mut self, guess: Option<usize>) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         let number = current.scene;
@@ -196,7 +197,7 @@ impl Lessons {
         self.show(number)
     }
 
-    /// Shows the result of the selected scene, unless that is not known yet.
+    /// Shows the result of the selected scene, if it is known.
     fn reveal(&mut self) {
         if let Some(current) = &mut self.current
             && current.under_way.is_none()
@@ -208,7 +209,7 @@ impl Lessons {
         }
     }
 
-    /// Ends the lesson and restores stage, settings and run.
+    /// Ends the lesson, and restores the stage, the settings and the run.
     pub fn leave(
         &mut self,
         run: &mut CurrentRun,
@@ -228,7 +229,7 @@ impl Lessons {
         Ok(Some(own.on_show))
     }
 
-    /// Selects a scene and shows its snakes. Its runs start once the reader has guessed.
+    /// Selects a scene and shows its snakes. Its runs start after the reader has guessed.
     fn show(&mut self, number: usize) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
@@ -246,7 +247,7 @@ impl Lessons {
                 }
                 Ok(Some(Show::race(champions)))
             }
-            // Finished runs are not repeated.
+            // Runs that are finished are not repeated.
             LessonScene::Runs { .. } if progress.is_revealed => Ok(progress.race()),
             LessonScene::Runs { .. } if !progress.has_begun => Ok(None),
             LessonScene::Runs { preset, runs, .. } => {
@@ -262,7 +263,7 @@ impl Lessons {
         }
     }
 
-    /// Handles events of the lesson's runs. Once all are finished, returns the best champion of each.
+    /// Handles events of the lesson's runs. When all are finished, returns the best champion of each run, to race them.
     fn take_in(&mut self) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
         let Some(progress) = current.progress.get_mut(current.scene) else { return Ok(None) };
@@ -276,7 +277,7 @@ impl Lessons {
                 }
                 ParallelRunsEvent::Failed(problem) => {
                     current.under_way = None;
-                    // The reader can try again.
+                    // The reader can begin the experiment again.
                     progress.has_begun = false;
                     return Err(format!("The lesson's runs failed: {problem}"));
                 }
@@ -291,7 +292,7 @@ impl Lessons {
         Ok(progress.race())
     }
 
-    /// Notes a moment of the playback, if the selected scene asks about it.
+    /// Records the state of the playback, if the question of the selected scene is about playbacks.
     fn follow_playback(&mut self, playback: &Playback, lanes: &[&Lane]) {
         let Some(current) = &mut self.current else { return };
         let question = current.scene().and_then(LessonScene::question);
@@ -302,8 +303,8 @@ impl Lessons {
         }
     }
 
-    /// Reveals the result once the reader has watched the selected scene to its end: the names of the lanes that have
-    /// ended undisturbed are those of the scene.
+    /// Shows the result after the reader has watched the selected scene to its end. `ended` has the name of each lane
+    /// that ended undisturbed; these must be the names of the scene's lanes.
     fn see(&mut self, ended: &[Option<&str>]) {
         let is_seen = self.current.as_ref().is_some_and(|current| {
             let shown = current.progress.get(current.scene).map_or(&[][..], |of| &of.lanes);
@@ -317,7 +318,7 @@ impl Lessons {
 }
 
 impl Current {
-    /// The selected scene.
+    /// Returns the selected scene of the lesson.
     fn scene(&self) -> Option<&'static LessonScene> {
         LESSONS[self.index].scenes.get(self.scene)
     }
@@ -330,7 +331,7 @@ impl Current {
 }
 
 impl Progress {
-    /// The best snakes of the finished runs, side by side.
+    /// Returns the best snakes of the finished runs, side by side.
     fn race(&self) -> Option<Show> {
         let best = self.runs.iter().filter_map(|found| {
             let champion = found.best()?;

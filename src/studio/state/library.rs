@@ -1,6 +1,6 @@
 //! The library: the entries of the folder of saves, read in the background, and operations on them.
 //!
-//! Every file operation can be undone. Operations of one command are one step.
+//! Every file operation can be undone. All operations of one command are one undo step.
 
 mod apply;
 mod batch_jobs;
@@ -27,40 +27,40 @@ use examination::Examination;
 pub(crate) use item::LibraryItem;
 pub(crate) use load::founder_of;
 
-/// Entries of the saves folder, and the operations that are under way or can be undone.
+/// Entries of the saves folder, and the operations that are in progress or can be undone.
 #[derive(Resource, Debug)]
 pub(crate) struct Library {
     saves: SavesFolder,
-    /// `None` until the library is first opened.
+    /// Thread that reads the saves folder; `None` until the library is first opened.
     reader: Option<LibraryReader>,
-    /// Sorted by place.
+    /// Entries of the saves folder, sorted by place.
     items: Vec<LibraryItem>,
     is_listed: bool,
-    /// Number of entries not read yet.
+    /// Number of entries that have not been read yet.
     unread: usize,
-    /// Reason why the folder cannot be read.
+    /// Reason why the saves folder cannot be read, if there is one.
     problem: Option<String>,
-    /// Incremented with every visible change.
+    /// Counter that every visible change increments.
     revision: u64,
-    /// Incremented when entries are added or removed.
+    /// Counter that is incremented when entries are added or removed.
     listings: u64,
-    /// Incremented when a sort or search key changes.
+    /// Counter that is incremented when a sort or search key changes.
     sortings: u64,
     batches: Vec<BatchJobs>,
     examination: Option<Examination>,
-    /// Champions being read for the stage.
+    /// Champions that are being read for the stage.
     loading: Option<BackgroundTask<Result<Show, String>>>,
-    /// Result of `loading`, until it is shown.
+    /// Result of `loading`, until it is shown on the stage.
     loaded: Option<Result<Show, String>>,
-    /// Entry to highlight, and a counter of such entries.
+    /// Counter of entries to highlight, and the latest of them.
     newest: (u64, Option<SavePlace>),
-    /// Folder of the run in progress.
+    /// Folder of the run in progress, if any.
     current: Option<PathBuf>,
     /// Whether files are being dragged over the window.
     is_drop_near: bool,
-    /// Question that the panel asks because the system shows no dialog, with the reason, and a counter of those.
+    /// Counter of questions that the panel asks because no dialog can be shown, and the latest question with the reason.
     unanswered: (u64, Option<(FileQuestion, String)>),
-    /// Number of requests to export the selected entries.
+    /// Number of requests so far to export the selected entries.
     export_requests: u64,
 }
 
@@ -71,7 +71,7 @@ impl FromWorld for Library {
 }
 
 impl Library {
-    /// The library of a folder; nothing is read yet.
+    /// Creates the library of a folder, without reading it.
     pub fn new(saves: SavesFolder) -> Self {
         Self {
             saves,
@@ -95,53 +95,53 @@ impl Library {
         }
     }
 
-    /// Whether the library was opened; from then on it is read.
+    /// Returns whether the library has been opened, so that it is kept up to date.
     pub fn is_open(&self) -> bool {
         self.reader.is_some() || self.is_listed
     }
 
-    /// Whether the entries are listed.
+    /// Returns whether the entries have been listed.
     pub fn is_listed(&self) -> bool {
         self.is_listed
     }
 
-    /// The entries, sorted by place.
+    /// Returns the entries of the library, sorted by place.
     pub fn items(&self) -> &[LibraryItem] {
         &self.items
     }
 
-    /// The entry at a place.
+    /// Returns the entry at a place, if there is one.
     pub fn item(&self, place: &SavePlace) -> Option<&LibraryItem> {
         let found = self.items.binary_search_by(|item| item.place().cmp(place));
         found.ok().map(|index| &self.items[index])
     }
 
-    /// Number of entries not read yet.
+    /// Returns the number of entries that have not been read yet.
     pub fn unread(&self) -> usize {
         self.unread
     }
 
-    /// Why the folder cannot be read, if it cannot.
+    /// Returns the reason why the saves folder cannot be read, if there is one.
     pub fn problem(&self) -> Option<&str> {
         self.problem.as_deref()
     }
 
-    /// Changes with every visible change.
+    /// Returns a counter that every visible change increments.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// Changes when entries are added or removed, which invalidates indices.
+    /// Returns a counter that is incremented when entries are added or removed, which invalidates indices.
     pub fn listings(&self) -> u64 {
         self.listings
     }
 
-    /// Changes when a sort or search key of an entry changes.
+    /// Returns a counter that is incremented when a sort or search key changes.
     pub fn sortings(&self) -> u64 {
         self.sortings
     }
 
-    /// The generation of a run's best champion, if it has been read.
+    /// Returns the generation of a run's best saved champion, if the run has been read.
     pub fn best_of(&self, place: &SavePlace) -> Option<u32> {
         let run = self.item(place)?.run()?;
         let best = run.best.map(|(generation, _)| generation);
@@ -149,47 +149,47 @@ impl Library {
         there.or(run.champions.last().copied())
     }
 
-    /// The name under which an entry is shown.
+    /// Returns the displayed name of an entry.
     pub fn name_of(&self, place: &SavePlace) -> String {
         self.item(place).map_or_else(|| place.name(), |item| item.name().to_owned())
     }
 
-    /// The name that the user gave a run, if any.
+    /// Returns the user's own name for a run, if any.
     fn own_name(&self, place: &SavePlace) -> Option<String> {
         self.item(place)?.notes().ok()?.own_name().map(str::to_owned)
     }
 
-    /// The entry created, renamed or restored last, and a counter of such changes.
+    /// Returns a counter of created, renamed and restored entries, and the latest of them.
     pub fn newest(&self) -> (u64, Option<&SavePlace>) {
         (self.newest.0, self.newest.1.as_ref())
     }
 
-    /// Whether it is the folder of the run in progress.
+    /// Returns whether the place is the folder of the run in progress.
     pub fn is_current(&self, place: &SavePlace) -> bool {
         self.current.is_some() && place.run() == self.current.as_deref()
     }
 
-    /// Whether files are being dragged over the window.
+    /// Returns whether files are being dragged over the window.
     pub fn is_drop_near(&self) -> bool {
         self.is_drop_near
     }
 
-    /// Lets the panel ask for a path, because the system shows no dialog for `reason`.
+    /// Makes the panel ask for a path, because no dialog can be shown for `reason`.
     pub fn ask_in_panel(&mut self, question: FileQuestion, reason: String) {
         self.unanswered = (self.unanswered.0 + 1, Some((question, reason)));
     }
 
-    /// The question that the panel asks, with the reason, and a counter of those.
+    /// Returns a counter of questions that the panel asks, and the latest question with the reason.
     pub fn unanswered(&self) -> (u64, Option<&(FileQuestion, String)>) {
         (self.unanswered.0, self.unanswered.1.as_ref())
     }
 
-    /// Lets the panel export the selected entries.
+    /// Requests the panel to export the selected entries.
     pub fn request_export(&mut self) {
         self.export_requests += 1;
     }
 
-    /// Number of requests to export the selected entries.
+    /// Returns how often the export of the selected entries was requested.
     pub fn export_requests(&self) -> u64 {
         self.export_requests
     }
@@ -197,17 +197,17 @@ impl Library {
     /// Creates the saves folder, if it does not exist yet.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The folder cannot be created.
     pub fn prepare_folder(&self) -> Result<(), String> {
         self.saves.prepare().map_err(|error| error.to_string())
     }
 
-    /// The saves folder.
+    /// Returns the saves folder.
     pub fn folder(&self) -> &Path {
         self.saves.path()
     }
 
-    /// The progress of an exam that is under way, in words, and its finished share, 0 to 1.
+    /// Returns the progress of the exam in words, and its finished share from 0 to 1, if an exam is in progress.
     pub fn exam_under_way(&self) -> Option<(String, f32)> {
         self.examination.as_ref().map(Examination::progress)
     }
@@ -218,7 +218,7 @@ impl Library {
         }
     }
 
-    /// Records completed file operations as a step that can be undone.
+    /// Records completed file operations as one undo step, and highlights their entry.
     fn keep(&mut self, label: String, steps: Vec<FileStep>, history: &mut UndoHistory) {
         self.look_again();
         self.point_out(steps.iter().find_map(FileStep::place));
@@ -233,7 +233,7 @@ impl Library {
         }
     }
 
-    /// A library of these entries without a folder, for tests.
+    /// Creates a library with these entries but without a folder, for tests.
     #[cfg(test)]
     pub fn of(events: Vec<snakes_lab::run::LibraryEvent>) -> Self {
         let mut library = Self::new(SavesFolder::find(Some(Path::new("saves"))));
@@ -241,7 +241,7 @@ impl Library {
         library
     }
 
-    /// Reads everything, for tests.
+    /// Reads all entries, for tests.
     #[cfg(test)]
     pub fn read_all(&mut self) {
         self.look().expect("a thread");
@@ -265,7 +265,7 @@ mod tests {
     use snakes_core::save::{shipped_champion, store_champion};
     use tempfile::TempDir;
 
-    /// A library with its undo history and messages.
+    /// A library with its undo history and messages, in a temporary folder.
     pub struct Tried {
         pub folder: TempDir,
         pub library: Library,
@@ -274,7 +274,7 @@ mod tests {
     }
 
     impl Tried {
-        /// A library of champions with these names.
+        /// Creates a library of champions with these names.
         pub fn new(names: &[&str]) -> Self {
             let folder = tempfile::tempdir().expect("a folder");
             let loaded = shipped_champion().expect("well formed");
@@ -287,7 +287,7 @@ mod tests {
             Self { folder, library, history: UndoHistory::default(), notices: Notices::default() }
         }
 
-        /// Names of the entries in the folder.
+        /// Returns the names of the entries in the folder.
         pub fn own(&mut self) -> Vec<String> {
             self.library.read_all();
             let own = self.library.items().iter().filter(|item| item.place().path().is_some());
@@ -303,7 +303,7 @@ mod tests {
             self.library.apply(request, &mut self.history, &mut self.notices)
         }
 
-        /// Undoes or redoes the next step, and waits for it.
+        /// Undoes or redoes the next step, and waits for the result.
         pub fn step(&mut self, way: UndoDirection) {
             let Some(UndoStep::Files { label, steps }) = self.history.take(way) else {
                 panic!("no step")
@@ -317,14 +317,14 @@ mod tests {
             self.library.take_in(&mut self.history, &mut self.notices);
         }
 
-        /// Waits until no batch operation is running.
+        /// Waits until no batch operation is in progress.
         pub fn wait(&mut self) {
             while !self.library.batches.is_empty() {
                 self.take_in();
             }
         }
 
-        /// The labels of the next steps to undo and redo.
+        /// Returns the labels of the next steps to undo and to redo.
         pub fn next(&self) -> (Option<&str>, Option<&str>) {
             (self.history.next(UndoDirection::Back), self.history.next(UndoDirection::Forth))
         }

@@ -1,4 +1,4 @@
-//! The individuals on the stage: single picks, races of generations, races of leaders.
+//! Chooses the individuals on the stage: single individuals, races of generations, races of the best.
 
 use super::current_run::CurrentRun;
 use crate::studio::commands::pick::Pick;
@@ -7,10 +7,10 @@ use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::stage::{MAX_LANES, Show, evenly};
 use snakes_core::evolve::Champion;
 
-/// Number of generations that race if there are more than lanes: as many as the report shows.
+/// Number of generations that race if there are more generations than lanes: as many as in the report.
 const CHOSEN_GENERATIONS: usize = 6;
 
-/// The champion that was picked; `None` if it is no longer kept.
+/// Returns the champion that was chosen; `None` if it is not kept any more.
 pub(crate) fn champion_of(
     pick: &Pick,
     run: &CurrentRun,
@@ -30,13 +30,13 @@ pub(crate) fn champion_of(
     }
 }
 
-/// Whether two lanes show the same individual.
+/// Returns whether two lanes show the same individual.
 fn are_one(a: &StagedChampion, b: &StagedChampion) -> bool {
     let is_run = |staged: &StagedChampion| matches!(staged.source(), ChampionSource::Run(_));
     a.source() == b.source() && (!is_run(a) || a.champion().origin == b.champion().origin)
 }
 
-/// The stage with one champion added, or removed if it is there already.
+/// Returns the stage with a champion added, or removed if it is there already. Returns `None` if it is there alone.
 pub(crate) fn with_one_more(
     mut on_show: Vec<StagedChampion>,
     staged: StagedChampion,
@@ -54,8 +54,8 @@ pub(crate) fn with_one_more(
     Ok(Some(Show::race(on_show)))
 }
 
-/// The champions of the generations of the current run; of many, some at equal distances, the first and the last
-/// among them.
+/// Returns the champions of the current run's generations. If there are many, returns some at equal distances,
+/// including the first and the last.
 pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
     let champions: Vec<&Champion> =
         run.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
@@ -67,12 +67,12 @@ pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, S
     Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
 }
 
-/// The indices of those of `count` that race: all, or of many some at equal distances.
+/// Returns which of `count` champions race: all indices or, if there are many, some at equal distances.
 pub(crate) fn evenly_chosen(count: usize) -> impl Iterator<Item = usize> {
     evenly(count, MAX_LANES, CHOSEN_GENERATIONS)
 }
 
-/// The best of a generation, or of the latest one.
+/// Returns the best snakes of a generation, or of the latest one.
 pub(crate) fn leaders(
     run: &CurrentRun,
     generation: Option<u32>,

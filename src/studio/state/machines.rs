@@ -1,7 +1,7 @@
-//! The connection with other computers: its state, and the run that computes on them.
+//! The connection with other computers: its state, and the run that uses them.
 //!
-//! While a server is connected, the run in progress gets an evaluator on its workers and on the threads of this computer.
-//! It takes effect with the run's next generation, and no bit depends on it.
+//! While a server is connected, the run in progress gets an evaluator that uses the server's workers and the threads of
+//! this computer. It takes effect with the run's next generation, and does not affect any result.
 
 use std::time::Duration;
 
@@ -13,45 +13,45 @@ use crate::studio::ui::notifications::Notices;
 use snakes_cluster::{BrokerOptions, Machines, ServerWatch, WatchNews, WatchedRun};
 use snakes_core::save::LONGEST_ADDRESS;
 
-/// The connection with other computers.
+/// The connection with other computers, and its state.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct MachinesLink {
-    /// The address that was used last; empty if there was none.
+    /// Address that was used last; empty if there was none.
     address: String,
     state: LinkState,
     watch: Option<ServerWatch>,
-    /// The number of the run for which a coordinator was asked, and what was asked.
+    /// Number of the run for which a coordinator was requested, and the request.
     asked: Option<(u32, WatchedRun)>,
 }
 
 /// State of the connection.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) enum LinkState {
-    /// Not connected.
+    /// There is no connection.
     #[default]
     Off,
     /// The server has not answered yet.
     Connecting,
-    /// Connected.
+    /// The server is connected, with what is known about it.
     Connected(Box<KnownServer>),
-    /// The connection ended by itself, and why, in a line.
+    /// The connection failed or ended, for this reason, in one line.
     Failed(String),
 }
 
-/// Knowledge about a connected server.
+/// What is known about a connected server.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct KnownServer {
-    /// The proof of the engine of this program.
+    /// Proof of this program's engine, which workers must match.
     pub proof: String,
-    /// The machines that were listed last.
+    /// Machines in the latest listing, if any.
     pub machines: Option<Machines>,
-    /// Why the server did not answer the latest request, in a line.
+    /// Reason why the server did not answer the latest request, in one line.
     pub problem: Option<String>,
-    /// The name of this window's run on the server.
+    /// Name of this window's run on the server, while the run uses it.
     pub own_run: Option<String>,
 }
 
-/// How long closing the window waits until the server is told.
+/// Maximum time by which closing the window is delayed until the server is informed.
 const LAST_WAIT: Duration = Duration::from_secs(2);
 
 pub(super) fn plugin(app: &mut App) {
@@ -61,31 +61,31 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 impl MachinesLink {
-    /// The address that was used last; empty if there was none.
+    /// Returns the address that was used last; empty if there was none.
     pub fn address(&self) -> &str {
         &self.address
     }
 
-    /// State of the connection.
+    /// Returns the state of the connection.
     pub fn state(&self) -> &LinkState {
         &self.state
     }
 
-    /// Offers an address of an earlier session, if it is one.
+    /// Sets the address that was stored in the preferences, if it is valid.
     pub fn remember(&mut self, address: &str) {
         self.address = checked(address).unwrap_or_default();
     }
 
-    /// A link in this state, without a connection.
+    /// Creates a link in this state without a connection, for tests.
     #[cfg(test)]
     pub fn of_test(address: &str, state: LinkState) -> Self {
         Self { address: address.to_owned(), state, ..Self::default() }
     }
 
-    /// Executes a command.
+    /// Executes a command to the connection.
     ///
     /// # Errors
-    /// The address is none, or the system refuses a thread, with the reason.
+    /// The address is invalid, or the operating system refuses to start a thread; the error states the reason.
     pub fn apply(&mut self, command: &MachinesCommand, run: &mut CurrentRun) -> Result<(), String> {
         match command {
             MachinesCommand::Connect(address) => {
@@ -101,13 +101,13 @@ impl MachinesLink {
         Ok(())
     }
 
-    /// Stops using the server at once; the rest of the disconnection happens in the background.
+    /// Stops using the server at once. The rest of the disconnection happens in the background.
     fn disconnect(&mut self, run: &mut CurrentRun) {
         run.share(None);
         (self.watch, self.asked, self.state) = (None, None, LinkState::Off);
     }
 
-    /// Takes over what the watch tells.
+    /// Processes the news from the watch of the server.
     fn take_in(&mut self, run: &mut CurrentRun, notices: &mut Notices) {
         let Some(watch) = &self.watch else { return };
         let news: Vec<WatchNews> = std::iter::from_fn(|| watch.poll()).collect();
@@ -132,7 +132,7 @@ impl MachinesLink {
                 WatchNews::Coordinates { run: asked, name, evaluator },
                 LinkState::Connected(known),
             ) => {
-                // Another run may have taken the place of the one that was asked for.
+                // Another run may have replaced the one for which the coordinator was requested.
                 if self.asked.as_ref() == Some(&(run.number(), asked)) {
                     known.own_run = Some(name);
                     run.share(Some(evaluator));
@@ -147,7 +147,7 @@ impl MachinesLink {
         }
     }
 
-    /// Asks for a coordinator of the run in progress, if that has changed.
+    /// Requests a coordinator for the run in progress, if the run or its number of threads has changed.
     fn follow(&mut self, run: &mut CurrentRun) {
         let (Some(watch), LinkState::Connected(known)) = (&self.watch, &mut self.state) else {
             return;
@@ -164,11 +164,11 @@ impl MachinesLink {
     }
 }
 
-/// The address as it is used: without spaces, with `nats://` if it names no protocol. The error does not repeat a
-/// password.
+/// Returns the address in its normal form: without spaces, and with `nats://` if it names no protocol. The error does
+/// not repeat a password.
 ///
 /// # Errors
-/// It is none, in a sentence.
+/// The text is no valid address; the error is a sentence for the user.
 pub(crate) fn checked(address: &str) -> Result<String, String> {
     let parts = address.split(',').map(|part| match part.trim() {
         part if part.contains("://") || part.is_empty() => part.to_owned(),
@@ -189,13 +189,13 @@ pub(crate) fn checked(address: &str) -> Result<String, String> {
     Ok(options.url)
 }
 
-/// Takes over what the watch tells, and lets the run in progress compute on the workers.
+/// Processes the news from the server, and lets the run in progress use its workers.
 fn take_in(
     mut link: ResMut<MachinesLink>,
     mut run: ResMut<CurrentRun>,
     mut notices: ResMut<Notices>,
 ) {
-    // Workers whose results were wrong get no more work from this window until a person connects again.
+    // Workers whose results were wrong get no more work from this window until the user connects again.
     if let Some(reason) = run.take_fault() {
         link.disconnect(&mut run);
         link.state = LinkState::Failed(reason);
@@ -206,7 +206,7 @@ fn take_in(
     }
 }
 
-/// When the window closes, takes the run's work from the server.
+/// When the window closes, removes the run's work from the server.
 fn leave_at_the_end(
     mut exits: MessageReader<AppExit>,
     mut link: ResMut<MachinesLink>,

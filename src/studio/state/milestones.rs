@@ -1,4 +1,4 @@
-//! The generations of a run that were better than all before them, with the snakes to show of each.
+//! Generations of a run that were better than all earlier ones, with the snakes to show of each.
 
 use std::sync::Arc;
 
@@ -10,57 +10,57 @@ use snakes_lab::run::{Generation, GenerationReport};
 /// A generation whose best snake beat all earlier ones.
 #[derive(Debug, Clone)]
 pub(crate) struct Milestone {
-    /// The first is 1.
+    /// Number of the generation; the first is 1.
     pub generation: u32,
-    /// Height of its stairs, in metres.
+    /// Height of the stairs of the generation, in metres.
     pub stairs_m: f32,
-    /// Fitness of its best snake.
+    /// Fitness of the generation's best snake.
     pub fitness: f32,
-    /// Whether its best snake ended on the landing.
+    /// Whether the generation's best snake ended on the landing.
     pub is_landed: bool,
-    /// The snakes to show, the best first; empty if an earlier session finished the generation.
+    /// Snakes of the generation to show, the best first; empty if they are not kept.
     pub members: Arc<[GenerationMember]>,
     /// Number of snakes in the generation.
     pub size: u32,
 }
 
-/// A snake of a generation, without the trial that all of them share.
+/// A snake of a generation, without the trial that all the snakes share.
 #[derive(Debug, Clone)]
 pub(crate) struct GenerationMember {
-    /// Its index in the generation.
+    /// Index of the snake in its generation.
     pub individual: u32,
-    /// Its genome.
+    /// Genome of the snake.
     pub genome: Arc<Genome>,
-    /// Its evaluation.
+    /// Evaluation of the snake.
     pub evaluation: Evaluation,
 }
 
-/// The milestones of a run, the first first.
+/// Milestones of a run, the earliest first.
 #[derive(Debug, Default)]
 pub(crate) struct Milestones(Vec<Milestone>);
 
-/// Maximum number of milestones whose snakes are kept; of the others only the best is.
+/// Maximum number of milestones whose snakes are kept. Of older ones, only the champion can be shown.
 const MAX_WHOLE: usize = 64;
 
 impl Milestone {
-    /// Whether its snakes are kept, not only its best one.
+    /// Returns whether the generation's snakes are kept, rather than only its champion.
     pub fn is_whole(&self) -> bool {
         !self.members.is_empty()
     }
 }
 
 impl Milestones {
-    /// All of them.
+    /// Returns all milestones, the earliest first.
     pub fn all(&self) -> &[Milestone] {
         &self.0
     }
 
-    /// Notes a finished generation if it is better than all before it. `snakes` are all its snakes, if they are kept.
+    /// Records a finished generation if it is better than all earlier ones. `snakes` are all its snakes, if they are kept.
     pub fn note(&mut self, report: &GenerationReport, snakes: Option<&Generation>) {
         let Some(champion) = &report.champion else { return };
         let fitness = champion.evaluation.fitness;
         let stairs_m = champion.trial.stairs.highest_m();
-        // On a ladder, higher stairs come before greater fitness. Where stairs evolve, only better champions are kept.
+        // On a ladder, higher stairs rank before greater fitness. Where stairs evolve, all recorded champions are better ones.
         let is_no_better = |last: &Milestone| [stairs_m, fitness] <= [last.stairs_m, last.fitness];
         if report.stairs.is_none() && self.0.last().is_some_and(is_no_better) {
             return;
@@ -69,10 +69,10 @@ impl Milestones {
             generation: report.generation,
             stairs_m,
             fitness,
-            // On a ladder, only on the stairs to which it leads.
+            // On a ladder, only a landing on its final stairs counts.
             is_landed: report.on_landing > 0
                 && champion.evaluation.is_on_landing(&champion.trial.stairs),
-            // Members on stairs of their own would be shown on the stairs of the run.
+            // Where stairs evolve, the members have different stairs and could not be shown on the same ones.
             members: match report.stairs {
                 Some(_) => Arc::default(),
                 None => snakes.map_or_else(Arc::default, members_to_show),
@@ -80,14 +80,14 @@ impl Milestones {
             size: report.evaluations,
         });
         if self.0.iter().filter(|milestone| milestone.is_whole()).count() > MAX_WHOLE {
-            // The first is the beginning of every story, so it stays.
+            // The first milestone keeps its snakes, because every story begins with it.
             let oldest = self.0.iter_mut().skip(1).find(|milestone| milestone.is_whole());
             oldest.into_iter().for_each(|oldest| oldest.members = Arc::default());
         }
     }
 }
 
-/// The snakes of a generation to show, the best first: all, or of many some from the best to the worst.
+/// Returns the snakes of a generation to show, the best first. Of many, some are chosen from the best to the worst.
 pub(crate) fn members_to_show(generation: &Generation) -> Arc<[GenerationMember]> {
     let mut ranking: Vec<usize> = (0..generation.genomes.len()).collect();
     ranking.sort_by(|a, b| {

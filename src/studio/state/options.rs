@@ -1,4 +1,4 @@
-//! Options of the studio.
+//! Options with which the studio is opened.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,40 +11,40 @@ use snakes_core::save::{LoadedChampion, PreferencesFile, SavesFolder, StudyRuns}
 use snakes_lab::run::LocalPool;
 use snakes_lab::run::{Evaluator, RunSource};
 
-/// Options of the studio.
+/// Options with which the studio is opened.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The first run.
+    /// Run with which the studio opens.
     pub run: RunSource,
-    /// Whether to offer the run that was stopped last; it is not offered to a user who named a run.
+    /// Whether to offer to resume the run that was stopped last. It is not offered if the user named a run.
     pub offers_stopped_run: bool,
-    /// Evaluates the genomes of runs.
+    /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,
-    /// Where the next runs are saved.
+    /// Folder in which the next runs are saved.
     pub saves: SavesFolder,
-    /// Champions to open with, and their names; several race. If empty, the built-in champion.
+    /// Champions with which the studio opens, and their names; several race. If empty, the built-in champion is shown.
     pub champions: Vec<(String, LoadedChampion)>,
-    /// Problems with the files that the user opened, to show in the window.
+    /// Problems with the files that the user named, to show in the window.
     pub problems: Vec<String>,
-    /// A study to show.
+    /// Study whose comparison the charts show, if any.
     pub comparison: Option<StudyRuns>,
-    /// Size of the window, in logical pixels; `None`: as last time.
+    /// Size of the window, in logical pixels; `None` for the size of the last time.
     pub window_size: Option<(u32, u32)>,
-    /// Colour theme; `None`: as last time.
+    /// Theme of the studio; `None` for the theme of the last time.
     pub theme: Option<Theme>,
-    /// Whether the stage is presented on the full screen from the start.
+    /// Whether the studio begins in the presenting mode.
     pub presents: bool,
-    /// File of the window preferences.
+    /// File that stores the window preferences.
     pub preferences: PreferencesFile,
     /// File to which the panels' texts and positions are written, for scripts and tests.
     pub places: Option<PathBuf>,
-    /// Number of frames after which the window closes.
+    /// Number of frames after which the window closes; `None` if only the user closes it.
     pub exit_after_frames: Option<u32>,
 }
 
 #[cfg(test)]
 impl Options {
-    /// Options for tests: this run, on one thread, without preferences.
+    /// Creates options for tests: this run, on one thread, without preferences.
     pub(crate) fn of_test(run: RunSource, saves: SavesFolder) -> Self {
         Self {
             run,
@@ -64,6 +64,6 @@ impl Options {
     }
 }
 
-/// The study that the studio was opened with.
+/// Study with which the studio was opened, if any.
 #[derive(Resource, Debug, Clone, Default)]
 pub(crate) struct OpenedComparison(pub Option<StudyRuns>);

@@ -14,7 +14,7 @@ use snakes_core::genome::ControllerKind;
 use snakes_core::schema::Choices;
 use snakes_core::score::Trial;
 
-/// A notice of the setting that a choice of strategy or controller changed beside itself.
+/// Describes the setting that was changed because it has to suit the chosen strategy or controller.
 fn partner_in_words((field, name): (&str, &str)) -> String {
     match field {
         "genome.controller" => match ControllerKind::named(field, name) {
@@ -36,10 +36,10 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
     }
 }
 
-/// Executes a command; returns what the stage shows then, if that changes.
+/// Executes a command to the plan. Returns what to show on the stage, if that changes.
 ///
 /// # Errors
-/// The command does not suit the plan, the stage or the saves, with the reason.
+/// The command does not suit the plan, the stage or the saves; the error states the reason.
 pub(crate) fn apply_to_plan(
     command: &PlanCommand,
     run: &mut CurrentRun,
@@ -53,7 +53,8 @@ pub(crate) fn apply_to_plan(
         PlanCommand::SetPopulation(population) => run.set_population(*population)?,
         PlanCommand::SetField { field, text } => {
             let mut fields = vec![(field.as_str(), text.as_str())];
-            // A strategy, a controller and bodies that do not go together would be refused.
+            // Without the changes of the partners, the strategy, the controller and the bodies would not suit each
+            // other, and the change would be refused.
             for partner in run.next_settings().partner_changes(field, text) {
                 notices.info(partner_in_words(partner));
                 fields.push(partner);
@@ -86,7 +87,7 @@ pub(crate) fn apply_to_plan(
             run.start_next_from(&founder, &name)?;
             run.begin_next()?;
             notices.info(format!("A run started from {name}."));
-            // The new run uses the change of a what-if.
+            // The new run uses the changed world of a what-if.
             return Ok(kept(on_show, mode));
         }
         PlanCommand::ForgetFounder => run.forget_founder()?,

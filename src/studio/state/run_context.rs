@@ -1,4 +1,4 @@
-//! Shared by all runs of a session: evaluator, saves folder, presets.
+//! What all runs since the start of the program share: evaluator, saves folder, presets.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,20 +9,20 @@ use super::options::Options;
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
 use snakes_lab::run::{Evaluator, RunSource};
 
-/// Shared by all runs of a session.
+/// What all runs since the start of the program share.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct RunContext {
-    /// Evaluates the genomes of runs.
+    /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,
-    /// Saves folder.
+    /// Folder in which runs and champions are saved.
     pub saves: SavesFolder,
-    /// The run the studio opens with.
+    /// Run with which the studio opens.
     pub first: RunSource,
-    /// Whether to offer the run that was stopped last.
+    /// Whether to offer to resume the run that was stopped last.
     pub offers_stopped_run: bool,
-    /// Presets to choose from.
+    /// Presets that the user can choose.
     pub presets: Arc<KnownFiles<Preset>>,
-    /// Stairs to choose from.
+    /// Stairs that the user can choose.
     pub stairs: Arc<KnownFiles<NamedStairs>>,
     run_folder: RunInProgress,
 }
@@ -40,16 +40,16 @@ impl RunContext {
         }
     }
 
-    /// Shared cell with the folder of the run in progress.
+    /// Returns the shared cell with the folder of the run in progress.
     pub fn run_folder(&self) -> RunInProgress {
         Arc::clone(&self.run_folder)
     }
 
-    /// Sets the folder of the run in progress, which could be resumed after a crash.
+    /// Sets the folder of the run in progress, which could be resumed after a crash; `None` without a run.
     pub fn set_run_folder(&self, folder: Option<PathBuf>) {
         *self.run_folder.lock().unwrap_or_else(PoisonError::into_inner) = folder;
     }
 }
 
-/// Folder of the run in progress, if any.
+/// Shared cell with the folder of the run in progress, if any.
 pub(crate) type RunInProgress = Arc<Mutex<Option<PathBuf>>>;

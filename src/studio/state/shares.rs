@@ -1,7 +1,7 @@
-//! Files of other formats that are being written from the champions on the stage, one at a time.
+//! Writing files of other formats from the champions on the stage, one file at a time.
 //!
-//! A second process of the same program writes the file: drawing a film there takes no frame from the window, and a
-//! fault there cannot end the studio. It ends when its standard input does, so it never outlives the studio.
+//! A second process of the same program writes the file. Drawing a film there does not slow the window down, and a crash there does not
+//! end the studio. The process ends when its standard input is closed, so it never outlives the studio.
 
 mod writer;
 
@@ -25,13 +25,13 @@ use snakes_lab::run::BackgroundTask;
 
 use writer::{Leash, Writer, written};
 
-/// The file that is being written.
+/// The file that is being written, if any.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Shares {
     under_way: Option<ShareUnderWay>,
 }
 
-/// A file that is being written. Dropping this cancels it.
+/// A file that is being written. Dropping the value cancels the file.
 #[derive(Debug)]
 struct ShareUnderWay {
     path: PathBuf,
@@ -39,14 +39,14 @@ struct ShareUnderWay {
     work: BackgroundTask<Result<PathBuf, String>>,
 }
 
-/// The look of a film: that of the stage.
+/// Look of an exported film, which is that of the stage.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ShareLook {
-    /// Camera mode.
+    /// Camera mode of the stage.
     pub camera: CameraMode,
-    /// Theme.
+    /// Theme of the studio.
     pub theme: Theme,
-    /// Overlays.
+    /// Overlays that are visible on the stage.
     pub overlays: Vec<Overlay>,
 }
 
@@ -55,13 +55,13 @@ pub(crate) struct ShareLook {
 pub(crate) struct ShareProgress {
     /// Name of the file.
     pub name: String,
-    /// Share of it that is done, from 0 to 1.
+    /// Finished share of the file, from 0 to 1.
     pub share: f32,
 }
 
-/// Notices about shared files replace each other.
+/// Subject of messages about shared files, which replace each other.
 const SUBJECT: &str = "share";
-/// Parts in which progress is counted.
+/// Number of parts in which progress is counted.
 const PARTS: usize = 1000;
 
 impl Drop for ShareUnderWay {
@@ -71,10 +71,10 @@ impl Drop for ShareUnderWay {
 }
 
 impl Shares {
-    /// Begins to write the champions into a file.
+    /// Begins to write champions to a file.
     ///
     /// # Errors
-    /// Another file is being written, or these champions cannot be shared.
+    /// Another file is being written, or the champions cannot be shared in this format.
     pub fn begin(
         &mut self,
         format: ExportFormat,
@@ -88,7 +88,7 @@ impl Shares {
         refuse_number(format, champions.len())?;
         let shared = champions.iter().map(shared).collect::<Result<Vec<_>, _>>()?;
         let named = with_ending(path, format);
-        // The dialog asked about the name that was chosen, not about this one.
+        // The dialog asked whether to replace the file with the chosen name, not the one with the added extension.
         if named != path && named.exists() {
             return Err(format!("{} exists already; choose another name.", name_of(&named)));
         }
@@ -109,24 +109,24 @@ impl Shares {
         Ok(())
     }
 
-    /// Why no other file can be written now, if none can.
+    /// Returns the reason why no other file can be written now, if there is one.
     pub fn busy(&self) -> Option<String> {
         let under_way = self.under_way.as_ref()?;
         let name = name_of(&under_way.path);
         Some(format!("{name} is being written: wait for it, or cancel it."))
     }
 
-    /// Cancels what is being written.
+    /// Cancels the file that is being written.
     ///
     /// # Errors
-    /// Nothing is being written.
+    /// No file is being written.
     pub fn cancel(&mut self) -> Result<(), String> {
         let under_way = self.under_way.as_ref().ok_or("No file is being written.")?;
         under_way.leash.cut();
         Ok(())
     }
 
-    /// The progress of what is being written.
+    /// Returns the progress of the file that is being written, if any.
     pub fn progress(&self) -> Option<ShareProgress> {
         self.under_way.as_ref().map(|of| ShareProgress {
             name: name_of(&of.path),
@@ -134,7 +134,7 @@ impl Shares {
         })
     }
 
-    /// Reports what has been written.
+    /// Shows a message about a file that was finished, cancelled or failed.
     fn take_in(&mut self, notices: &mut Notices) {
         let Some(result) = self.under_way.as_ref().and_then(|of| of.work.poll()) else { return };
         let Some(ended) = self.under_way.take() else { return };
@@ -152,10 +152,10 @@ impl Shares {
     }
 }
 
-/// Refuses a number of snakes that a file of this format does not hold.
+/// Checks the number of snakes that a file of this format can hold.
 ///
 /// # Errors
-/// There are none, or too many; the sentence says what to do.
+/// There are no snakes, or too many; the error is a sentence for the user.
 pub(crate) fn refuse_number(format: ExportFormat, found: usize) -> Result<(), String> {
     let info = format.info();
     match (found, info.most_champions) {
@@ -176,7 +176,7 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The path with the ending of a format, which is added if it is missing.
+/// Adds the extension of a format to a path if it is missing.
 fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
     let ending = format.info().ending;
     let has_it = path.extension().is_some_and(|of| of.eq_ignore_ascii_case(ending));
@@ -188,11 +188,11 @@ fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// The arguments of the program that writes the file, behind those for the champions.
+/// Returns the arguments of the program that writes the file, apart from the champions.
 fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec!["--output".into(), path.into()];
     if format.is_film() {
-        // A camera that stands where it was left would not see the snake go.
+        // A free camera would not follow the snake.
         let camera = match look.camera {
             CameraMode::Free => CameraMode::Follow,
             following => following,
@@ -207,17 +207,17 @@ fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsStrin
     arguments
 }
 
-/// A champion as the stage shows it.
+/// A champion as the stage shows it, to be written to a file.
 #[derive(Debug, Clone, PartialEq)]
 struct SharedChampion {
     name: String,
     champion: Champion,
-    /// Whether its recorded result is from another world or engine.
+    /// Whether the champion's recorded result is from another world or engine, so that it must be evaluated again.
     is_to_evaluate: bool,
 }
 
 impl SharedChampion {
-    /// The champion with the result that it has in its world.
+    /// Returns the name and the champion, with its result in the world in which it is shown.
     fn evaluated(self) -> (String, Champion) {
         let Self { name, mut champion, is_to_evaluate } = self;
         if is_to_evaluate {
@@ -227,7 +227,7 @@ impl SharedChampion {
     }
 }
 
-/// The champion of a lane, for a file.
+/// Converts the champion of a lane for a file. Fails with a reason if no file can represent it.
 fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
     let name = staged.label().to_owned();
     if let Some(engine) = staged.other_engine().filter(|_| staged.recording().is_some()) {
@@ -245,7 +245,7 @@ fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
 }
 
 fn take_in(mut shares: ResMut<Shares>, mut notices: ResMut<Notices>) {
-    // Without a change, the menu bar is left alone.
+    // The resource is accessed mutably only if necessary, because the menu bar reacts to its changes.
     if shares.under_way.is_some() {
         shares.take_in(&mut notices);
     }

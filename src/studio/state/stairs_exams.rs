@@ -1,6 +1,6 @@
-//! Exams of champions on unseen stairs, simulated in the background, one at a time. The results of the latest ones stay.
+//! Exams of champions on unseen stairs, simulated in the background, one at a time. The latest results are kept.
 //!
-//! An exam belongs to a genome and its own trial, wherever and however the champion is shown.
+//! An exam belongs to a genome and its own trial, independently of where and how the champion is shown.
 
 use bevy::prelude::*;
 
@@ -15,7 +15,7 @@ use snakes_core::score::{ExamEnd, ExamSuite, StairsCell, StairsGrid};
 use snakes_lab::run::exam::{examine_on_stairs, stairs_trials};
 use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, available_cores};
 
-/// The exams of this session.
+/// Finished exams, and the exam in progress.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct StairsExams {
     /// Finished exams, the latest last.
@@ -29,7 +29,7 @@ struct FinishedExam {
     grids: Vec<StairsGrid>,
 }
 
-/// An exam that is being simulated. Dropping this cancels it.
+/// An exam that is being simulated. Dropping the value cancels the exam.
 #[derive(Debug)]
 struct ExamUnderWay {
     champion: Champion,
@@ -37,20 +37,20 @@ struct ExamUnderWay {
     work: BackgroundTask<Result<Vec<StairsGrid>, Cancelled>>,
 }
 
-/// Progress of an exam.
+/// Progress of the exam that is being simulated.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ExamProgress {
     /// Name of the champion.
     pub name: String,
-    /// Number of finished trials.
+    /// Number of trials of the exam that are finished.
     pub done: u32,
-    /// Number of trials.
+    /// Number of all trials of the exam.
     pub trials: u32,
 }
 
-/// Number of champions whose exams are kept.
+/// Maximum number of champions whose exams are kept.
 const MOST_KEPT: usize = 8;
-/// Notices about an exam replace each other.
+/// Subject of messages about an exam, which replace each other.
 const SUBJECT: &str = "exam on stairs";
 
 impl Drop for ExamUnderWay {
@@ -60,10 +60,10 @@ impl Drop for ExamUnderWay {
 }
 
 impl StairsExams {
-    /// Executes a command that concerns the selected champion of the stage, and returns what the stage shows then.
+    /// Executes a command to the exam of the selected champion of the stage. Returns what to show on the stage, if anything.
     ///
     /// # Errors
-    /// The command cannot be executed, with the reason.
+    /// The command cannot be executed, for the returned reason.
     pub fn apply(
         &mut self,
         command: &ExamCommand,
@@ -81,7 +81,7 @@ impl StairsExams {
                 let selected = selected?;
                 let cell =
                     self.grid(selected.champion(), *suite).and_then(|of| of.cells.get(*cell));
-                // The selection may have changed since the click; then do nothing.
+                // The selected champion may have changed since the click. Then nothing happens.
                 return Ok(cell.map(|cell| {
                     Show::solo(
                         selected.on_stairs_of_exam(&cell.typical, stairs_in_words(*suite, cell)),
@@ -106,7 +106,7 @@ impl StairsExams {
             return Ok(());
         }
         let failed = |error: &dyn std::fmt::Display| format!("The exam could not start: {error}.");
-        // The run keeps at least half of the processor.
+        // At least half of the processor remains for the run.
         let pool = LocalPool::new(available_cores().div_ceil(2)).map_err(|error| failed(&error))?;
         let examined = champion.clone();
         let trials = stairs_trials(&champion) as usize;
@@ -119,7 +119,7 @@ impl StairsExams {
         Ok(())
     }
 
-    /// The finished exam of a champion: on other stairs and, if it senses, there without senses.
+    /// Returns the finished exam of a champion, if any: on other stairs and, if the champion has senses, also without senses.
     pub fn of(&self, champion: &Champion) -> Option<&[StairsGrid]> {
         let mut finished = self.finished.iter();
         finished.find(|exam| is_same(&exam.champion, champion)).map(|exam| exam.grids.as_slice())
@@ -129,7 +129,7 @@ impl StairsExams {
         self.of(champion)?.iter().find(|grid| grid.suite == suite)
     }
 
-    /// The progress of the exam that is under way.
+    /// Returns the progress of the exam that is being simulated, if any.
     pub fn progress(&self) -> Option<ExamProgress> {
         self.under_way.as_ref().map(|exam| ExamProgress {
             name: exam.name.clone(),
@@ -138,7 +138,7 @@ impl StairsExams {
         })
     }
 
-    /// Takes over the result of an exam that has ended.
+    /// Processes the result of a finished exam.
     fn take_in(&mut self, notices: &mut Notices) {
         let Some(result) = self.under_way.as_ref().and_then(|exam| exam.work.poll()) else {
             return;
@@ -158,7 +158,7 @@ impl StairsExams {
         }
     }
 
-    /// Keeps a finished exam in the place of the oldest one.
+    /// Keeps a finished exam, and removes the oldest ones if there are too many.
     pub(in crate::studio) fn keep(&mut self, champion: Champion, grids: Vec<StairsGrid>) {
         self.finished.push(FinishedExam { champion, grids });
         let too_many = self.finished.len().saturating_sub(MOST_KEPT);
@@ -166,7 +166,7 @@ impl StairsExams {
     }
 }
 
-/// Why a champion cannot be examined, if it cannot, in a sentence.
+/// Returns the reason why a champion cannot be examined, if there is one, in a sentence.
 pub(crate) fn no_exam_because(staged: &StagedChampion) -> Option<String> {
     if let Some(engine) = staged.other_engine() {
         return Some(format!(
@@ -177,7 +177,7 @@ pub(crate) fn no_exam_because(staged: &StagedChampion) -> Option<String> {
     (!has_stairs).then(|| "There is no exam in a world without stairs.".to_owned())
 }
 
-/// The results of an exam in a sentence.
+/// Describes the results of an exam in a sentence.
 pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
     let count = |suite| {
         let grid = grids.iter().find(|grid| grid.suite == suite)?;
@@ -194,7 +194,7 @@ pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
     }
 }
 
-/// How a trial of the exam ended, in a few words.
+/// Describes in a few words how a trial of the exam ended.
 pub(crate) fn end_in_words(end: &ExamEnd) -> String {
     match (end.landed_s, end.steps) {
         _ if end.is_disqualified => "is disqualified".to_owned(),
@@ -205,14 +205,14 @@ pub(crate) fn end_in_words(end: &ExamEnd) -> String {
     }
 }
 
-/// The stairs of a cell: "rise 0.6 m, tread 1.5 m".
+/// Describes the stairs of a cell: "rise 0.6 m, tread 1.5 m".
 fn stairs_in_words(suite: ExamSuite, cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, .. } = cell;
     let frozen = if suite == ExamSuite::Lesion { ", without its senses" } else { "" };
     format!("rise {rise_m} m, tread {tread_m} m{frozen}")
 }
 
-/// Whether two champions behave alike in all trials.
+/// Returns whether two champions behave alike in all trials.
 fn is_same(one: &Champion, other: &Champion) -> bool {
     one.genome == other.genome && one.trial == other.trial
 }

@@ -1,13 +1,13 @@
-//! Race of one champion over many staircases, in lanes side by side.
+//! Race of one champion on many staircases, in lanes side by side.
 
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{MAX_LANES, Show};
 use snakes_core::save::built_in_stairs;
 
-/// The champion on its own stairs and on each of the built-in ones.
+/// Creates a race of the champion on its own stairs and on each of the built-in ones that it fits.
 ///
 /// # Errors
-/// It fits none of them; in a sentence.
+/// The champion fits no built-in stairs; the error is a sentence for the user.
 pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
     let own = champion.simulated().named("its own stairs".to_owned());
     let others = built_in_stairs().map_err(|error| format!("{error}."))?;
@@ -15,7 +15,7 @@ pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
         let trial = champion.trial().on_stairs(other.stairs);
         champion.in_world(&trial, other.name.replace('-', " "))
     });
-    // It may have learned on one of these.
+    // The champion's own stairs may be among the built-in ones, and are not repeated.
     let others = others.filter(|staged| staged.is_changed() && staged.check().is_ok());
     let champions: Vec<StagedChampion> = [own].into_iter().chain(others).take(MAX_LANES).collect();
     if champions.len() < 2 {
@@ -42,7 +42,7 @@ mod tests {
         }
         let stairs = |index: usize| &show.champions[index].trial().stairs;
         assert!((1..labels.len()).all(|index| stairs(index) != stairs(0)));
-        // A race that begins in one of its lanes has the same stairs.
+        // A race that is started from one of the lanes has the same stairs.
         let again = stairs_race(&show.champions[1]).expect("it fits");
         assert!(again.champions.len() >= MAX_LANES - 1);
     }

@@ -1,4 +1,4 @@
-//! Offers, once after the start, to resume the run that was stopped last.
+//! Offers, once after the start of the program, to resume the run that was stopped last.
 
 use bevy::prelude::*;
 
@@ -12,14 +12,14 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Startup, list).add_systems(FixedUpdate, offer);
 }
 
-/// Lists the runs, unless the user named one.
+/// Lists the runs, unless the user has named a run.
 fn list(mut run: ResMut<CurrentRun>, context: Res<RunContext>, mut notices: ResMut<Notices>) {
     if context.offers_stopped_run {
         notices.problems(run.list_runs().err());
     }
 }
 
-/// Offers the run that was stopped last, once the runs are listed.
+/// Offers to resume the run that was stopped last, once the runs are listed.
 fn offer(
     run: Res<CurrentRun>,
     context: Res<RunContext>,
@@ -38,7 +38,7 @@ fn offer(
     }
 }
 
-/// The run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
+/// Describes a stopped run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
 fn offer_text(run: &RunSummary) -> String {
     let (plan, generations) = (&run.plan, run.plan.most_generations_in_words());
     format!(
@@ -68,7 +68,7 @@ mod tests {
         let next = small_run(&saves, 1, 3).with_unused_seed(&saves);
         assert_eq!(next.plan.seed, 2, "its own seed is used");
 
-        // The run of the session is too long to end, and to say so, during the test.
+        // The current run is too long to finish during the test, which would cause a message.
         let run = small_run(&saves, 2, 10_000);
         let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
         let context = RunContext::new(&options);

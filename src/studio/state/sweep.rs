@@ -7,15 +7,16 @@ use snakes_core::evolve::{Settings, fields, with_fields_and_engine};
 use snakes_core::schema::{NumberRange, SettingKind, SettingValue, list};
 use snakes_core::score::Trial;
 
-/// Number of values, the present one among them.
+/// Number of values in a sweep, including the present value.
 const VALUES: u8 = 5;
-/// Ratios to the present value of a setting whose effect is one of proportion.
+/// Ratios of a sweep's values to the present value, for a setting with a logarithmic slider.
 const RATIOS: [f32; VALUES as usize] = [0.2, 0.5, 1.0, 2.0, 5.0];
 
-/// The champion in five worlds that differ in one setting, by its full dotted name.
+/// Shows the champion in five worlds that differ in one setting, which is named by its full dotted name.
 ///
 /// # Errors
-/// The setting is no number of the world, has one value for each part, or has only one possible value; in a sentence.
+/// The setting is no number of the world, has a separate value for each part, or has only one possible value. The error
+/// is a sentence for the user.
 pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, String> {
     let settings = settings_of(champion.trial());
     let all = list(&settings);
@@ -54,8 +55,8 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
     Ok(Show::race(champions))
 }
 
-/// The values of a sweep, ascending: ratios of the present value where the slider is logarithmic, else spread evenly
-/// over the slider, with the present value in the place of the nearest.
+/// Returns the values of a sweep in ascending order. With a logarithmic slider they are ratios of the present value.
+/// Otherwise they are spread evenly over the slider, and the nearest is replaced by the present value.
 fn values(range: &NumberRange, now: f32) -> Vec<f32> {
     let [from, to] = range.slider.unwrap_or([range.least, range.most]);
     let (from, to) = (from.min(now), to.max(now));
@@ -80,7 +81,7 @@ fn values(range: &NumberRange, now: f32) -> Vec<f32> {
     values
 }
 
-/// A value with three significant digits, which fit into a label.
+/// Rounds a value to three significant digits, which fit into a label.
 fn rounded(value: f32) -> f32 {
     if value == 0.0 {
         return value;
@@ -90,8 +91,8 @@ fn rounded(value: f32) -> f32 {
     (value * scale).round() / scale
 }
 
-/// The settings in which a lane's world differs from the one in which its champion was found: full dotted names and
-/// values.
+/// Returns the settings in which a lane's world differs from the one in which its champion was found: full dotted names
+/// and values as text.
 pub(crate) fn changes_of(staged: &StagedChampion) -> Vec<(String, String)> {
     let found = fields(&settings_of(&staged.champion().trial));
     let mut shown = fields(&settings_of(staged.trial()));

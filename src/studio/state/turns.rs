@@ -1,8 +1,8 @@
-//! The presenting mode shows one champion after the other, without end: that of each generation of the run or, without
-//! a finished generation, the champions that are part of the program.
+//! Turns of the presenting mode, which shows one champion after another without end: the champion of each generation of
+//! the run or, before the first finished generation, the built-in champions.
 //!
-//! A race, a what-if, and champions that the studio was opened with stay, played again and again, until the presenter
-//! goes on by hand. While evolution is followed, and during a story, [`Following`] decides instead.
+//! A race, a what-if and champions with which the studio was opened are repeated until the presenter goes on by hand.
+//! While evolution is followed, and during a story, [`Following`] determines what is shown.
 
 use std::time::Duration;
 
@@ -19,50 +19,50 @@ use crate::studio::stage::{Show, StageMode, end_s};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::shipped_champions;
 
-/// Shows champions in turn.
+/// State of showing champions one after another in the presenting mode.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Turns {
     /// Whether the presenting mode is on.
     is_on: bool,
-    /// Whether the stage does not go on by itself now.
+    /// Whether the stage is prevented from going on automatically.
     is_held: bool,
-    /// Whether champions that the studio was opened with stay.
+    /// Whether champions with which the studio was opened stay on the stage.
     keeps_opened: bool,
-    /// Whether the presenter has gone on by hand, so that nothing stays any more.
+    /// Whether the presenter has gone on by hand, so that the stage always goes on afterwards.
     is_led: bool,
-    /// The step that the presenter asked for.
+    /// Step that the presenter has requested, if any.
     asked: Option<Turn>,
-    /// Time for which the stage has stood at its end.
+    /// Time since the stage reached its end.
     rested: Duration,
-    /// The champions that are part of the program, once they are needed.
+    /// Built-in champions; empty until they are needed.
     shipped: Vec<StagedChampion>,
 }
 
-/// Time for which a champion stands at its end before the next one; shorter than the rest of a loop.
+/// Time for which a champion rests at its end before the next one is shown; shorter than the pause of a loop.
 const REST: Duration = Duration::from_millis(1200);
 
 impl Turns {
-    /// Turns of a studio that was opened with champions, or without.
+    /// Creates the turns of a studio that was opened with or without champions.
     pub fn new(keeps_opened: bool) -> Self {
         Self { keeps_opened, ..Self::default() }
     }
 
-    /// Begins or ends to show champions in turn.
+    /// Begins or ends showing champions one after another.
     pub fn set_on(&mut self, is_on: bool) {
         (self.is_on, self.is_led, self.asked, self.rested) = (is_on, false, None, Duration::ZERO);
     }
 
-    /// Holds the turns, for example while nothing is visible.
+    /// Sets whether the stage is prevented from going on automatically, for example while the screen is black.
     pub fn set_held(&mut self, is_held: bool) {
         self.is_held = is_held;
     }
 
-    /// Goes on by hand.
+    /// Requests a step that the presenter makes by hand.
     pub fn take(&mut self, turn: Turn) {
         (self.asked, self.is_led) = (Some(turn), true);
     }
 
-    /// The champion of this turn, if there is any but the one on the stage.
+    /// Returns the champion of a step, if there is one besides that on the stage.
     fn champion(
         &mut self,
         turn: Turn,
@@ -79,7 +79,7 @@ impl Turns {
             self.shipped = shipped.iter().map(staged).collect();
         }
         let mut all = if of_run.is_empty() { self.shipped.clone() } else { of_run };
-        // A champion that stays the best for generations has one turn.
+        // A champion that stays the best for several generations is shown only once.
         all.dedup_by(|later, earlier| later.champion() == earlier.champion());
         let is_same = |other: &StagedChampion| {
             on_stage.is_some_and(|staged| staged.champion() == other.champion())
@@ -95,7 +95,7 @@ impl Turns {
         (index < all.len()).then(|| all.swap_remove(index))
     }
 
-    /// Whether the stage goes on by itself at its end.
+    /// Returns whether the stage goes on automatically at its end.
     fn goes_on(
         &self,
         run: &CurrentRun,
@@ -116,7 +116,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Turns>().add_systems(Update, take_turns.in_set(FrameSet::TakeIn));
 }
 
-/// Shows the champion whose turn it is.
+/// Shows the next champion when the presenter requests it, or when it is due.
 fn take_turns(
     mut turns: ResMut<Turns>,
     run: Res<CurrentRun>,

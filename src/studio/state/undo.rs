@@ -1,7 +1,7 @@
-//! The one stack of steps to undo and redo: changes of the next run's plan and file operations of the library.
+//! The common history of undo and redo: changes of the next run's plan, and file operations of the library.
 //!
-//! Every command that changes the plan leaves an [`UndoStep`]. A slider that rests during a drag changes the plan several
-//! times; all changes of one setting between two presses of a mouse button or a key are one step.
+//! Every command that changes the plan adds an [`UndoStep`]. If the mouse rests while a slider is dragged, the plan
+//! changes several times. All changes of one setting between two presses of a mouse button or a key are one step.
 
 mod follow;
 
@@ -17,28 +17,28 @@ use snakes_core::save::library::FileStep;
 
 pub(crate) use follow::followed;
 
-/// Maximum number of steps that can be undone.
+/// Maximum number of steps in the history that can be undone.
 const MAX_STEPS: usize = 200;
 
-/// Subject of messages about changes that can be undone: what was undone replaces the message about the change.
+/// Subject of messages about changes that can be undone. The message about an undo replaces that about the change.
 pub(crate) const UNDO_SUBJECT: &str = "undo";
 
-/// Subject of the step that discards the changes of a what-if.
+/// Subject of the step that discards the changed lanes of a what-if.
 const DISCARD: &str = "discard";
 
-/// Subject of the step that continues another run.
+/// Subject of the step that resumes another run.
 const CONTINUE: &str = "continue";
 
 /// A step that can be undone or redone.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum UndoStep {
-    /// The next run's plan was changed.
+    /// A change of the next run's plan.
     Plan(PlanStep),
-    /// Files of the library were changed.
+    /// A change of the library's files.
     Files {
-        /// The change in a few words: "deleted climber".
+        /// Description of the change in a few words: "deleted climber".
         label: String,
-        /// The file operations, in the order in which they were carried out.
+        /// File operations of the step, in the order in which they were executed.
         steps: Vec<FileStep>,
     },
 }
@@ -48,7 +48,7 @@ impl UndoStep {
         matches!(self, Self::Files { .. })
     }
 
-    /// The change in a few words.
+    /// Describes the change of the step in a few words.
     pub fn label(&self) -> &str {
         match self {
             Self::Plan(PlanStep { label, .. }) | Self::Files { label, .. } => label,
@@ -59,18 +59,18 @@ impl UndoStep {
 /// A change of the next run's plan.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlanStep {
-    /// The plan before.
+    /// Plan before the change.
     pub before: Box<RunPlan>,
-    /// The plan after.
+    /// Plan after the change.
     pub after: Box<RunPlan>,
-    /// The change in a few words: "friction 0.5".
+    /// Description of the change in a few words: "friction 0.5".
     pub label: String,
-    /// The name of the changed setting: its further changes within one drag join this step.
+    /// Name of the changed setting. Further changes of this setting during one drag are added to the step.
     subject: String,
 }
 
 impl PlanStep {
-    /// Message after the step was undone or redone.
+    /// Returns the message after the step was undone or redone.
     pub fn message(&self, way: UndoDirection) -> String {
         if way == UndoDirection::Back && self.subject == DISCARD {
             return "Changes restored".to_owned();
@@ -78,44 +78,44 @@ impl PlanStep {
         way.taken(&self.label)
     }
 
-    /// Whether the step continued another run: its settings are no edit of the run in progress.
+    /// Returns whether the step resumed another run. Its settings are then no edit of the run in progress.
     pub fn is_of_another_run(&self) -> bool {
         self.subject == CONTINUE
     }
 }
 
-/// Undo or redo.
+/// Direction through the history: undo or redo.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum UndoDirection {
-    /// Undo.
+    /// Back in time: undo.
     Back,
-    /// Redo.
+    /// Forward in time: redo.
     Forth,
 }
 
 impl UndoDirection {
-    /// Message after a step with this label was undone or redone.
+    /// Returns the message after a step with this label was undone or redone.
     pub fn taken(self, label: &str) -> String {
         let done = if self == Self::Back { "Undone" } else { "Redone" };
         format!("{done}: {label}")
     }
 
-    /// Message if there is no step.
+    /// Returns the message if there is no step in this direction.
     pub fn nothing(self) -> &'static str {
         if self == Self::Back { "There is nothing to undo." } else { "There is nothing to redo." }
     }
 }
 
-/// The steps that can be undone, and those that can be redone.
+/// The history: steps that can be undone, and steps that can be redone.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct UndoHistory {
-    /// The latest is the last.
+    /// Steps that can be undone, the latest last.
     done: VecDeque<UndoStep>,
-    /// The next to redo is the last.
+    /// Steps that can be redone, the next one last.
     undone: Vec<UndoStep>,
-    /// Whether the latest step is complete, so that a further change is a step of its own.
+    /// Whether the latest step is complete, so that a further change is a separate step.
     is_settled: bool,
-    /// Whether a step was added since one was taken: that one can no longer be redone.
+    /// Whether a step has been added since the last one was taken, so that the taken step cannot be redone.
     is_overtaken: bool,
 }
 
@@ -130,7 +130,7 @@ impl UndoHistory {
         self.push(UndoStep::Plan(PlanStep { before, after, label, subject }));
     }
 
-    /// Adds a step. Steps that were undone before can no longer be redone.
+    /// Adds a step. Steps that were undone before can then not be redone.
     pub fn push(&mut self, step: UndoStep) {
         self.undone.clear();
         self.is_overtaken = true;
@@ -140,7 +140,7 @@ impl UndoHistory {
                 if is_open && last.subject == step.subject =>
             {
                 (last.after, last.label) = (step.after, step.label);
-                // A drag that returns to its start is no step.
+                // A drag that returns to its start is not a step.
                 if last.before == last.after {
                     self.done.pop_back();
                 }
@@ -152,17 +152,17 @@ impl UndoHistory {
         }
     }
 
-    /// Whether a further change of the same setting would belong to the latest step.
+    /// Returns whether a further change of the same setting would be added to the latest step.
     pub fn is_open(&self) -> bool {
         !self.is_settled
     }
 
-    /// Makes the next change a step of its own.
+    /// Completes the latest step, so that the next change is a separate step.
     pub fn settle(&mut self) {
         self.is_settled = true;
     }
 
-    /// Removes the next step in a direction; the caller carries it out and reports the result to [`Self::complete`].
+    /// Removes and returns the next step in a direction. The caller executes it, and reports the result to [`Self::complete`].
     pub fn take(&mut self, way: UndoDirection) -> Option<UndoStep> {
         (self.is_settled, self.is_overtaken) = (true, false);
         match way {
@@ -171,7 +171,7 @@ impl UndoHistory {
         }
     }
 
-    /// Adds the result of a step that was taken: `done` can be reversed, `left` can be tried again.
+    /// Records the result of a step that was taken: the part `done` can be reversed, the part `left` can be tried again.
     pub fn complete(&mut self, way: UndoDirection, done: Option<UndoStep>, left: Option<UndoStep>) {
         let (undoable, redoable) = match way {
             UndoDirection::Back => (left, done),
@@ -181,12 +181,12 @@ impl UndoHistory {
         self.undone.extend(redoable.filter(|_| !self.is_overtaken));
     }
 
-    /// Empties the history for a lesson, and returns it.
+    /// Replaces the history by an empty one for a lesson, and returns the old one.
     pub fn lend(&mut self) -> Self {
         std::mem::take(self)
     }
 
-    /// Restores the history from before a lesson and adds the lesson's file operations.
+    /// Restores the history from before a lesson, and adds the file operations that were made during the lesson.
     pub fn give_back(&mut self, own: Self) {
         let lesson = std::mem::replace(self, own);
         self.done.extend(lesson.done.into_iter().filter(UndoStep::is_of_files));
@@ -194,7 +194,7 @@ impl UndoHistory {
         self.is_settled = true;
     }
 
-    /// The label of the next step in a direction.
+    /// Returns the label of the next step in a direction, if there is one.
     pub fn next(&self, way: UndoDirection) -> Option<&str> {
         match way {
             UndoDirection::Back => self.done.back(),
@@ -204,7 +204,7 @@ impl UndoHistory {
     }
 }
 
-/// Subject and label of the change that a command made; none if the command is no edit.
+/// Returns the subject and the label of the change that a command made; `None` if the command is no edit.
 fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(String, String)> {
     let changes = || changes_in_words(&before.settings, &after.settings);
     let (subject, label) = match command {
@@ -238,8 +238,8 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
     Some((subject.to_owned(), label))
 }
 
-/// The present plan after a step from one plan to another. The seed stays unless the step changed it, because each new
-/// run gets a seed of its own.
+/// Applies a step from one plan to another to the present plan. The seed is kept unless the step changed it, because
+/// each new run gets a new seed.
 pub(crate) fn stepped(now: &RunPlan, from: &RunPlan, to: &RunPlan) -> RunPlan {
     let seed = if from.seed == to.seed { now.seed } else { to.seed };
     RunPlan { seed, ..to.clone() }
@@ -250,7 +250,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, settle_on_press.in_set(FrameSet::TakeIn));
 }
 
-/// Begins a new step with each press.
+/// Completes the latest step whenever a mouse button or a key is pressed.
 fn settle_on_press(
     buttons: Res<ButtonInput<MouseButton>>,
     keys: Res<ButtonInput<KeyCode>>,
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(step(&mut history, UndoDirection::Back), None);
     }
 
-    /// A plan with this friction.
+    /// Returns a plan with this friction.
     fn plan(friction: &str) -> RunPlan {
         let settings = with_field(&Settings::default(), "surface.friction", friction);
         RunPlan::new("report", 1, settings.expect("allowed"))
@@ -304,7 +304,7 @@ mod tests {
         })
     }
 
-    /// Plans before and after a step.
+    /// Returns the plans before and after a step.
     fn plans(step: Option<UndoStep>) -> (RunPlan, RunPlan) {
         let Some(UndoStep::Plan(PlanStep { before, after, .. })) = step else { panic!("a step") };
         (*before, *after)
@@ -332,7 +332,7 @@ mod tests {
         }
         assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.3")));
         assert_eq!(step(&mut history, UndoDirection::Back), None);
-        // A drag that ends at its initial value leaves no step.
+        // A drag that ends at its initial value adds no step.
         history.note(&set("0.8"), plan("1"), &plan("0.8"));
         history.note(&set("1"), plan("0.8"), &plan("1"));
         assert_eq!(history.next(UndoDirection::Back), None);

@@ -1,7 +1,7 @@
-//! Copies of the champion in changed worlds beside the original, which answer the question "what if?".
+//! What-ifs: copies of the champion in changed worlds beside the original.
 //!
-//! A change acts on the latest copy, which starts over from the moment of the change. A copy that stays beside the next
-//! one no longer changes.
+//! A change applies to the latest copy, which restarts from the time of the change. A copy that is kept beside the next
+//! one is not changed any more.
 
 use std::fmt::Display;
 
@@ -18,25 +18,25 @@ use snakes_core::world::PhysicsSettings;
 /// A change of the world.
 #[derive(Debug, Clone)]
 pub(crate) enum WorldChange<'a> {
-    /// New values of settings, by their names: see [`with_fields`].
+    /// New values of settings, by the settings' names: see [`with_fields`].
     Fields(Vec<(&'a str, &'a str)>),
-    /// The world of a preset.
+    /// World of the preset with this name.
     Preset(&'a str),
 }
 
-/// The champions on the stage, and the moment from which a change of their world is tried.
+/// The champions on the stage, and the state from which a change of their world is tried.
 #[derive(Clone, Copy)]
 pub(crate) struct ChangedStage<'a> {
-    /// The champions, by lane; the first is the original.
+    /// Champions by lane; the first is the original.
     pub on_show: &'a [StagedChampion],
-    /// How the lanes are related.
+    /// Relation between the lanes.
     pub mode: &'a StageMode,
-    /// The rollout of the original at that moment; `None` for its start.
+    /// Rollout of the original at the time of the change; `None` for its start.
     pub moment: Option<&'a Rollout>,
 }
 
 impl ChangedStage<'_> {
-    /// The champion whose world the next run has: that of the current lane in a what-if, else the original.
+    /// Returns the champion whose world the next run has: that of the current lane in a what-if, or else the original.
     pub fn current(&self) -> Option<&StagedChampion> {
         match self.mode {
             StageMode::WhatIf { current, .. } => self.on_show.get(*current),
@@ -44,11 +44,11 @@ impl ChangedStage<'_> {
         }
     }
 
-    /// The stage after the world of the current lane became `trial`: a new copy in the place of the latest one, or
-    /// none if a lane that stays has that world. `before` is the plan of the next run without any change.
+    /// Returns the stage after the world of the current lane became `trial`. A new copy replaces the latest one; there is no new copy if
+    /// a lane that is kept already has this world. `before` is the plan of the next run before any change.
     ///
     /// # Errors
-    /// The champion does not fit that world.
+    /// The champion does not fit the changed world.
     pub fn with_world(
         &self,
         before: &RunPlan,
@@ -59,7 +59,7 @@ impl ChangedStage<'_> {
             StageMode::WhatIf { before, beside, .. } => (before.clone(), beside.clone()),
             _ => (Box::new(before.clone()), Vec::new()),
         };
-        // All lanes are simulated, so that only the change makes a difference.
+        // All lanes are simulated, so that their only difference is the change.
         let staying = self.on_show.iter().take(1 + beside.len()).map(StagedChampion::simulated);
         let mut champions: Vec<StagedChampion> = staying.collect();
         let Some(original) = champions.first().cloned() else {
@@ -76,14 +76,14 @@ impl ChangedStage<'_> {
     }
 }
 
-/// Why a snake does not change its world, in a sentence.
+/// Describes why a snake stays in its world, in a sentence.
 pub(super) fn unsuited(reason: impl Display) -> String {
     format!(
         "The snake on the stage stays in its world, because it does not fit the new one: {reason}"
     )
 }
 
-/// A what-if, or the original alone if nothing stands beside it.
+/// Creates a what-if, or shows the original alone if there is no copy.
 fn what_if_of(
     champions: Vec<StagedChampion>,
     before: Box<RunPlan>,
@@ -96,8 +96,8 @@ fn what_if_of(
     Show { champions, mode }
 }
 
-/// Applies a change to the next run. Returns the first champion on the stage, unchanged and in the changed worlds;
-/// `None` if the change does not affect it.
+/// Applies a change to the next run. Returns the original beside its copies in changed worlds; `None` if the change
+/// does not affect the stage.
 pub(crate) fn what_if(
     run: &mut CurrentRun,
     stage: ChangedStage,
@@ -109,17 +109,17 @@ pub(crate) fn what_if(
         WorldChange::Preset(name) => run.set_preset(name)?,
     }
     let Some(original) = stage.on_show.first() else { return Ok(None) };
-    // Changes accumulate.
+    // The change is added to those of the current lane.
     let so_far = stage.current().unwrap_or(original);
     let next = run.next_settings();
     let trial = match change {
-        // Other differences of the next run's world are left out.
+        // Other differences between the next run's world and the stage are ignored.
         WorldChange::Fields(changes) => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
             let changed = with_fields_and_engine(&settings, changes);
             changed.map_err(|error| error.to_string())?.trial
         }
-        // Duration, fitness and the engine stay, so that the lanes can be compared.
+        // Duration, fitness and engine are kept, so that the lanes remain comparable.
         WorldChange::Preset(_) => Trial {
             physics: PhysicsSettings {
                 engine: so_far.trial().physics.engine,
@@ -143,10 +143,10 @@ pub(crate) fn what_if(
     stage.with_world(&before, &trial, label).map(Some)
 }
 
-/// Lets the latest copy stay, so that the next change makes another one beside it.
+/// Keeps the latest copy, so that the next change adds another one beside it.
 ///
 /// # Errors
-/// No copy may stay, with the reason.
+/// No copy can be kept; the error states the reason.
 pub(crate) fn another_beside(
     run: &CurrentRun,
     on_show: Vec<StagedChampion>,
@@ -165,7 +165,7 @@ pub(crate) fn another_beside(
     }
 }
 
-/// Discards the latest copy. The next run gets the world of the lane before it.
+/// Discards the latest copy. The next run gets the world of the previous lane.
 pub(crate) fn dropped(
     run: &mut CurrentRun,
     on_show: &[StagedChampion],
@@ -179,13 +179,13 @@ pub(crate) fn dropped(
     Ok(Some(what_if_of(on_show[..=current].to_vec(), before.clone(), beside, current)))
 }
 
-/// The lane of a what-if whose world the next run has, alone and from the start.
+/// Returns the lane of a what-if whose world the next run has, alone and from the start.
 pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
     let StageMode::WhatIf { current, .. } = mode else { return None };
     on_show.get(*current).map(|staged| Show::solo(staged.shown_from_start()))
 }
 
-/// Keeps a changed lane of a what-if, alone and from the start. The next run gets its world.
+/// Keeps only one changed lane of a what-if, from the start. The next run gets its world.
 pub(crate) fn kept_lane(
     run: &mut CurrentRun,
     on_show: &[StagedChampion],

@@ -4,18 +4,18 @@ use snakes_core::evolve::Settings;
 use snakes_core::schema::{ListedSetting, SettingKind, SettingValue, list};
 use snakes_core::score::Trial;
 
-/// Maximum number of settings named in a description; more are counted.
+/// Maximum number of settings that a description names. Further ones are counted.
 const MOST_NAMED: usize = 2;
-/// Maximum number of values of a setting for single parts that are named.
+/// Maximum number of values that a description names, for a setting with a separate value for each part.
 const MOST_VALUES: usize = 5;
 
-/// Description of the differences between two worlds: "friction 0.5, rise 0.7".
+/// Describes the differences between two worlds: "friction 0.5, rise 0.7".
 pub(crate) fn world_in_words(original: &Trial, changed: &Trial) -> String {
     let of = |trial: &Trial| Settings { trial: trial.clone(), ..Settings::default() };
     changes_in_words(&of(original), &of(changed))
 }
 
-/// Description of the differences between two settings.
+/// Describes the differences between two settings.
 pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> String {
     let (before, mut after) = (list(original), list(changed));
     after.sort_by(|a, b| a.path.cmp(&b.path));
@@ -42,7 +42,7 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
                     }
                     _ => format!("{name} {}", listed.setting.value_in_words(&listed.value)),
                 }),
-                // A new group is named as a whole.
+                // A new group of settings is named as a whole.
                 None => {
                     Some(format!("separate {}", listed.path.rsplit('.').nth(1).unwrap_or(&name)))
                 }

@@ -16,7 +16,7 @@ fn lengths(editor: &BodyEditor) -> Vec<f32> {
     edited.body.parts.iter().map(|limb| limb.length_m).collect()
 }
 
-/// Waits until a preview is ready or, without one, until nothing is under way; then shows it.
+/// Waits until a preview is ready, or until no background work is in progress. Returns the preview.
 fn preview(editor: &mut BodyEditor, run: &mut CurrentRun) -> Option<Show> {
     let mut notices = Notices::default();
     while !editor.follow(&mut notices) {
@@ -75,13 +75,13 @@ fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
     let champions = preview(&mut editor, &mut run).expect("both").champions;
     let blocks = |staged: &StagedChampion| staged.body().parts[2].width_m;
     assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
-    // A hundredth of its neighbours' mass.
+    // The block has a hundredth of its neighbours' mass.
     editor.apply(&set(0.1), None, &mut run).expect("it can be set");
     let problem = editor.edited().expect("editing").problem.expect("refused");
     assert!(problem.contains("segments[2]") || problem.contains("segments[1]"), "{problem}");
     assert!(editor.apply(&BodyCommand::Evolve, None, &mut run).is_err());
     assert!(preview(&mut editor, &mut run).is_none());
-    // A second drag of the same slider is another step.
+    // A second drag of the same slider is a separate undo step.
     editor.apply(&BodyCommand::Undo, None, &mut run).expect("allowed");
     let width = editor.edited().expect("editing").body.parts[2].width_m;
     assert_eq!(width, 0.8);

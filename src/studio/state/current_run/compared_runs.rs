@@ -1,4 +1,4 @@
-//! Other runs of the saves folder, shown in the charts beside the current one.
+//! Other runs of the saves folder, which the charts show beside the current run.
 
 use std::path::{Path, PathBuf};
 
@@ -6,37 +6,37 @@ use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{RunSummary, SavesFolder, load_log};
 use snakes_lab::run::BackgroundTask;
 
-/// Known runs, and those compared with the current one.
+/// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
     listing: Option<BackgroundTask<Vec<RunSummary>>>,
-    /// All runs in the saves folder; `None` until listed.
+    /// All runs in the saves folder; `None` until they are listed.
     runs: Option<Vec<RunSummary>>,
     compared: Vec<ComparedCurve>,
-    /// Incremented with every change.
+    /// Version number, which every change increments.
     version: u64,
 }
 
-/// The learning curve of another run, drawn over that of the current one.
+/// Learning curve of another run, drawn in the chart of the current run.
 #[derive(Debug)]
 pub(crate) struct ComparedCurve {
-    /// Its folder.
+    /// Folder of the other run.
     pub folder: PathBuf,
     reading: Option<BackgroundTask<Result<Other, String>>>,
-    /// Contents or read error, once read.
+    /// Contents of the other run or the error of reading it; `None` until it is read.
     pub read: Option<Result<Other, String>>,
 }
 
-/// A run read from the saves folder.
+/// A run that was read from the saves folder.
 #[derive(Debug)]
 pub(crate) struct Other {
-    /// Its plan.
+    /// Plan of the run.
     pub plan: RunPlan,
-    /// Its finished generations, in order.
+    /// Records of the finished generations, in order.
     pub records: Vec<GenerationRecord>,
 }
 
-/// Maximum number of compared runs: the lines of more could not be told apart.
+/// Maximum number of compared runs. The lines of more runs could not be distinguished.
 pub(crate) const MOST_COMPARED: usize = 3;
 
 impl ComparedRuns {
@@ -48,7 +48,7 @@ impl ComparedRuns {
         Ok(())
     }
 
-    /// Adds a run to the comparison, or removes it.
+    /// Adds a run to the comparison, or removes it if it is there.
     pub fn toggle(&mut self, folder: &Path) -> Result<(), String> {
         self.version += 1;
         if let Some(place) = self.compared.iter().position(|run| run.folder == folder) {
@@ -69,7 +69,7 @@ impl ComparedRuns {
         Ok(())
     }
 
-    /// Receives results of the background tasks.
+    /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
         if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
             (self.runs, self.listing) = (Some(runs.unwrap_or_default()), None);
@@ -84,17 +84,17 @@ impl ComparedRuns {
         }
     }
 
-    /// All runs in the saves folder; `None` until listed.
+    /// Returns all runs in the saves folder, or `None` until they are listed.
     pub fn runs(&self) -> Option<&[RunSummary]> {
         self.runs.as_deref()
     }
 
-    /// The runs compared with the current one.
+    /// Returns the runs that are compared with the current one.
     pub fn compared(&self) -> &[ComparedCurve] {
         &self.compared
     }
 
-    /// Changes with every change.
+    /// Returns the version number, which every change increments.
     pub fn version(&self) -> u64 {
         self.version
     }

@@ -1,4 +1,4 @@
-//! Handles events of the background run.
+//! Handles the events of the background run.
 
 use bevy::prelude::*;
 
@@ -14,14 +14,14 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(FixedUpdate, take_in);
 }
 
-/// Evolution starts with the program.
+/// Starts evolution together with the program.
 fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     if let Err(problem) = run.start() {
         notices.problem(problem);
     }
 }
 
-/// Handles events of the background run.
+/// Handles the events of the background run.
 fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     run.others.take_in();
     let Some(background) = &run.background else { return };
@@ -31,7 +31,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
             RunEvent::Opened(opened) => {
                 let OpenedRun { plan_now, reports: behind, .. } = *opened;
                 run.take_in_opened_plan(plan_now);
-                // A later restart must not discard the run again.
+                // The next start must not discard the run again.
                 run.source.earlier = ExistingRun::Keep;
                 run.discarded = None;
                 let has_ended = run.plan_now.has_ended(behind.iter().map(|report| &report.record));
@@ -65,7 +65,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
             }
             RunEvent::Finished { run_hash } => {
                 run.run_hash = Some(run_hash);
-                // Changes requested too late apply to the next run only.
+                // Changes that were requested too late apply only to the next run.
                 run.pending.clear();
                 run.context.set_run_folder(None);
                 notices.important("The run is finished; \"New run\" starts another.".to_owned());
@@ -106,7 +106,7 @@ mod tests {
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
-    /// A studio without a window whose run is saved in this folder.
+    /// Creates a studio without a window, whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
         let options = Options::of_test(small_run(saves, 1, 3), saves.clone());
         let mut app = App::new();
@@ -131,12 +131,12 @@ mod tests {
         panic!("the condition never held");
     }
 
-    /// Calls a fallible method of the run.
+    /// Calls a method of the run that must succeed.
     fn act<T>(app: &mut App, act: impl FnOnce(&mut CurrentRun) -> Result<T, String>) -> T {
         act(&mut app.world_mut().resource_mut::<CurrentRun>()).expect("allowed")
     }
 
-    /// A studio whose run is paused after its first generation.
+    /// Creates a studio whose run is paused after its first generation.
     fn paused_studio() -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let mut app = studio(&SavesFolder::find(Some(folder.path())));
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!([10, 60, 200].map(frame), [12; 3], "20 times a second for 0.6 s");
     }
 
-    /// Number of fixed updates.
+    /// Number of fixed updates so far.
     #[derive(Resource, Default)]
     struct Calls(u32);
 
@@ -179,13 +179,13 @@ mod tests {
             run.set_population(9)?;
             assert!(run.takes_changes().is_err());
             assert_eq!(run.requested_settings().evolution.population, 6);
-            // As undo does.
+            // Undo makes the same change.
             run.set_next_plan(before.clone())?;
             assert_eq!(run.takes_changes(), Ok(()));
             Ok(before)
         });
         act(&mut app, |run| {
-            // As undoing the resumption of this run does, before which another plan was set.
+            // Undo of a resumption makes the same change: another plan was set before.
             let mut other = before;
             other.settings.evolution.population = 5;
             run.set_next_plan_alone(other)?;
@@ -209,7 +209,7 @@ mod tests {
         wait_until(&mut app, |run| !run.reports().is_empty());
         let reports = app.world().resource::<CurrentRun>().reports();
         assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
-        // Later progress is not discarded again.
+        // A reset does not discard later progress again.
         act(&mut app, |run| {
             run.set_seed(2)?;
             run.begin_next()?;
@@ -234,7 +234,7 @@ mod tests {
     fn a_refused_change_does_not_affect_others() {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
-            // The strategy cannot change during a run: this change is refused, those before and after it are made.
+            // The strategy cannot change during a run. This change is refused; those before and after it are made.
             run.change_running("evolution.population", SettingValue::Whole(5))?;
             run.background()?
                 .request_changes([("evolution.strategy".to_owned(), SettingValue::Name("ga"))]);
@@ -299,7 +299,7 @@ mod tests {
         let run = app.world().resource::<CurrentRun>();
         let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
-        // Resumed by another session, it has the same hash and changes.
+        // When the run is resumed after a restart of the program, it has the same hash and changes.
         let (hash, folder) = (run.run_hash(), run.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);

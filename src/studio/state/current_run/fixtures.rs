@@ -11,12 +11,12 @@ use snakes_core::save::{SavesFolder, shipped_champion, store_csv};
 use snakes_core::score::evaluate;
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
-/// The built-in champion, as the file with this number.
+/// Returns the built-in champion, as the file with this number.
 pub fn climber(file: usize) -> StagedChampion {
     StagedChampion::from_file(&shipped_champion().expect("well formed"), file, "climber")
 }
 
-/// A run of 6 snakes for 0.5 s each, which may be saved in this folder.
+/// Creates a run of 6 snakes for 0.5 s each, to be saved in this folder.
 pub fn small_run(saves: &SavesFolder, seed: u64, generations: u32) -> RunSource {
     let mut settings = Settings::default();
     settings.evolution.population = 6;
@@ -25,12 +25,12 @@ pub fn small_run(saves: &SavesFolder, seed: u64, generations: u32) -> RunSource 
     RunSource::in_saves(saves, RunPlan::new("test", seed, settings), ExistingRun::Keep)
 }
 
-/// A run with the report's settings that has not started.
+/// Prepares a run with the report's settings, without starting it.
 pub fn prepared_run() -> CurrentRun {
     run_of(RunPlan::new("report", 1, Settings::default()))
 }
 
-/// A small MAP-Elites run after two generations.
+/// Creates a small MAP-Elites run with two finished generations.
 pub fn explored_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::MapElites;
@@ -38,7 +38,7 @@ pub fn explored_run() -> CurrentRun {
     evolved_run(settings)
 }
 
-/// Run of NEAT with two finished generations of several species.
+/// Creates a run of NEAT with two finished generations of several species.
 pub fn species_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::Neat;
@@ -47,7 +47,7 @@ pub fn species_run() -> CurrentRun {
     evolved_run(settings)
 }
 
-/// Run of MAP-Elites over bodies with two finished generations.
+/// Creates a run of MAP-Elites over bodies with two finished generations.
 pub fn bodies_run() -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.strategy = StrategyKind::BodyMapElites;
@@ -56,7 +56,7 @@ pub fn bodies_run() -> CurrentRun {
     evolved_run(settings)
 }
 
-/// Run of these settings with two finished generations of 20 snakes for 1 s.
+/// Creates a run with these settings and two finished generations of 20 snakes for 1 s.
 fn evolved_run(mut settings: Settings) -> CurrentRun {
     settings.evolution.population = 20;
     settings.trial.duration_s = 1.0;
@@ -74,7 +74,7 @@ fn evolved_run(mut settings: Settings) -> CurrentRun {
     run
 }
 
-/// The explored run after a third generation, whose best snake has landed.
+/// Creates the run of `explored_run` with a third generation, whose best snake has landed.
 pub fn landed_run() -> CurrentRun {
     let mut run = explored_run();
     let mut report = run.reports.last().expect("two generations").clone();
@@ -86,7 +86,8 @@ pub fn landed_run() -> CurrentRun {
     run
 }
 
-/// The explored run, compared with another run of two generations in this folder, whose log may be damaged.
+/// Creates the run of `explored_run`, compared with another run of two generations in this folder. The log of the other
+/// run can be damaged.
 pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
     let mut settings = Settings::default();
     settings.evolution.population = 4;
@@ -149,7 +150,7 @@ fn a_reset_that_discards_finished_generations_says_so_and_offers_to_resume_them(
     assert_eq!(notices.last(), Some(news));
     let resume = Command::Run(RunCommand::Continue(folder));
     assert_eq!(notices.last_offers(), [("Resume it instead".to_owned(), resume)]);
-    // A second reset loses nothing, so it gives no further notice.
+    // A second reset discards nothing, so it causes no further message.
     run.apply(&RunCommand::Reset, &mut notices).expect("allowed");
     assert_eq!(notices.len(), 1);
 }

@@ -1,4 +1,4 @@
-//! Looks up individuals of the current run by their place.
+//! Finds individuals of the current run by their place: generation and index.
 
 use std::sync::Arc;
 
@@ -9,14 +9,14 @@ use snakes_core::score::{Evaluation, Trial, evaluate};
 use snakes_lab::run::{Ancestor, Generation, caught};
 
 impl CurrentRun {
-    /// An individual of the latest generation, a champion, or an individual with descendants; `None` if it is not kept.
-    /// An unknown evaluation is computed again.
+    /// Returns an individual of the latest generation, a champion, or an individual with descendants; `None` if the
+    /// individual is not kept. An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
         let genome = (*self.genome_of(place)?).clone();
         self.found(place, genome, self.trial_of(place), self.evaluation_of(place))
     }
 
-    /// A member of the Pareto front of distance and energy.
+    /// Returns the member of the Pareto front of distance and energy at this place.
     pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
         let mut members = self.exploration()?.front.members();
         let member =
@@ -26,7 +26,7 @@ impl CurrentRun {
         self.found(place, genome, trial, Some(member.evaluation))
     }
 
-    /// The elite of an archive cell. The archive keeps genes and fitness; the evaluation is computed again.
+    /// Returns the elite of an archive cell. The archive keeps the elite's genes and fitness; the evaluation is computed again.
     pub fn elite(&self, cell: u32) -> Option<Champion> {
         let elite = self.exploration()?.archive.as_ref()?.elite(cell)?;
         let trial = self.trial_in(elite.generation);
@@ -34,7 +34,8 @@ impl CurrentRun {
         self.found(elite.id(), genome, trial, None)
     }
 
-    /// The agent of stairs that evolved. The tree keeps its genes; the evaluation is computed again.
+    /// Returns the agent that is paired with evolved stairs. The tree of stairs keeps the agent's genes; the evaluation
+    /// is computed again.
     pub fn stairs_agent(&self, node: u32) -> Option<Champion> {
         let tree = self.exploration()?.stairs.as_ref()?;
         let node = tree.nodes.get(node as usize)?;
@@ -44,7 +45,7 @@ impl CurrentRun {
         self.found(place, agent.genome.clone(), node.trial(&self.settings().trial), None)
     }
 
-    /// An individual of this run. An unknown evaluation is computed again; `None` if the simulation panics.
+    /// Builds the champion of a known genome. Computes an unknown evaluation again; returns `None` if the simulation panics.
     pub(super) fn found(
         &self,
         place: IndividualId,
@@ -62,13 +63,14 @@ impl CurrentRun {
         Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
     }
 
-    /// The latest generation with all its individuals, if it has this number.
+    /// Returns the latest generation with all its individuals, if it has this number.
     pub(super) fn latest(&self, number: u32) -> Option<&Generation> {
         let latest = self.exploration()?.generation.as_deref()?;
         (latest.number == number).then_some(latest)
     }
 
-    /// The trial in which an individual was evaluated: where stairs evolve, on its own, if they are known.
+    /// Returns the trial in which an individual was evaluated. Where stairs evolve, the trial has the individual's own
+    /// stairs if they are known.
     pub(super) fn trial_of(&self, place: IndividualId) -> Trial {
         let trial = self.trial_in(place.generation);
         let latest = self.latest(place.generation);
@@ -77,7 +79,7 @@ impl CurrentRun {
         own.map(|own| own.on(&trial)).or_else(of_champion).unwrap_or(trial)
     }
 
-    /// The trial in which the individuals of a generation were evaluated.
+    /// Returns the trial in which the individuals of a generation were evaluated.
     pub(super) fn trial_in(&self, generation: u32) -> Trial {
         let trial = self.plan_now.trial_in(generation);
         let index = generation.checked_sub(1).map(|index| index as usize);
@@ -88,7 +90,7 @@ impl CurrentRun {
         }
     }
 
-    /// The genome of an individual, if it is kept.
+    /// Returns the genome of an individual, if it is kept.
     pub fn genome_of(&self, place: IndividualId) -> Option<Arc<Genome>> {
         let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|latest| latest.genomes.get(place.individual as usize));
@@ -100,23 +102,23 @@ impl CurrentRun {
         of_latest.or_else(of_ancestor).cloned().or_else(of_champion)
     }
 
-    /// The parents of an individual, if they are kept.
+    /// Returns the parents of an individual, if they are kept.
     pub fn parents_of(&self, place: IndividualId) -> Option<Parents> {
         let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|of| of.parents.get(place.individual as usize)).copied();
         of_latest.or_else(|| Some(self.ancestor(place)?.parents))
     }
 
-    /// An individual with descendants.
+    /// Returns an individual with descendants, if it is kept.
     fn ancestor(&self, place: IndividualId) -> Option<&Arc<Ancestor>> {
         let exploration = self.exploration()?;
-        // A line may have ten thousand generations, each of which is looked up, so build a map once.
+        // A line of descent may have ten thousand generations, each of which is looked up, so a map is built once.
         let ancestors = self.ancestors.get_or_init(|| {
             let ancestry = &exploration.ancestry;
             let parents = exploration.parents.iter().map(|(parent, _)| parent);
             let all = parents.rev().chain(ancestry.others.iter().rev());
             let all = all.chain(ancestry.line.iter().rev());
-            // If several share a place, the first of the line wins, since it is inserted last.
+            // If several ancestors share a place, the one of the line is inserted last and stays.
             all.map(|ancestor| (ancestor.place, Arc::clone(ancestor))).collect()
         });
         ancestors.get(&place)

@@ -1,4 +1,4 @@
-//! Changes of the current run's settings, and founders of the next run.
+//! Changes of the current run's settings, and the founder of the next run.
 
 use std::borrow::Cow;
 
@@ -11,12 +11,12 @@ use snakes_core::schema::{Setting, SettingValue, list};
 use snakes_lab::run::THREADS_RANGE;
 
 impl CurrentRun {
-    /// Whether a run is in progress whose settings could change.
+    /// Returns whether a run is in progress, running or paused.
     pub fn is_under_way(&self) -> bool {
         matches!(self.status(), RunStatus::Running | RunStatus::Paused)
     }
 
-    /// Whether a setting, by its full dotted name, may change in the current run. The error is a sentence for a tooltip.
+    /// Checks whether a setting, by its full dotted name, may change in the current run. The error is a sentence for a tooltip.
     pub(super) fn run_allows(&self, field: &str) -> Result<(), &'static str> {
         if !self.is_under_way() {
             return Err("No run is in progress, so a change takes effect with the next run.");
@@ -24,7 +24,7 @@ impl CurrentRun {
         may_change_during_run(field, self.settings())
     }
 
-    /// Whether the current run accepts changes of settings at all. The error is a sentence for a tooltip.
+    /// Checks whether edits of settings also apply to the current run. The error is a sentence for a tooltip.
     pub fn takes_changes(&self) -> Result<(), &'static str> {
         if self.is_lent {
             return Err("A lesson is open and your own run is paused.");
@@ -53,32 +53,32 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Changes made in the current run, in order, for marks in a chart.
+    /// Returns the changes that were made in the current run, in order.
     pub fn changes(&self) -> &[SettingChange] {
         self.plan_now.changes.made()
     }
 
-    /// Settings of the current run once its pending changes are made.
+    /// Returns the settings of the current run with its pending changes.
     pub(super) fn requested_settings(&self) -> Cow<'_, Settings> {
-        // Panels ask for each of their rows in every frame, and changes are rarely pending.
+        // Panels call this function for each of their rows in every frame, and changes are rarely pending.
         if self.pending.is_empty() {
             return Cow::Borrowed(&self.plan_now.settings);
         }
         let change = |settings: Settings, (field, value): &(String, SettingValue)| {
-            // A setting of an option that is no longer selected does not exist and can be skipped.
+            // A setting of an option that has been deselected does not exist and is skipped.
             with_value(&settings, field, value).unwrap_or(settings)
         };
         Cow::Owned(self.pending.iter().fold(self.plan_now.settings.clone(), change))
     }
 
-    /// Removes a pending change of a setting, by its full dotted name, because it was made or refused.
+    /// Removes a pending change of a setting, by its full dotted name, after the change was made or refused.
     pub(super) fn settle_change(&mut self, field: &str) {
         if let Some(place) = self.pending.iter().position(|(pending, _)| pending == field) {
             self.pending.remove(place);
         }
     }
 
-    /// Stores the plan of an opened run. If earlier sessions changed its settings, the next run gets the changed
+    /// Stores the plan of an opened run. If the run's settings changed earlier, the next run also gets the changed
     /// settings.
     pub(super) fn take_in_opened_plan(&mut self, plan_now: RunPlan) {
         if plan_now.changes.made().is_empty() {
@@ -91,13 +91,13 @@ impl CurrentRun {
         }
     }
 
-    /// Number of evaluation threads.
+    /// Returns number of evaluation threads.
     pub fn threads(&self) -> usize {
         self.context.evaluator.workers()
     }
 
     /// Sets the number of evaluation threads, from the next generation on and for later runs. Results do not depend on
-    /// it.
+    /// this number.
     pub fn set_threads(&mut self, threads: usize) -> Result<(), String> {
         within("threads", threads, THREADS_RANGE).map_err(|error| error.to_string())?;
         let evaluator = self.context.evaluator.with_workers(threads);
@@ -108,8 +108,8 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Prepares the next run so that it descends from a champion, in the champion's own world. The ranges of the
-    /// genome are widened to include the champion. A run that has not begun is replaced at once.
+    /// Makes the next run descend from a champion, in the champion's own world. The ranges of the genome are widened to
+    /// include the champion. A run that has not begun is replaced at once.
     pub fn start_next_from(&mut self, champion: &Champion, name: &str) -> Result<(), String> {
         let next = &self.plan_next;
         let mut settings = Settings {
@@ -127,24 +127,24 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Lets the next run start from random snakes again.
+    /// Removes the next run's founder, so that the run starts from random snakes.
     pub fn forget_founder(&mut self) -> Result<(), String> {
         self.plan_next.founder = None;
         self.take_over_if_ready()
     }
 
-    /// Name of the current run's founder, if any.
+    /// Returns name of the current run's founder, if any.
     pub fn founder(&self) -> Option<&str> {
         self.source.plan.founder.as_ref().map(|founder| founder.name())
     }
 
-    /// Name of the next run's founder, if any.
+    /// Returns name of the next run's founder, if any.
     pub fn next_founder(&self) -> Option<&str> {
         self.plan_next.founder.as_ref().map(|founder| founder.name())
     }
 }
 
-/// Description of a change: "From generation 8: mutation range 50 N·m".
+/// Describes a change of a setting: "From generation 8: mutation range 50 N·m".
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
     let setting = setting_of(field);
@@ -155,18 +155,18 @@ pub(crate) fn news_of(change: &SettingChange) -> String {
     format!("From generation {generation}: {} {value}{unit}", name_of(field))
 }
 
-/// Why a requested change was not made: "Population was not changed in the current run: ...".
+/// Describes why a requested change was not made: "Population was not changed in the current run: ...".
 pub(super) fn refusal_in_words(field: &str, reason: &str) -> String {
     let name = setting_of(field).map_or(field, |setting| setting.label);
     format!("{name} was not changed in the current run: {reason}")
 }
 
-/// The name of the setting with this full dotted name, as it stands within a sentence.
+/// Returns the name of the setting with this full dotted name, in the form for a sentence.
 fn name_of(field: &str) -> String {
     setting_of(field).map_or_else(|| field.to_owned(), |setting| setting.short_name())
 }
 
-/// The declaration of the setting with this full dotted name.
+/// Returns the declaration of the setting with this full dotted name.
 fn setting_of(field: &str) -> Option<Setting> {
     let all = list(&Settings::default());
     all.into_iter().find(|listed| listed.path == field).map(|listed| listed.setting)

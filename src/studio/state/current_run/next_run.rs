@@ -9,28 +9,28 @@ use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_eng
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
-    /// Seed of the next run.
+    /// Returns seed of the next run.
     pub fn next_seed(&self) -> u64 {
         self.plan_next.seed
     }
 
-    /// Settings of the next run.
+    /// Returns the settings of the next run.
     pub fn next_settings(&self) -> &Settings {
         &self.plan_next.settings
     }
 
-    /// The plan of the next run.
+    /// Returns the plan of the next run.
     pub fn next_plan(&self) -> &RunPlan {
         &self.plan_next
     }
 
-    /// Name of the preset that the next run starts from.
+    /// Returns the name of the next run's preset.
     pub fn next_preset(&self) -> &str {
         &self.plan_next.preset
     }
 
-    /// Whether the next run's seed, preset, founder or settings differ from those of the current run with its pending
-    /// changes.
+    /// Returns whether the next run's seed, preset, founder or settings differ from those of the current run with its
+    /// pending changes.
     pub fn next_run_differs(&self) -> bool {
         let (now, next) = (&self.plan_now, &self.plan_next);
         let of = |plan: &RunPlan| (plan.seed, plan.preset.clone());
@@ -39,25 +39,26 @@ impl CurrentRun {
             || *self.requested_settings() != next.settings
     }
 
-    /// Sets the seed of the next run. A run that has not started takes it at once.
+    /// Sets the seed of the next run. It also applies to a run that has not started.
     pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
         self.plan_next.seed = seed;
         self.take_over_if_ready()
     }
 
-    /// Sets the population of the next run. A run that has not started takes it at once; a run in progress takes it
-    /// with its next generation if its strategy allows this.
+    /// Sets the population of the next run. It also applies to a run that has not started and, from the next generation
+    /// on, to a run in progress whose strategy allows this.
     pub fn set_population(&mut self, population: u32) -> Result<(), String> {
         self.set_field("evolution.population", &population.to_string())
     }
 
-    /// Sets one setting of the next run, by its name. A run that has not started takes it at once; a run in progress
-    /// takes it with its next generation if this setting may change.
+    /// Sets one setting of the next run, by its name. It also applies to a run that has not started and, from the next
+    /// generation on, to a run in progress if the setting may change.
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
         self.set_fields(&[(field, text)])
     }
 
-    /// Sets several settings of the next run at once, as [`Self::set_field`] does, and the engine rapier where the bodies demand it.
+    /// Sets several settings of the next run at once, as [`Self::set_field`] does. Also selects the engine rapier if
+    /// the bodies require it.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
         let settings = with_fields_and_engine(&next.settings, changes)
@@ -65,13 +66,13 @@ impl CurrentRun {
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }
 
-    /// Replaces the next run's plan. A run that has not started takes it at once. Settings that may change during a run
-    /// also change in the current one, unless the plan is that of another preset or run.
+    /// Replaces the next run's plan. It also applies to a run that has not started. Settings that may change during a
+    /// run also change in the current run, unless the plan is that of another preset or run.
     pub fn set_next_plan(&mut self, plan: RunPlan) -> Result<(), String> {
         self.replace_next(plan, true)
     }
 
-    /// Replaces the next run's plan without changing the current run.
+    /// Replaces the next run's plan without changing a run in progress.
     pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
         self.replace_next(plan, false)
     }
@@ -96,7 +97,7 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Whether edits of the next run's settings are meant for the current run, too: both have the same search settings.
+    /// Returns whether edits of the next run's settings also apply to the current run: both have the same search settings.
     pub(super) fn next_suits_run(&self) -> bool {
         let (next, requested) = (&self.plan_next, self.requested_settings());
         let is_same_preset = next.preset == self.plan_now.preset;
@@ -104,27 +105,27 @@ impl CurrentRun {
         next.settings == *requested || (is_same_preset && is_same_search)
     }
 
-    /// Presets to choose from.
+    /// Returns the presets that the user can choose.
     pub fn presets(&self) -> &KnownFiles<Preset> {
         &self.context.presets
     }
 
-    /// Reads the user's presets again.
+    /// Rereads the user's presets.
     pub fn list_presets(&mut self) {
         self.context.presets = Arc::new(KnownFiles::read(&self.context.saves));
     }
 
-    /// Stairs to choose from.
+    /// Returns the stairs that the user can choose.
     pub fn known_stairs(&self) -> &KnownFiles<NamedStairs> {
         &self.context.stairs
     }
 
-    /// Reads the user's stairs again.
+    /// Rereads the user's stairs.
     pub fn list_stairs(&mut self) {
         self.context.stairs = Arc::new(KnownFiles::read(&self.context.saves));
     }
 
-    /// The folder with the user's stairs.
+    /// Returns the folder with the user's stairs.
     pub fn stairs_folder(&self) -> PathBuf {
         self.context.saves.own_folder::<NamedStairs>()
     }
@@ -139,17 +140,17 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Unchanged settings of the next run's preset, if known.
+    /// Returns the unchanged settings of the next run's preset, if they are known.
     pub fn preset_settings(&self) -> Option<&Settings> {
         self.settings_of(self.next_preset())
     }
 
-    /// The preset of the current run in words: "climb", or "climb, changed" if the run has other settings.
+    /// Describes the preset of the current run: "climb", or "climb, changed" if the run has other settings.
     pub fn preset_in_words(&self) -> String {
         self.in_words(self.preset(), self.settings())
     }
 
-    /// The preset of the next run in words, like [`Self::preset_in_words`].
+    /// Describes the preset of the next run, like [`Self::preset_in_words`].
     pub fn next_preset_in_words(&self) -> String {
         self.in_words(self.next_preset(), self.next_settings())
     }
@@ -159,7 +160,7 @@ impl CurrentRun {
         if is_changed { format!("{preset}, changed") } else { preset.to_owned() }
     }
 
-    /// Unchanged settings of a preset, if known.
+    /// Returns the unchanged settings of a preset, if they are known.
     fn settings_of(&self, name: &str) -> Option<&Settings> {
         let first = &self.context.first.plan;
         // The program may have been started with a preset file.
@@ -178,7 +179,7 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Sets the preset of the next run: a built-in one or one of the user's own.
+    /// Sets the preset of the next run, a built-in preset or one of the user's own, and its settings.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
         let preset = match self.context.presets.find(name)? {
             Some(preset) => preset.clone(),
@@ -188,8 +189,8 @@ impl CurrentRun {
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 
-    /// Restores the next run's world from an earlier plan, or all its settings if that plan has another preset. The
-    /// seed stays.
+    /// Restores the next run's world from an earlier plan, or all settings if the earlier plan has another preset. The
+    /// seed is kept.
     pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
         let mut next = self.next_plan().clone();
         if next.preset == before.preset {
@@ -199,7 +200,7 @@ impl CurrentRun {
             next.settings = before.settings.clone();
             next.founder.clone_from(&before.founder);
         }
-        // A founder chosen meanwhile may not fit that world.
+        // A founder that was chosen meanwhile may not fit the restored world.
         if next.check_founder().is_err() {
             next.founder = None;
         }

@@ -9,17 +9,17 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::{SavePlace, read_notes};
 
 impl CurrentRun {
-    /// Name of the run for people: the name that the user gave it, if any, with its preset and seed.
+    /// Returns the run's name for the user: the user's own name for it, if any, with its preset and seed.
     fn name(&self) -> String {
         let notes = read_notes(&SavePlace::Run(self.source.folder.clone())).unwrap_or_default();
         let plan = format!("{}, seed {}", self.source.plan.preset, self.source.plan.seed);
         notes.own_name().map_or(plan.clone(), |own| format!("{own}: {plan}"))
     }
 
-    /// Executes a command.
+    /// Executes a command to the current run.
     ///
     /// # Errors
-    /// The run, its folder or the system does not allow it, with the reason.
+    /// The run, its folder or the operating system does not allow the command, for the returned reason.
     pub fn apply(&mut self, command: &RunCommand, notices: &mut Notices) -> Result<(), String> {
         match command {
             RunCommand::Start => self.start(),

@@ -1,4 +1,4 @@
-//! The run on other computers: which evaluator it uses, and what happens when their results turn out to be wrong.
+//! The run on other computers: the choice of its evaluator, and the reaction to wrong results.
 
 use std::sync::Arc;
 
@@ -7,14 +7,14 @@ use snakes_core::save::{ExistingRun, run_name};
 use snakes_lab::run::{Evaluator, RunSource};
 
 impl CurrentRun {
-    /// The evaluator of the next generation.
+    /// Returns the evaluator of the next generation.
     pub(super) fn evaluator(&self) -> Arc<dyn Evaluator> {
         let shared = self.shared.as_ref().map(|(evaluator, _)| evaluator);
         Arc::clone(shared.unwrap_or(&self.context.evaluator))
     }
 
-    /// Uses an evaluator on other computers from the next generation of this run on, or the threads of this computer
-    /// again. Results do not depend on it.
+    /// Evaluates on other computers from the run's next generation on or, with `None`, on this computer only. Results
+    /// do not depend on the evaluator.
     pub fn share(&mut self, shared: Option<Arc<dyn Evaluator>>) {
         self.shared = shared.map(|evaluator| (evaluator, self.reports.len()));
         if let Some(background) = &self.background {
@@ -22,28 +22,28 @@ impl CurrentRun {
         }
     }
 
-    /// Whether other computers evaluate the next generation, too.
+    /// Returns whether other computers take part in the evaluation of the next generation.
     #[cfg(test)]
     pub fn is_shared(&self) -> bool {
         self.shared.is_some()
     }
 
-    /// Whether other computers evaluate the generation in progress, too.
+    /// Returns whether other computers take part in the evaluation of the generation in progress.
     pub fn is_shared_by_now(&self) -> bool {
         self.shared.as_ref().is_some_and(|(_, before)| self.reports.len() > *before)
     }
 
-    /// Whether a run is in progress that other computers could evaluate, and its name.
+    /// Returns the name of the run in progress, if there is one that other computers could evaluate.
     pub fn to_share(&self) -> Option<String> {
         let is_open = matches!(self.status(), RunStatus::Running | RunStatus::Paused);
         is_open.then(|| run_name(&self.source.plan))
     }
 
-    /// Stops the run, because results in it cannot be trusted, and holds it before its first generation. What was saved
-    /// of it is discarded, so that nobody continues it.
+    /// Stops the run because its results cannot be trusted, and holds it before its first generation. The saved
+    /// generations are discarded, so that nobody resumes them.
     ///
     /// # Errors
-    /// The run cannot be opened again, with the reason.
+    /// The run cannot be opened again, for the returned reason.
     pub fn end_untrusted(&mut self, reason: String) -> Result<(), String> {
         self.context.set_run_folder(None);
         self.replace(RunSource { earlier: ExistingRun::Discard, ..self.source.clone() });
@@ -51,12 +51,12 @@ impl CurrentRun {
         self.background().map(drop)
     }
 
-    /// Stops the run because the window closes, and lets go of its evaluator.
+    /// Stops the run and releases its evaluator, because the window closes.
     pub fn stop_at_the_end(&mut self) {
         (self.background, self.before) = (None, None);
     }
 
-    /// Why results cannot be trusted that other computers sent; once.
+    /// Returns the reason why results of other computers cannot be trusted, if there is one. Reports it only once.
     pub fn take_fault(&mut self) -> Option<String> {
         self.fault.take()
     }

@@ -1,4 +1,4 @@
-//! The generations that the stage shows whole.
+//! Generations that the stage can show with all their snakes.
 
 use std::sync::Arc;
 
@@ -10,20 +10,20 @@ use snakes_core::evolve::IndividualId;
 use snakes_lab::run::GenerationReport;
 
 impl CurrentRun {
-    /// The generations that were better than all before them, the first first.
+    /// Returns the generations that were better than all earlier ones, the earliest first.
     pub fn milestones(&self) -> &[Milestone] {
         self.milestones.all()
     }
 
-    /// Notes a finished generation if it is better than all before it.
+    /// Records a finished generation as a milestone if it is better than all earlier ones.
     pub(super) fn note_milestone(&mut self, report: &GenerationReport) {
         let explored = self.exploration.as_deref();
         let latest = explored.and_then(|explored| explored.generation.as_deref());
         self.milestones.note(report, latest.filter(|of| of.number == report.generation));
     }
 
-    /// A generation for the stage: all its snakes if they are kept, else its best alone; none if it is unknown or all
-    /// its snakes were disqualified.
+    /// Returns a generation to show on the stage: all its snakes if they are kept, or else its champion alone. `None`
+    /// if the generation is unknown or all its snakes were disqualified.
     pub fn whole_generation(&self, number: u32) -> Option<Show> {
         let milestone = self.milestones().iter().find(|milestone| milestone.generation == number);
         let whole = milestone.filter(|milestone| milestone.is_whole());

@@ -1,4 +1,4 @@
-//! Copies pictures and paths to the clipboard, on a thread of its own because the desktop may take its time.
+//! Copies pictures and paths to the clipboard, on a separate thread, because the desktop can be slow.
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -9,17 +9,17 @@ use bevy::platform::cell::SyncCell;
 use snakes_core::save::{Picture, load_picture};
 use snakes_lab::run::BackgroundTask;
 
-/// Content for the clipboard.
+/// Content to copy to the clipboard.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Copied {
-    /// The picture in this file.
+    /// The picture that this file contains.
     Picture(PathBuf),
-    /// The path itself, as text.
+    /// This path itself, as text.
     Path(PathBuf),
 }
 
 impl Copied {
-    /// The message after it was copied.
+    /// Returns the message for the user after the content was copied.
     pub fn message(&self) -> &'static str {
         match self {
             Self::Picture(_) => "The picture is in the clipboard.",
@@ -28,13 +28,13 @@ impl Copied {
     }
 }
 
-/// The clipboard, which must be kept: on X11 what was copied is lost with it.
+/// The clipboard, which must be kept: on X11 the copied content is lost when the clipboard is dropped.
 type KeptClipboard = SyncCell<Option<Clipboard>>;
 
-/// The clipboard and whether the copy worked.
+/// The clipboard, and whether copying succeeded.
 type CopyResult = (KeptClipboard, Result<(), String>);
 
-/// Copies one thing at a time.
+/// Copies to the clipboard in the background, one content at a time.
 #[derive(Default)]
 pub struct CopyTask {
     kept: Option<KeptClipboard>,
@@ -42,10 +42,10 @@ pub struct CopyTask {
 }
 
 impl CopyTask {
-    /// Starts to copy something.
+    /// Starts to copy a content.
     ///
     /// # Errors
-    /// Something is being copied, or no thread can be started.
+    /// Another content is still being copied, or no thread can be started.
     pub fn start(&mut self, copied: Copied) -> Result<(), String> {
         if self.running.is_some() {
             return Err("The clipboard is still busy with the last copy.".to_owned());
@@ -61,7 +61,7 @@ impl CopyTask {
         Ok(())
     }
 
-    /// Kind of the copied content and the result, once it is done.
+    /// Returns the copied content and the result when copying has finished.
     pub fn poll(&mut self) -> Option<(Copied, Result<(), String>)> {
         let result = self.running.as_ref()?.1.poll()?;
         let (copied, _) = self.running.take()?;
@@ -91,7 +91,7 @@ fn copy(clipboard: &mut Option<Clipboard>, copied: &Copied) -> Result<(), String
     .map_err(|error| error.to_string())
 }
 
-/// The picture in a file, with an opaque alpha channel.
+/// Reads the picture in a file, and adds an opaque alpha channel.
 fn rgba(path: &Path) -> Result<ImageData<'static>, String> {
     let Picture { width, height, rgb } = load_picture(path).map_err(|error| error.to_string())?;
     let opaque = |&[red, green, blue]: &[u8; 3]| [red, green, blue, u8::MAX];

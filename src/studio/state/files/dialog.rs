@@ -1,4 +1,4 @@
-//! The system's dialogs for files, and its file manager.
+//! File dialogs of the operating system, and its file manager.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use super::portal;
 use crate::studio::commands::files::FileQuestion;
 use snakes_lab::run::BackgroundTask;
 
-/// The paths chosen in a dialog, none if it was cancelled; or why there is no dialog.
+/// Paths that the user chose in a dialog, none if it was cancelled, or the reason why there is no dialog.
 pub type DialogAnswer = Result<Vec<PathBuf>, String>;
 
 /// Time after which a file manager that is still starting counts as opened.
 const OPENED_AFTER: Duration = Duration::from_secs(10);
 
-/// Opens the dialog that asks a question, beside the window, which goes on. The caller must be the main thread.
+/// Opens the file dialog for a question. The window keeps running meanwhile. Must be called on the main thread.
 ///
 /// # Errors
 /// No thread can be started to wait for the answer.
@@ -58,10 +58,10 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
     })
 }
 
-/// Shows a folder in the system's file manager.
+/// Shows a folder in the operating system's file manager.
 ///
 /// # Errors
-/// There is no such folder, or nothing that shows it.
+/// The folder does not exist, or no file manager can show it.
 pub fn open_folder(folder: &Path) -> Result<(), String> {
     let why = |error: io::Error| {
         format!("{}: cannot be shown in a file manager: {error}", folder.display())

@@ -1,10 +1,10 @@
-//! Whether the system can show a dialog for files. On Linux the desktop's portal shows it, which not every desktop has;
-//! without it, a dialog could not be told from a cancelled one.
+//! Checks whether a file dialog can be shown. On Linux the desktop's portal shows it, which not every desktop has.
+//! Without the portal, a failed dialog could not be distinguished from a cancelled one.
 
 #[cfg(target_os = "linux")]
 pub use linux::check;
 
-/// Windows and macOS always have dialogs.
+/// Always succeeds, because Windows and macOS have file dialogs.
 #[cfg(not(target_os = "linux"))]
 pub fn check() -> Result<(), String> {
     Ok(())
@@ -18,15 +18,15 @@ mod linux {
 
     use bevy::tasks::block_on;
 
-    /// Time in which a portal must answer. The bus may have to start it first.
+    /// Maximum time that a portal may take to answer. The bus may have to start the portal first.
     const TIMEOUT: Duration = Duration::from_secs(5);
-    /// Shows dialogs where there is no portal.
+    /// Program that shows file dialogs where there is no portal.
     const SUBSTITUTE: &str = "zenity";
 
-    /// Checks that something shows dialogs. Takes up to some seconds.
+    /// Checks that file dialogs can be shown. May take some seconds.
     ///
     /// # Errors
-    /// Nothing does, in a sentence.
+    /// Nothing can show file dialogs; the error is a sentence for the user.
     pub fn check() -> Result<(), String> {
         if block_on(portal_version()).is_ok()
             || is_installed(SUBSTITUTE, env::var_os("PATH").as_deref())
@@ -37,7 +37,7 @@ mod linux {
             .to_owned())
     }
 
-    /// The version of the portal's dialogs for files; an error if no portal has them.
+    /// Returns the version of the portal's file dialogs, or an error if there is no such portal.
     async fn portal_version() -> zbus::Result<u32> {
         let session = zbus::connection::Builder::session()?.method_timeout(TIMEOUT);
         let connection = session.build().await?;

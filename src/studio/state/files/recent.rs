@@ -1,37 +1,37 @@
-//! Files that were opened or imported lately, for the menu.
+//! Files that were opened or imported recently, for the menu.
 
 use std::path::{Path, PathBuf};
 
 use crate::studio::commands::files::FileQuestion;
 use snakes_core::save::MAX_RECENT;
 
-/// Files that were opened or imported lately, the latest first.
+/// Files that were opened or imported recently, the latest first.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct RecentFiles(Vec<PathBuf>);
 
 impl RecentFiles {
-    /// The files as they were kept.
+    /// Restores the files from their stored paths.
     pub fn from_texts(texts: &[String]) -> Self {
         Self(texts.iter().map(PathBuf::from).take(MAX_RECENT).collect())
     }
 
-    /// The files in a form that can be kept; those whose path is no text are left out.
+    /// Returns the paths as texts to store. Paths that are not valid Unicode are left out.
     pub fn to_texts(&self) -> Vec<String> {
         self.0.iter().filter_map(|path| path.to_str().map(str::to_owned)).collect()
     }
 
-    /// The files, the latest first.
+    /// Returns the paths of the files, the latest first.
     pub fn paths(&self) -> impl ExactSizeIterator<Item = &Path> {
         self.0.iter().map(PathBuf::as_path)
     }
 
-    /// Notes the files that answer a question. Those that no longer exist are removed.
+    /// Adds the files that answer a question, and removes files that do not exist any more.
     pub fn note(&mut self, question: &FileQuestion, paths: &[PathBuf]) {
         if matches!(question, FileQuestion::Export(_)) {
             return;
         }
         for path in paths.iter().rev() {
-            // A path relative to the working directory would lead elsewhere next time.
+            // A path relative to the working directory could refer to another file after a restart.
             let path = std::path::absolute(path).unwrap_or_else(|_| path.clone());
             self.0.retain(|known| *known != path);
             if path.exists() {

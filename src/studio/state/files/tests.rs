@@ -5,7 +5,7 @@ use snakes_core::save::SavesFolder;
 use snakes_core::save::library::SavePlace;
 use snakes_core::save::{shipped_champion, store_champion};
 
-/// Files and a library in an empty folder, and a champion elsewhere.
+/// The state of files and a library in an empty folder, and a champion elsewhere.
 struct Tried {
     _folder: tempfile::TempDir,
     champion: PathBuf,
@@ -36,7 +36,7 @@ impl Tried {
         self.files.apply(command, &mut self.library, &mut self.history, &mut self.notices)
     }
 
-    /// Waits until a report was shown, and returns it.
+    /// Waits until a message was shown, and returns it.
     fn report(&mut self) -> String {
         while self.notices.len() == 0 {
             self.files.report(&mut self.notices);

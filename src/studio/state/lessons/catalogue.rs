@@ -15,11 +15,11 @@ use snakes_core::score::evaluate;
 
 use super::lesson::{Lesson, Side};
 
-/// Why a snake that ends further may not have more fitness.
+/// Explanation why a snake that ends further does not always have greater fitness.
 pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it stops counting at 26.00 m, where the \
     whole snake is on the landing.";
 
-/// All lessons. Only findings and conclusions may state a result: the other texts are read before the experiments.
+/// All lessons. Only findings and conclusions may state a result, because the other texts are shown before the experiments.
 pub(crate) const LESSONS: [Lesson; 9] = [
     report::FRICTION,
     report::FRAME_RATE,
@@ -32,7 +32,7 @@ pub(crate) const LESSONS: [Lesson; 9] = [
     ladder::LADDER,
 ];
 
-/// A built-in champion in each of these worlds or bodies.
+/// Returns a built-in champion in each of these worlds or bodies.
 pub(super) fn champions(
     champion: &'static str,
     lanes: &[Side],
@@ -59,7 +59,7 @@ pub(super) fn champions(
         .collect()
 }
 
-/// A champion whose body has changed, with its old gait.
+/// Returns a champion with a changed body and its old gait.
 fn with_changed_body(
     champion: &Champion,
     change: BodyChange,
@@ -73,7 +73,7 @@ fn with_changed_body(
     Ok(StagedChampion::from_lesson(&Champion { genome, evaluation, ..champion.clone() }))
 }
 
-/// Plan and thread count of a run: a preset with changes.
+/// Returns the plan and the thread count of a run: a preset with changes.
 pub(super) fn plan(preset: &str, side: &Side) -> Result<(RunPlan, usize), String> {
     let preset = load_preset(preset).map_err(|error| error.to_string())?;
     let settings = with_fields(&preset.settings, side.changes.iter().copied())

@@ -3,33 +3,33 @@
 use snakes_core::evolve::Champion;
 use snakes_lab::run::GenerationReport;
 
-/// Results of a lesson's run.
+/// Results of one run of a lesson.
 #[derive(Debug, Clone)]
 pub(crate) struct Found {
     /// Name of the run.
     pub name: String,
-    /// Reports of the finished generations.
+    /// Reports of the run's finished generations.
     pub reports: Vec<GenerationReport>,
-    /// Hash, once the run is finished.
+    /// Hash of the run; `None` until the run is finished.
     pub run_hash: Option<u64>,
 }
 
 impl Found {
-    /// The best champion so far.
+    /// Returns the best champion so far.
     pub fn best(&self) -> Option<&Champion> {
         let ranked = self.reports.iter().filter_map(|report| {
             let [first, second] = report.champion_rank()?;
             Some((report.champion.as_ref()?, [first, second]))
         });
-        // The higher stairs of a ladder come before greater fitness.
+        // On a ladder, higher stairs rank before greater fitness.
         let by_rank = |(_, a): &(_, [f32; 2]), (_, b): &(_, [f32; 2])| {
             a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
         };
         ranked.max_by(by_rank).map(|(champion, _)| champion)
     }
 
-    /// Number of generations in the second half whose best snake has another structure of its body than the best of the
-    /// generation before.
+    /// Counts the generations in the second half of the run whose best snake differs in the structure of its body from
+    /// that of the previous generation.
     pub fn late_body_changes(&self) -> usize {
         let structure = |report: &GenerationReport| {
             report.champion.as_ref().map(|champion| champion.genome.body.block_ids())

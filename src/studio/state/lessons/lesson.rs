@@ -1,4 +1,4 @@
-//! The parts of a lesson: texts, scenes, and their lanes or runs.
+//! The parts of a lesson: texts, scenes, and the scenes' lanes or runs.
 
 use super::prediction::{Asks, Question};
 use snakes_core::genome::BodyChange;
@@ -6,60 +6,60 @@ use snakes_core::genome::BodyChange;
 /// A guided experiment.
 #[derive(Debug)]
 pub(crate) struct Lesson {
-    /// Title.
+    /// Title of the lesson.
     pub title: &'static str,
-    /// Question that it answers.
+    /// Question that the lesson answers.
     pub question: &'static str,
-    /// Experience from the original experiment.
+    /// Experience with the question in the original experiment.
     pub story: &'static str,
-    /// Instruction.
+    /// Instruction to the reader.
     pub to_try: &'static str,
-    /// Observation to make.
+    /// Observation that the reader should make.
     pub look_for: &'static str,
-    /// Conclusion from all experiments together. What each of them shows is in its question.
+    /// Conclusion from all experiments of the lesson. The result of a single experiment is in its question.
     pub conclusion: &'static str,
-    /// Scenes; the first is shown at once.
+    /// Scenes of the lesson. The first is shown at once.
     pub scenes: &'static [LessonScene],
-    /// Text of the worksheet, as Markdown.
+    /// Text of the lesson's worksheet, as Markdown.
     pub worksheet: &'static str,
 }
 
 /// Scene of a lesson.
 #[derive(Debug)]
 pub(crate) enum LessonScene {
-    /// A champion in several worlds.
+    /// A champion in several worlds or bodies.
     Lanes {
-        /// Label of its button.
+        /// Label of the scene's button.
         label: &'static str,
         /// Name of a built-in champion.
         champion: &'static str,
-        /// Question to answer by a guess before the race.
+        /// Question that the reader answers by a guess before the race; `None` if the scene is no experiment.
         question: Option<Question>,
-        /// Worlds, one per lane.
+        /// Worlds or bodies to compare, one per lane.
         lanes: &'static [Side],
     },
     /// Small runs whose best snakes race afterwards.
     Runs {
-        /// Label of its button.
+        /// Label of the scene's button.
         label: &'static str,
         /// Preset of the runs.
         preset: &'static str,
-        /// Question to answer by a guess before the runs.
+        /// Question that the reader answers by a guess before the runs.
         question: Question,
-        /// Runs.
+        /// Runs to compare.
         runs: &'static [Side],
     },
 }
 
 impl LessonScene {
-    /// Label of its button.
+    /// Returns the label of the scene's button.
     pub fn label(&self) -> &'static str {
         match self {
             Self::Lanes { label, .. } | Self::Runs { label, .. } => label,
         }
     }
 
-    /// Question to answer by a guess before its experiment.
+    /// Returns the question that the reader answers by a guess before the experiment, if any.
     pub fn question(&self) -> Option<&Question> {
         match self {
             Self::Lanes { question, .. } => question.as_ref(),
@@ -67,7 +67,7 @@ impl LessonScene {
         }
     }
 
-    /// Its lanes or runs.
+    /// Returns the lanes or runs that the scene compares.
     pub fn sides(&self) -> &'static [Side] {
         match self {
             Self::Lanes { lanes, .. } => lanes,
@@ -76,18 +76,18 @@ impl LessonScene {
     }
 }
 
-/// Lane or run that is compared with others.
+/// A lane or run that a scene compares with others.
 #[derive(Debug, Clone)]
 pub(crate) struct Side {
-    /// Label.
+    /// Label of the lane or run.
     pub name: &'static str,
-    /// Changed settings with their values.
+    /// Names of changed settings, with their values as text.
     pub changes: &'static [(&'static str, &'static str)],
-    /// Change of the champion's body, whose gait stays as it is, with the index of the block that it concerns.
+    /// Change of the champion's body, with the index of the block at which it is made. The gait is not changed.
     pub body_change: Option<(BodyChange, usize)>,
     /// Seed of the run.
     pub seed: u64,
-    /// Worker threads of the run.
+    /// Number of worker threads of the run.
     pub threads: usize,
 }
 
@@ -98,7 +98,7 @@ pub(super) const fn lane(
     Side { name, changes, body_change: None, seed: 1, threads: 1 }
 }
 
-/// A lane with the champion's gait in a changed body.
+/// Creates a lane with the champion's gait in a changed body.
 pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: usize) -> Side {
     Side { name, changes: &[], body_change: Some((change, block)), seed: 1, threads: 1 }
 }
@@ -112,7 +112,7 @@ pub(super) const fn run(
     Side { name, changes, body_change: None, seed, threads }
 }
 
-/// The champion alone, without changes.
+/// Scene with the champion alone, without changes.
 pub(super) const AS_FOUND: LessonScene = LessonScene::Lanes {
     label: "The original champion",
     champion: "climber",

@@ -1,58 +1,58 @@
-//! Playbacks of a scene's snake to its end, each at one speed.
+//! Complete playbacks of a scene's snake, each at one speed.
 
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::ChampionSource;
 use snakes_core::score::Evaluation;
 
-/// Playbacks of one snake to its end.
+/// Complete playbacks of one snake.
 #[derive(Debug, Default)]
 pub(crate) struct Plays {
-    /// Finished playbacks, at most one per speed, in their order.
+    /// Finished playbacks in their order, at most one per speed.
     finished: Vec<Play>,
     current: CurrentPlay,
-    /// Displayed time at the last moment, in simulated seconds.
+    /// Displayed time when the playback was last observed, in simulated seconds.
     time_s: f64,
 }
 
-/// A playback to the end.
+/// A complete playback at one speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Play {
-    /// Playback speed, in simulated seconds per second.
+    /// Playback speed, in simulated seconds per real second.
     pub speed: f32,
-    /// Evaluation of the snake that was simulated in this playback.
+    /// Evaluation of the snake that was simulated during the playback.
     pub evaluation: Evaluation,
 }
 
 /// The playback in progress.
 #[derive(Debug, Default)]
 enum CurrentPlay {
-    /// No playback has begun since the last end.
+    /// No playback has begun since the last one ended.
     #[default]
     None,
-    /// The whole playback so far at this speed, in simulated seconds per second.
+    /// All of the playback so far had this speed, in simulated seconds per real second.
     At(f32),
-    /// The playback so far at several speeds.
+    /// The playback so far had several speeds.
     Mixed,
 }
 
-/// Playbacks at different speeds that a comparison needs.
+/// Number of playbacks at different speeds that a comparison needs.
 pub(super) const PLAYS_TO_COMPARE: usize = 2;
 
 impl Plays {
-    /// The finished playbacks, in their order.
+    /// Returns the finished playbacks in their order.
     pub fn finished(&self) -> &[Play] {
         &self.finished
     }
 
-    /// Whether all playbacks ended with the same bits; `None` before there are enough to compare.
+    /// Returns whether all playbacks ended with the same bits; `None` if there are too few to compare.
     pub fn are_equal(&self) -> Option<bool> {
         let (first, others) = self.finished.split_first()?;
         let is_equal = |play: &Play| play.evaluation.agrees_with(&first.evaluation);
         (self.finished.len() >= PLAYS_TO_COMPARE).then(|| others.iter().all(is_equal))
     }
 
-    /// Notes a moment of the playback of a lesson's snake, which is alone on the stage in its own world.
+    /// Observes the playback of a lesson's snake. Only an undisturbed snake that is alone on the stage counts.
     pub fn follow_stage(&mut self, playback: &Playback, lanes: &[&Lane]) {
         match lanes {
             [lane] if is_undisturbed(lane) => {
@@ -63,8 +63,8 @@ impl Plays {
         }
     }
 
-    /// Notes a moment of the playback: its speed and displayed time, in simulated seconds, and the evaluation of the
-    /// snake if that has ended.
+    /// Observes a playback: its speed, its displayed time in simulated seconds, and the evaluation of the snake if it
+    /// has ended.
     pub fn follow(&mut self, speed: f32, time_s: f64, ended: Option<&Evaluation>) {
         let goes_back = time_s < self.time_s;
         self.time_s = time_s;
@@ -109,7 +109,7 @@ mod tests {
         plays.follow(1.0, 0.0, None);
         plays.follow(1.0, 15.0, Some(&end));
         assert!(speeds(&plays).is_empty(), "it stood at its end from the beginning");
-        // The speed is chosen before the start.
+        // The speed is changed before the start.
         for (speed, time_s) in [(1.0, 0.0), (4.0, 0.0), (4.0, 5.0), (4.0, 14.0)] {
             plays.follow(speed, time_s, None);
         }

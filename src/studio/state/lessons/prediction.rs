@@ -1,69 +1,69 @@
-//! Questions that the reader answers before an experiment, and what came of them.
+//! Questions that the reader answers by a guess before an experiment, and the comparison with the result.
 
 use super::found::Found;
 use super::lesson::LessonScene;
 use super::plays::Plays;
 use snakes_core::score::{Evaluation, Fitness};
 
-/// Ends within this distance count as equally far, in metres.
+/// Maximum difference of final distances that count as equal, in metres.
 pub(super) const EQUAL_M: f32 = 1.0;
 
-/// A question to guess the answer to.
+/// A question that the reader answers by a guess.
 #[derive(Debug)]
 pub(crate) struct Question {
-    /// The question.
+    /// Text of the question.
     pub text: &'static str,
-    /// Quantity that decides the answer.
+    /// Quantity that determines the right answer.
     pub asks: Asks,
-    /// The finding that the result shows; hidden before it.
+    /// Finding from the result, which is hidden until the result is shown.
     pub finding: &'static str,
 }
 
-/// Quantity that decides the answer to a question.
+/// Quantity that determines the right answer to a question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Asks {
-    /// Which lane ends furthest, or whether all end within [`EQUAL_M`].
+    /// The lane that ends furthest, or that all end within [`EQUAL_M`].
     Furthest,
-    /// Whether the exact end of the one snake depends on the speed at which it is played.
+    /// Whether the exact end of the scene's snake depends on the playback speed.
     PlaybackSpeed,
-    /// Which run's best snake ends furthest.
+    /// The run whose best snake ends furthest.
     BestRun,
     /// Whether both runs have the same hash.
     SameHash,
-    /// In which run the best snake's body changes its structure more often in the second half.
+    /// The run in which the best snake's body changes its structure more often in the second half.
     LateBodyChanges,
 }
 
 /// The reader's progress in a scene.
 #[derive(Debug, Default)]
 pub(crate) struct Progress {
-    /// Index of the guessed answer.
+    /// Index of the answer that the reader has guessed.
     pub guess: Option<usize>,
-    /// Whether the experiment may run: the reader has guessed, or wants to watch without a guess.
+    /// Whether the experiment may run, because the reader has guessed or has decided to watch without a guess.
     pub has_begun: bool,
-    /// Whether the result may be seen.
+    /// Whether the result may be shown.
     pub is_revealed: bool,
-    /// Measure of fitness of the lanes.
+    /// Measure of the lanes' fitness.
     pub fitness: Option<Fitness>,
-    /// Name and result of each lane.
+    /// Name of each lane, and the result of its snake.
     pub lanes: Vec<(String, Evaluation)>,
     /// Results of the runs.
     pub runs: Vec<Found>,
-    /// Playbacks to the end, where the question is about these.
+    /// Complete playbacks, if the question is about playbacks.
     pub plays: Plays,
 }
 
-/// The true answer to a question.
+/// The right answer to a question.
 #[derive(Debug, Clone, PartialEq)]
 struct Truth {
-    /// Index of the answer.
+    /// Index of the right answer.
     answer: usize,
-    /// The result as a clause.
+    /// Result as a clause of a sentence.
     words: String,
 }
 
 impl LessonScene {
-    /// The answers to choose from; none without a question.
+    /// Returns the answers from which the reader chooses; none without a question.
     pub fn answers(&self) -> Vec<&'static str> {
         let names = || self.sides().iter().map(|side| side.name);
         match self.question().map(|question| question.asks) {
@@ -79,7 +79,7 @@ impl LessonScene {
 }
 
 impl Progress {
-    /// The guess beside the result, in one sentence; `None` before the result may be seen.
+    /// Compares the guess with the result in one sentence; returns `None` before the result may be shown.
     pub fn comparison(&self, scene: &LessonScene) -> Option<String> {
         if !self.is_revealed {
             return None;
@@ -95,12 +95,12 @@ impl Progress {
         })
     }
 
-    /// Whether the result can be told as soon as the reader wants it. Playbacks have to be watched first.
+    /// Returns whether the result can be shown on request. A question about playbacks needs enough complete playbacks.
     pub fn knows_result(&self, question: &Question) -> bool {
         question.asks != Asks::PlaybackSpeed || self.plays.are_equal().is_some()
     }
 
-    /// Index of the true answer.
+    /// Returns the index of the right answer, if it is known.
     #[cfg(test)]
     pub fn true_answer(&self, asks: Asks) -> Option<usize> {
         self.truth(asks).map(|truth| truth.answer)
@@ -121,7 +121,7 @@ impl Progress {
                 let ends: Vec<_> =
                     self.runs.iter().map(|found| (found.name.as_str(), end(found))).collect();
                 let mut truth = furthest(&ends)?;
-                // The distance alone does not say that this snake is on the stairs.
+                // The distance alone does not tell whether the snake is on the stairs.
                 if let Some(best) = self.runs.get(truth.answer).and_then(Found::best) {
                     truth.words += ": it ";
                     truth.words += &best.trial.result_in_words(&best.genome, &best.evaluation);
@@ -156,7 +156,7 @@ impl Progress {
     }
 }
 
-/// The competitor that ended furthest, in metres; the answer after the last of them if all are within [`EQUAL_M`].
+/// Returns the competitor that ended furthest, in metres. If all are within [`EQUAL_M`], returns the answer after the last competitor.
 fn furthest(ends: &[(&str, Option<f32>)]) -> Option<Truth> {
     let known =
         || ends.iter().enumerate().filter_map(|(index, (_, end_m))| Some((index, (*end_m)?)));
@@ -172,7 +172,8 @@ fn furthest(ends: &[(&str, Option<f32>)]) -> Option<Truth> {
     })
 }
 
-/// The run in which something happened most often; the answer after the last of them if that was equally often in all.
+/// Returns the run in which the counted event was most frequent. If it was equally frequent in all, returns the answer
+/// after the last run.
 fn more_often(counts: &[(&str, usize)]) -> Option<Truth> {
     let most = counts.iter().map(|(_, count)| *count).max()?;
     let first = counts.iter().position(|(_, count)| *count == most)?;

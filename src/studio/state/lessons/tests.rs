@@ -10,7 +10,7 @@ use snakes_core::save::load_preset;
 use snakes_core::score::{Evaluation, evaluate};
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
-/// Results of a scene, computed once.
+/// Returns the results of a scene, which are computed once.
 pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
     static KNOWN: [[OnceLock<Progress>; 3]; LESSONS.len()] =
         [const { [const { OnceLock::new() }; 3] }; LESSONS.len()];
@@ -47,7 +47,7 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
     plays
 }
 
-/// Evolves the runs of a scene.
+/// Evolves the runs of a scene, and returns their results.
 fn outcome(preset: &str, sides: &[Side]) -> Vec<Found> {
     sides
         .iter()
@@ -66,12 +66,12 @@ fn outcome(preset: &str, sides: &[Side]) -> Vec<Found> {
         .collect()
 }
 
-/// Final distance of the centre in each lane of a scene, in metres.
+/// Returns the final distance of the middle limb in each lane of a scene, in metres.
 fn ends_m(lesson: usize, scene: usize) -> Vec<f32> {
     result(lesson, scene).lanes.iter().map(|(_, evaluation)| evaluation.centre_y_m).collect()
 }
 
-/// The true answer to a scene's question.
+/// Returns the right answer to a scene's question.
 fn answer(lesson: usize, scene: usize) -> &'static str {
     let shown = &LESSONS[lesson].scenes[scene];
     let asks = shown.question().expect("a question").asks;
@@ -93,7 +93,7 @@ fn the_conclusion_about_friction_is_true() {
     assert!(FITNESS_OF_THE_LANDED.contains(&format!("at {:.2} m,", landed.fitness)));
 }
 
-/// The snake of the first lesson.
+/// Returns the snake of the first lesson.
 fn robust() -> StagedChampion {
     let original = [LESSONS[0].scenes[0].sides()[1].clone()];
     champions("robust", &original).expect("it fits").remove(0)
@@ -272,7 +272,7 @@ fn after_a_lesson_stage_and_settings_are_as_they_were() {
     assert!(lessons.view().is_none());
 }
 
-/// Lessons in which the first has begun, with the run beside them.
+/// Begins the first lesson. Returns the lessons and a prepared run.
 fn first_lesson() -> (Lessons, CurrentRun) {
     let (mut lessons, mut run) = (Lessons::default(), prepared_run());
     let show = Show { champions: Vec::new(), mode: StageMode::Solo };
@@ -299,7 +299,7 @@ fn a_race_waits_for_a_guess_and_starts_after_it() {
 
 #[test]
 fn the_fitness_of_a_snake_is_that_of_the_trial_on_the_stage() {
-    // The record of this snake has the mean of four trials.
+    // The record of this snake is the mean of four trials.
     for (name, result) in &result(6, 1).lanes {
         let counted_m = result.centre_y_m.min(26.0);
         assert!((result.fitness - counted_m).abs() < 2.0, "{name}: {result:?}");
@@ -319,7 +319,7 @@ fn the_result_appears_once_all_lanes_of_the_scene_were_watched_to_their_end() {
     assert!(is_revealed(&lessons), "watched without a guess");
     assert!(!lessons.hides_result());
     assert!(!lessons.view().expect("begun").shows_conclusion, "another experiment is to come");
-    // The scene without a result does not inherit it.
+    // Another scene does not inherit the result.
     apply(&mut lessons, &mut run, LessonCommand::ShowScene(1));
     assert!(!is_revealed(&lessons) && lessons.awaits_guess());
     apply(&mut lessons, &mut run, LessonCommand::ShowScene(0));

@@ -1,5 +1,5 @@
-//! The worksheets in `docs/worksheets`, written from the catalogue and from the results of the experiments. Each prints
-//! on one page.
+//! The worksheets in `docs/worksheets`, generated from the catalogue and the results of the experiments. Each fits on
+//! one printed page.
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,9 +9,9 @@ use super::tests::result;
 use super::*;
 use snakes_core::score::Evaluation;
 
-/// Contents of a worksheet beside the texts of its lesson.
+/// Contents of a worksheet besides the texts of its lesson.
 struct Sheet {
-    /// Instructions, after "guess".
+    /// Instructions that follow the step "guess".
     steps: &'static [&'static str],
     /// Questions about the result.
     questions: [&'static str; 2],
@@ -130,10 +130,10 @@ const SHEETS: [Sheet; LESSONS.len()] = [
     },
 ];
 
-/// A line to write on.
+/// A line on which the reader writes.
 const LINE: &str = "________________________________________";
 
-/// Text of a worksheet.
+/// Returns the text of a worksheet as Markdown.
 fn text(index: usize) -> String {
     let (lesson, sheet) = (&LESSONS[index], &SHEETS[index]);
     let mut text = format!(
@@ -166,7 +166,7 @@ fn text(index: usize) -> String {
     )
 }
 
-/// Tables to fill in: one for all experiments with the same columns.
+/// Returns the tables to fill in. Experiments with the same columns share a table.
 fn tables(index: usize) -> String {
     let asked =
         || LESSONS[index].scenes.iter().filter_map(|scene| Some((scene, scene.question()?.asks)));
@@ -195,7 +195,7 @@ fn tables(index: usize) -> String {
         }
         let Some((_, rows)) = tables.last_mut() else { continue };
         for name in names {
-            // Two scenes may have the original in common.
+            // Two scenes may both contain the original.
             if !rows.contains(&name) {
                 rows.push(name);
             }
@@ -214,7 +214,7 @@ fn tables(index: usize) -> String {
     tables.into_iter().map(table).collect::<Vec<_>>().join("\n")
 }
 
-/// Results of all experiments, in words.
+/// Describes the results of all experiments, for the teacher.
 fn expected(index: usize) -> String {
     let scenes = LESSONS[index].scenes.iter().enumerate();
     let asked = scenes.filter_map(|(number, scene)| {
@@ -259,11 +259,11 @@ fn file(index: usize) -> PathBuf {
     folder.join(format!("{}.md", index + 1))
 }
 
-/// Printed height of a worksheet in lines of text: on A4 with margins of 2 cm, letters of 11 points and a line spacing of
-/// 1.25, 95 characters fit on a line, and 53 lines on the page, of which [`PAGE_LINES`] are used at most.
+/// Estimates the printed height of a worksheet, in lines of text. On A4 with margins of 2 cm, letters of 11 points and a line spacing of
+/// 1.25, 95 characters fit on a line and 53 lines on the page, of which at most [`PAGE_LINES`] are used.
 fn printed_lines(text: &str) -> f64 {
     let height = |line: &str| match line {
-        // Between paragraphs there is half a line.
+        // Half a line separates paragraphs.
         "" => 0.5,
         heading if heading.starts_with('#') => 1.8,
         rule if rule.starts_with("| ---") => 0.0,
@@ -273,7 +273,7 @@ fn printed_lines(text: &str) -> f64 {
     text.lines().map(height).sum()
 }
 
-/// Most lines of a worksheet.
+/// Maximum printed height of a worksheet, in lines.
 const PAGE_LINES: f64 = 48.0;
 
 #[test]

@@ -17,10 +17,10 @@ use snakes_core::save::library::{
 use snakes_lab::run::{BackgroundTask, LibraryReader};
 
 impl Library {
-    /// Executes a command, and returns the champions to show on the stage.
+    /// Executes a command to the library. Returns the champions to show on the stage, if any.
     ///
     /// # Errors
-    /// The command cannot be executed, with the reason.
+    /// The command cannot be executed, for the returned reason.
     pub fn apply(
         &mut self,
         request: &LibraryCommand,
@@ -94,7 +94,7 @@ impl Library {
                 self.send_out(BatchTask::Act(EXPORTED), places.clone(), act)?;
             }
             LibraryCommand::Import(paths) => {
-                // Files can be dropped before the library was ever opened; the copies are listed all the same.
+                // Files can be dropped before the library is first opened. Their copies must then be listed as well.
                 self.look()?;
                 let saves = self.saves.clone();
                 let act = move |path: PathBuf| import(&saves, &path).into();
@@ -125,13 +125,13 @@ impl Library {
         Ok(())
     }
 
-    /// Loads champions for the stage: now, if that is quick, or else in the background; see [`LibraryCommand::ShowLoaded`].
+    /// Loads champions for the stage: at once if this is quick, or else in the background; see [`LibraryCommand::ShowLoaded`].
     fn load(
         &mut self,
         is_quick: bool,
         load: impl FnOnce() -> Result<Show, String> + Send + 'static,
     ) -> Result<Option<Show>, String> {
-        // An earlier request is obsolete.
+        // This request replaces an earlier one.
         (self.loading, self.loaded) = (None, None);
         if is_quick {
             return load().map(Some);

@@ -1,4 +1,4 @@
-//! Operations on the files of saves: a few at once within a frame, many or slow ones in the background.
+//! Operations on the files of saves: a few files at once within a frame, or many or slow ones in the background.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use snakes_core::save::SaveError;
 use snakes_core::save::library::{FileStep, SavePlace, read_notes};
 use snakes_lab::run::BackgroundTask;
 
-/// Maximum number of files that are deleted, copied or restored within a frame: each takes some milliseconds, because
+/// Maximum number of files that are deleted, copied or restored within a frame. Each takes some milliseconds, because
 /// it is flushed to the disk.
 const MAX_AT_ONCE: usize = 8;
-/// Maximum number of problems that get a message each.
+/// Maximum number of problems that are shown in separate messages.
 const MAX_PROBLEMS: usize = 3;
 
-/// An operation, in the words for when it is finished and while it is running.
+/// Words for an operation when it is finished and while it is in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Verb {
     done: &'static str,
@@ -28,10 +28,10 @@ pub(super) const DUPLICATED: Verb = Verb { done: "duplicated", doing: "Duplicati
 pub(super) const EXPORTED: Verb = Verb { done: "exported", doing: "Exporting" };
 pub(super) const IMPORTED: Verb = Verb { done: "imported", doing: "Importing" };
 
-/// The purpose of a batch.
+/// Task of a batch.
 #[derive(Debug)]
 pub(super) enum BatchTask {
-    /// A new operation.
+    /// A new operation on saves.
     Act(Verb),
     /// Undo or redo of the step with this label.
     Undo(UndoDirection, String),
@@ -46,7 +46,7 @@ impl BatchTask {
         }
     }
 
-    /// Name of the whole operation: "Deleting saves", "Undoing".
+    /// Returns the name of the whole operation: "Deleting saves", "Undoing".
     fn whole(&self) -> String {
         match self {
             Self::Act(verb) => format!("{} saves", verb.doing),
@@ -55,14 +55,14 @@ impl BatchTask {
     }
 }
 
-/// The outcome for one file.
+/// Outcome of a batch for one file.
 #[derive(Debug)]
 pub(super) enum BatchOutcome {
-    /// Done.
+    /// The operation succeeded.
     Done(FileStep),
-    /// It failed. The step is kept if a later undo may succeed.
+    /// The operation failed. The undo step is kept if a later attempt may succeed.
     Failed(SaveError, Option<FileStep>),
-    /// It was cancelled before its turn. The step is kept if it was to be undone.
+    /// The batch was cancelled before it reached the file. The step is kept if the batch was to undo or redo it.
     Cancelled(Option<FileStep>),
 }
 
@@ -83,7 +83,7 @@ pub(super) struct BatchJobs {
 }
 
 impl BatchJobs {
-    /// Whether the batch is long enough to show its progress.
+    /// Returns whether the batch is long enough to show its progress.
     fn is_long(&self) -> bool {
         self.batch.total() > MAX_AT_ONCE
     }
@@ -94,7 +94,7 @@ impl BatchJobs {
 }
 
 impl Library {
-    /// Long batches that are running: in words, "Deleting 1200 of 10000", and their finished share, 0 to 1.
+    /// Returns the long batches in progress: a description such as "Deleting 1200 of 10000", and the finished share from 0 to 1.
     pub fn under_way(&self) -> impl Iterator<Item = (String, f32)> {
         let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
             batch.done() as f32 / batch.total().max(1) as f32
@@ -103,7 +103,7 @@ impl Library {
         long.map(move |job| (job.words(), share(&job.batch)))
     }
 
-    /// The reason why files cannot be changed now: a long batch is running, and steps are undone in order.
+    /// Returns the reason why files cannot be changed now, if a long batch is in progress. Undo steps must be undone in order.
     pub fn busy(&self) -> Option<String> {
         let job = self.batches.iter().find(|job| job.is_long())?;
         let noun = if matches!(job.task, BatchTask::Act(_)) { "saves" } else { "files" };
@@ -114,12 +114,12 @@ impl Library {
         self.busy().map_or(Ok(()), Err)
     }
 
-    /// Stops all batches after their current file. Finished files can be undone.
+    /// Stops all batches after their current file. Operations on finished files can be undone.
     pub(super) fn cancel(&self) {
         self.batches.iter().for_each(|job| job.batch.cancel());
     }
 
-    /// Carries out an operation on several saves: now, or in the background if they are many.
+    /// Executes an operation on several saves: at once, or in the background if there are many.
     pub(super) fn carry_out<I: Send + 'static>(
         &mut self,
         task: BatchTask,
@@ -136,7 +136,7 @@ impl Library {
         Ok(())
     }
 
-    /// Carries out an operation on several saves in the background.
+    /// Executes an operation on several saves in the background.
     pub(super) fn send_out<I: Send + 'static>(
         &mut self,
         task: BatchTask,
@@ -160,10 +160,10 @@ impl Library {
         Ok(())
     }
 
-    /// Undoes or redoes file operations that were taken from the history, the last one first.
+    /// Undoes or redoes file operations that were removed from the history, the last one first.
     ///
     /// # Errors
-    /// A long batch is running, or no thread can be started. Then the step is back in the history.
+    /// A long batch is in progress, or no thread can be started. The step is then put back into the history.
     pub fn step(
         &mut self,
         way: UndoDirection,
@@ -177,7 +177,7 @@ impl Library {
         let saves = self.saves.clone();
         let undo = move |step: FileStep| match step.undo(&saves) {
             Ok(inverse) => BatchOutcome::Done(inverse),
-            // A missing file will be missing the next time too.
+            // A missing file will also be missing at the next attempt.
             Err(error @ SaveError::Unreadable { .. }) => BatchOutcome::Failed(error, None),
             Err(error) => BatchOutcome::Failed(error, Some(step)),
         };
@@ -196,7 +196,7 @@ impl Library {
         begun
     }
 
-    /// Takes in the batches that are finished.
+    /// Processes the results of finished batches.
     pub(super) fn take_in_batches(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
         for BatchJobs { task, batch } in std::mem::take(&mut self.batches) {
             match batch.poll() {
@@ -211,7 +211,7 @@ impl Library {
         }
     }
 
-    /// Reports the outcomes of a batch, and records them in the history.
+    /// Shows messages about the outcomes of a batch, and records them in the history.
     fn finish(
         &mut self,
         task: BatchTask,
@@ -269,7 +269,7 @@ impl Library {
             BatchTask::Undo(way, label) => {
                 self.look_again();
                 self.point_out(steps.iter().find_map(FileStep::place));
-                // A step lists its operations in the order in which they were carried out.
+                // A step lists its operations in the order in which they were executed.
                 left.reverse();
                 let step = |steps: Vec<FileStep>| {
                     let label = label.clone();
@@ -287,7 +287,7 @@ fn capital(words: &str) -> String {
     first.into_iter().flatten().chain(letters).collect()
 }
 
-/// The message after an undo or redo.
+/// Returns the message after an undo or redo.
 fn undone_in_words(way: UndoDirection, label: &str, steps: &[FileStep]) -> String {
     match steps {
         [FileStep::Restored { wanted, to }] => format!("{} restored", shown_name(to, wanted)),
@@ -296,7 +296,7 @@ fn undone_in_words(way: UndoDirection, label: &str, steps: &[FileStep]) -> Strin
     }
 }
 
-/// Names that entries got on their return because their own were taken meanwhile.
+/// Describes the new names of restored entries whose old names were taken meanwhile.
 fn renamed_on_return(steps: &[FileStep]) -> String {
     let renamed = steps.iter().filter_map(|step| match step {
         FileStep::Restored { wanted, to } if wanted != to => {
@@ -312,8 +312,8 @@ fn renamed_on_return(steps: &[FileStep]) -> String {
     renamed.concat()
 }
 
-/// The name under which the library lists the entry at `path`: a run's own name, or the name of the file or folder
-/// `named`.
+/// Returns the name under which the library lists the entry at `path`: the user's own name for a run, or the name of
+/// the file or folder `named`.
 fn shown_name(path: &Path, named: &Path) -> String {
     let is_run = path.is_dir();
     let notes = is_run.then(|| read_notes(&SavePlace::Run(path.to_owned())).ok()).flatten();
@@ -321,7 +321,7 @@ fn shown_name(path: &Path, named: &Path) -> String {
     own_name.unwrap_or_else(|| name_of(named))
 }
 
-/// The operation in a few words: with the name of a single save, or the number of saves.
+/// Describes an operation in a few words: with the name of a single save, or with the number of saves.
 fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     match steps {
         [FileStep::Deleted { from, kept }] => format!("{} {}", verb.done, shown_name(kept, from)),
@@ -335,7 +335,7 @@ fn listed_steps(verb: Verb, steps: &[FileStep]) -> String {
     }
 }
 
-/// The end of the message: how to restore the saves, or where they are.
+/// Returns the end of a message: how to restore the saves, or where they are.
 fn ending(verb: Verb, first: &FileStep) -> String {
     if verb == DELETED {
         return ". Press Ctrl Z to undo.".to_owned();

@@ -1,4 +1,4 @@
-//! Examining champions in the background. The results are written into their files.
+//! Examines champions in the background, and writes the results into their files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -10,28 +10,28 @@ use snakes_core::score::ExamSuite;
 use snakes_lab::run::exam::{exam_trials, examine};
 use snakes_lab::run::{BackgroundTask, LocalPool, RunControl};
 
-/// Notices about an exam replace each other.
+/// Subject of messages about an exam, which replace each other.
 const SUBJECT: &str = "exam";
 
-/// An exam of several champions that is under way.
+/// An exam of several champions in progress.
 #[derive(Debug)]
 pub(super) struct Examination {
     names: Vec<String>,
-    /// Trials of each champion.
+    /// Number of trials of each champion.
     trials: u32,
     control: Arc<RunControl>,
     work: BackgroundTask<Vec<ExamOutcome>>,
 }
 
-/// The results of a champion in one line, an error in one line, or none after a cancellation.
+/// Results of a champion in one line, or an error in one line; `None` after a cancellation.
 type ExamOutcome = Option<Result<String, String>>;
 
 impl Examination {
-    /// Begins to examine the champions at these places with all suites; those that come with the program are left out. None
-    /// without any champion.
+    /// Begins to examine the champions at these places with all suites. Built-in champions are skipped. Returns `None`
+    /// if no champion is left.
     ///
     /// # Errors
-    /// A file cannot be read, its champion is another engine's, or no thread can be started.
+    /// A file cannot be read, a champion was recorded by another engine version, or no thread can be started.
     pub fn begin(places: &[SavePlace]) -> Result<Option<Self>, String> {
         let load = |(place, path): (&SavePlace, PathBuf)| {
             let loaded = load_champion(&path).map_err(|error| error.to_string())?;
@@ -55,7 +55,7 @@ impl Examination {
         Ok(Some(Self { names, trials, control, work }))
     }
 
-    /// The champion that is being examined, in words, and the finished share of the whole, 0 to 1.
+    /// Describes the progress with the champion that is being examined. Also returns the finished share of all champions, from 0 to 1.
     pub fn progress(&self) -> (String, f32) {
         let index = self.work.done().min(self.names.len() - 1);
         let done = self.control.done().min(self.trials);
@@ -64,12 +64,12 @@ impl Examination {
         (words, share)
     }
 
-    /// Stops the exam. The results of the champions that are finished are kept.
+    /// Cancels the exam. The results of finished champions are kept.
     pub fn cancel(&self) {
         self.control.cancel();
     }
 
-    /// Reports the results, once and as soon as they are there. Returns whether they are.
+    /// Shows a message about the results as soon as they are available. Returns whether they are.
     pub fn report(&self, notices: &mut Notices) -> bool {
         let Some(result) = self.work.poll() else { return false };
         match result {
@@ -104,7 +104,7 @@ impl Examination {
     }
 }
 
-/// Examines champions one after the other, and writes the results into their files.
+/// Examines champions one after another, and writes the results into their files.
 fn examined(
     champions: Vec<(PathBuf, LoadedChampion)>,
     control: &RunControl,
@@ -159,7 +159,7 @@ mod tests {
         }
         let path = tried.folder.path().join("a.ron");
         let exam = load_champion(&path).expect("read").exam;
-        // A gait has no senses that could be taken from it.
+        // A gait has no senses to be taken away.
         assert_eq!(exam.len(), ExamSuite::USUAL.len() - 1);
     }
 }

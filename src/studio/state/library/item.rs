@@ -8,23 +8,23 @@ use snakes_core::save::library::{
     ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
 
-/// An entry and, once read, its contents.
+/// An entry of the library with its contents, once they are read.
 #[derive(Debug)]
 pub struct LibraryItem {
     entry: LibraryEntry,
-    /// The changed file's entry, until it is read again.
+    /// Entry after the file has changed, until the file is read again.
     awaited: Option<LibraryEntry>,
     name: String,
-    /// Contents or read error.
+    /// Contents of the entry or the error of reading it; `None` until it is read.
     read: Option<Result<EntryDetails, EntryProblem>>,
-    /// Lower-case name, the sort key.
+    /// Name of the entry in lower case, which is its sort key.
     sorted_as: String,
-    /// Searchable words in lower case.
+    /// Words of the entry in lower case, which the search compares.
     words: String,
 }
 
 impl LibraryItem {
-    /// An entry that is not read yet.
+    /// Creates an entry that has not been read yet.
     pub fn new(entry: LibraryEntry) -> Self {
         let (name, sorted_as, words) = Default::default();
         let mut item = Self { entry, awaited: None, name, read: None, words, sorted_as };
@@ -32,20 +32,20 @@ impl LibraryItem {
         item
     }
 
-    /// Notes a change of the file. The old contents and date stay until the file is read again, so that its row moves
-    /// once, not twice.
+    /// Records a change of the file. The old contents and date stay until the file is read again, so that the entry's
+    /// row moves only once.
     pub fn follow(&mut self, entry: LibraryEntry) {
         if *self.awaited.as_ref().unwrap_or(&self.entry) != entry {
             self.awaited = Some(entry);
         }
     }
 
-    /// Whether it must be read, for the first time or again.
+    /// Returns whether the entry must be read, for the first time or again.
     pub fn is_to_be_read(&self) -> bool {
         self.read.is_none() || self.awaited.is_some()
     }
 
-    /// Stores the contents. Returns whether a sort or search key changed.
+    /// Stores the contents of the entry. Returns whether a sort or search key changed.
     pub fn learn(&mut self, read: Result<EntryDetails, EntryProblem>) -> bool {
         let date = self.entry.modified;
         let before = (date, self.fitness().map(f32::to_bits), self.generation());
@@ -81,55 +81,55 @@ impl LibraryItem {
         self.words = words.join("\n").to_lowercase();
     }
 
-    /// Place, size and modification time.
+    /// Returns place, size and modification time of the entry.
     pub fn entry(&self) -> &LibraryEntry {
         &self.entry
     }
 
-    /// Its place.
+    /// Returns the place of the entry.
     pub fn place(&self) -> &SavePlace {
         &self.entry.place
     }
 
-    /// The name that the user gave it, or else that of its file or folder.
+    /// Returns the user's name for the entry, or else the name of its file or folder.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Lower-case name, the sort key.
+    /// Returns the name in lower case, which is the sort key.
     pub fn sorted_as(&self) -> &str {
         &self.sorted_as
     }
 
-    /// Whether its words contain all of these lower-case words.
+    /// Returns whether the words of the entry contain all of these lower-case words.
     pub fn has_all(&self, sought: &[&str]) -> bool {
         sought.iter().all(|sought| self.words.contains(sought))
     }
 
-    /// Whether it has been read.
+    /// Returns whether the entry has been read.
     pub fn is_read(&self) -> bool {
         self.read.is_some()
     }
 
-    /// The read error, if any.
+    /// Returns the error of reading the entry, if any.
     pub fn problem(&self) -> Option<&str> {
         self.read.as_ref()?.as_ref().err().map(|problem| problem.message.as_str())
     }
 
-    /// The read error in a few words, such as "damaged", if there is one.
+    /// Returns the read error in a few words, such as "damaged", if there is one.
     pub fn problem_words(&self) -> Option<&'static str> {
         self.read.as_ref()?.as_ref().err().map(|problem| problem.words)
     }
 
-    /// The user's name and notes.
+    /// Returns the user's name and notes for the entry.
     ///
     /// # Errors
-    /// They cannot be read, and why.
+    /// The notes cannot be read, for the returned reason.
     pub fn notes(&self) -> Result<&EntryNotes, &str> {
         self.entry.notes.as_ref().map_err(String::as_str)
     }
 
-    /// The contents, if it is a champion.
+    /// Returns the contents if the entry is a champion that has been read.
     pub fn champion(&self) -> Option<&ChampionDetails> {
         match &self.read {
             Some(Ok(EntryDetails::Champion(champion))) => Some(champion),
@@ -137,7 +137,7 @@ impl LibraryItem {
         }
     }
 
-    /// The contents, if it is a run.
+    /// Returns the contents if the entry is a run that has been read.
     pub fn run(&self) -> Option<&RunDetails> {
         match &self.read {
             Some(Ok(EntryDetails::Run(run))) => Some(run),
@@ -145,13 +145,13 @@ impl LibraryItem {
         }
     }
 
-    /// Its fitness; of a run, the best.
+    /// Returns the fitness of a champion, or the best fitness of a run.
     pub fn fitness(&self) -> Option<f32> {
         let of_run = || self.run()?.best.map(|(_, fitness)| fitness);
         self.champion().map(|champion| champion.fitness).or_else(of_run)
     }
 
-    /// Fitness with its unit, or an empty string.
+    /// Returns the fitness with its unit, or an empty text if it is unknown.
     pub fn fitness_text(&self) -> String {
         let rewarded = self.champion().map(|of| of.rewarded).or(self.run().map(|of| of.rewarded));
         match (self.fitness(), rewarded) {
@@ -160,13 +160,13 @@ impl LibraryItem {
         }
     }
 
-    /// The champion's generation; of a run, the number of finished generations.
+    /// Returns the generation of a champion, or the number of finished generations of a run.
     pub fn generation(&self) -> Option<u32> {
         let of_champion = self.champion().map(|champion| champion.origin.generation);
         of_champion.or(self.run().map(|run| run.finished))
     }
 
-    /// Generation as text: "generation 3", or of a run "3 of 100 generations".
+    /// Describes the generation: "generation 3", or "3 of 100 generations" for a run.
     pub fn generation_text(&self) -> String {
         match (self.champion(), self.run()) {
             (Some(champion), _) => format!("generation {}", champion.origin.generation),
@@ -178,23 +178,23 @@ impl LibraryItem {
         }
     }
 
-    /// Name of the preset it started from.
+    /// Returns the name of the preset with which the champion's run or the run began.
     pub fn preset(&self) -> Option<&str> {
         let of_run = || self.run().map(|run| run.preset.as_str());
         self.champion().map(|champion| champion.origin.preset.as_str()).or_else(of_run)
     }
 
-    /// Its controller.
+    /// Returns the kind of the entry's controller.
     pub fn controller(&self) -> Option<ControllerKind> {
         self.champion().map(|of| of.controller).or(self.run().map(|of| of.controller))
     }
 
-    /// Its thumbnail, from the side.
+    /// Returns the thumbnail of the entry, seen from the side.
     pub fn thumbnail(&self) -> Option<&Thumbnail> {
         self.champion().map(|of| &of.thumbnail).or(self.run().map(|of| &of.thumbnail))
     }
 
-    /// Modification date, or "built-in".
+    /// Returns the modification date, or "built-in".
     pub fn date_text(&self) -> String {
         match self.place() {
             SavePlace::Shipped(_) => "built-in".to_owned(),
@@ -202,7 +202,7 @@ impl LibraryItem {
         }
     }
 
-    /// One-line description for screen readers.
+    /// Describes the entry in one line for screen readers.
     pub fn label(&self) -> String {
         if let Some((words, problem)) = self.problem_words().zip(self.problem()) {
             return format!("{}, {words}: {problem}", self.name);
@@ -220,11 +220,11 @@ impl LibraryItem {
     }
 }
 
-/// A date, from the time since the beginning of 1970: "21 Nov 2026", in UTC.
+/// Formats the time since the beginning of 1970 as a date in UTC: "21 Nov 2026".
 pub fn date(since_1970: Duration) -> String {
     const MONTHS: [&str; 12] =
         ["Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Jan", "Feb"];
-    // Days since the first of March of the year 0: then a leap day is the last of its year.
+    // Days since the first of March of the year 0. If years begin in March, a leap day is the last day of its year.
     let days = since_1970.as_secs() / 86_400 + 719_468;
     let (era, day_of_era) = (days / 146_097, days % 146_097);
     let year_of_era =

@@ -1,4 +1,4 @@
-//! Loads champions from saves, for the stage or as the founder of a run.
+//! Loads champions from saves, for the stage or as founders of runs.
 
 use std::path::Path;
 
@@ -9,10 +9,11 @@ use snakes_core::evolve::Champion;
 use snakes_core::save::library::{SavePlace, load_entry};
 use snakes_core::save::{LoadedChampion, load_generation};
 
-/// Maximum length of a name on the stage, in characters.
+/// Maximum length of a champion's name on the stage, in characters.
 const MAX_LABEL: usize = 40;
 
-/// The champion of an entry, to start a run from; of a run its best, whose generation is `best` if that is known.
+/// Returns the champion of an entry, to start a run from it. For a run, this is its best champion, from generation
+/// `best` if that is known.
 ///
 /// # Errors
 /// The champion cannot be read.
@@ -20,8 +21,8 @@ pub fn founder_of(place: &SavePlace, best: Option<u32>) -> Result<Champion, Stri
     load(place, best).map(|(loaded, _)| loaded.champion)
 }
 
-/// The champion of an entry, and its generation if the entry is a run. If the best generation is known, the run's log,
-/// which may be long, is not read.
+/// Loads the champion of an entry, and its generation if the entry is a run. If the best generation is known, the run's
+/// log, which may be long, is not read.
 fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<u32>), String> {
     let loaded = match (place, best) {
         (SavePlace::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
@@ -30,8 +31,8 @@ fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<
     loaded.map_err(|error| error.to_string())
 }
 
-/// The champion of an entry for the stage; of a run, its best, from generation `best` if known. `own_name` is the name
-/// that the user gave the run.
+/// Returns the champion of an entry for the stage. For a run, this is its best champion, from generation `best` if that
+/// is known. `own_name` is the user's name for the run.
 pub fn champion_of(
     place: &SavePlace,
     own_name: Option<&str>,
@@ -49,7 +50,7 @@ pub fn champion_of(
     Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))
 }
 
-/// The champion of a run's generation for the stage.
+/// Returns the champion of a run's generation for the stage.
 pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, String> {
     let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
     let identity = format!("{:?}{:?}", SavePlace::Run(run.to_owned()), Some(generation));

@@ -1,4 +1,4 @@
-//! Systems of the library: reading results, following the current run, importing dropped files.
+//! Systems of the library: process results, follow the current run, import dropped files.
 
 use bevy::prelude::*;
 use bevy::window::FileDragAndDrop;
@@ -19,9 +19,9 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (take_drops, follow, take_in).chain().in_set(FrameSet::TakeIn));
 }
 
-/// Maximum number of events handled per frame: some tenths of a millisecond.
+/// Maximum number of events that are handled per frame, which takes some tenths of a millisecond.
 const MOST_EVENTS: usize = 100;
-/// Minimum interval between two listings of the folder, in seconds, since each generation of a run changes it.
+/// Minimum interval between two listings of the folder, in seconds. Each generation of a run changes the folder.
 const EARLIEST_LOOK_S: f32 = 2.0;
 
 fn take_in(
@@ -36,7 +36,7 @@ fn take_in(
     }
 }
 
-/// Imports all files dropped within a frame as one batch.
+/// Imports all files that were dropped within a frame as one batch.
 fn take_drops(
     mut drops: MessageReader<FileDragAndDrop>,
     mut library: ResMut<Library>,
@@ -54,7 +54,7 @@ fn take_drops(
     }
 }
 
-/// Lists the folder again after each generation, and tracks which run is in progress.
+/// Lists the folder again after each generation, and tracks the folder of the run in progress.
 fn follow(
     mut library: ResMut<Library>,
     run: Res<CurrentRun>,
@@ -77,7 +77,7 @@ fn follow(
 }
 
 impl Library {
-    /// Takes in what was read and done meanwhile.
+    /// Processes the results of background work.
     pub(super) fn take_in(&mut self, history: &mut UndoHistory, notices: &mut Notices) {
         self.take_in_batches(history, notices);
         if self.examination.as_ref().is_some_and(|exam| exam.report(notices)) {
@@ -94,7 +94,7 @@ impl Library {
         }
     }
 
-    /// Whether champions for the stage have been read: see [`LibraryCommand::ShowLoaded`].
+    /// Returns whether champions for the stage have been read: see [`LibraryCommand::ShowLoaded`].
     pub(super) fn has_loaded(&self) -> bool {
         self.loaded.is_some()
     }
@@ -121,8 +121,8 @@ impl Library {
         }
     }
 
-    /// Takes over a listing; known contents stay until they are read again. During a run only the run's own entry
-    /// changes, every few seconds; then all others stay untouched.
+    /// Processes a listing of the folder. Known contents stay until they are read again. If no entry was added or
+    /// removed, only the entries that changed are updated.
     fn list(&mut self, entries: Vec<LibraryEntry>) {
         let is_known = self.is_listed && self.problem.is_none();
         let places = self.items.iter().map(LibraryItem::place);

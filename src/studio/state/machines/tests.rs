@@ -1,4 +1,4 @@
-//! The states of the connection, and the run that follows them.
+//! The states of the connection, and their effect on the run.
 
 use super::*;
 use crate::studio::state::current_run::small_run;
@@ -9,7 +9,7 @@ use snakes_core::save::SavesFolder;
 use snakes_lab::run::LocalPool;
 use std::sync::Arc;
 
-/// A run that is held before its first generation, and the folder of its saves.
+/// Creates a run that is held before its first generation, and the folder of its saves.
 fn held_run() -> (tempfile::TempDir, CurrentRun) {
     let folder = tempfile::tempdir().expect("a folder");
     let saves = SavesFolder::find(Some(folder.path()));
@@ -19,10 +19,10 @@ fn held_run() -> (tempfile::TempDir, CurrentRun) {
     (folder, run)
 }
 
-/// A link that waits for a server that never answers.
+/// Creates a link that is waiting for a server.
 fn connecting() -> MachinesLink {
     let mut link = MachinesLink::of_test("nats://127.0.0.1:1", LinkState::Connecting);
-    // No server listens at this address; that news is never read.
+    // No server listens at this address; the failure is never processed.
     let server = BrokerOptions { url: "nats://127.0.0.1:1".to_owned(), ..Default::default() };
     link.watch = Some(ServerWatch::start(server).expect("a thread"));
     link
@@ -58,7 +58,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     assert!(run.is_shared());
     assert_eq!(known(&link).own_run.as_deref(), Some("n"));
 
-    // Another number of threads needs another coordinator; until it is there, this computer computes alone.
+    // Another number of threads needs another coordinator. Until it is ready, only this computer evaluates.
     run.set_threads(2).expect("allowed");
     link.follow(&mut run);
     assert!(!run.is_shared());
@@ -66,7 +66,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     link.take_in_news(coordinates(&link.asked.clone().expect("asked").1), &mut run, &mut notices);
     assert!(run.is_shared());
 
-    // Another run needs another coordinator, too.
+    // Another run needs another coordinator as well.
     run.reset().expect("allowed");
     assert!(!run.is_shared());
     link.follow(&mut run);

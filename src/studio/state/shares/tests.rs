@@ -1,4 +1,4 @@
-//! The champions that are shared from the stage, and the command of the process that writes their file.
+//! Sharing champions from the stage, and the arguments of the process that writes their file.
 
 use super::*;
 use crate::studio::state::current_run::climber;

@@ -10,7 +10,7 @@ use snakes_core::evolve::Champion;
 use snakes_core::save::ChampionCopies;
 use snakes_lab::run::BackgroundTask;
 
-/// Holds the standard input of the process, whose end makes it cancel.
+/// Holds the standard input of the process. Closing the input cancels the process.
 #[derive(Debug, Default)]
 pub struct Leash(Mutex<LeashState>);
 
@@ -21,13 +21,13 @@ struct LeashState {
 }
 
 impl Leash {
-    /// Cancels what the process writes, also if it has not begun.
+    /// Cancels the process, even if it has not started yet.
     pub fn cut(&self) {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         (state.input, state.is_cut) = (None, true);
     }
 
-    /// Whether it was cancelled.
+    /// Returns whether the process was cancelled.
     pub fn is_cut(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_cut
     }
@@ -40,16 +40,16 @@ impl Leash {
     }
 }
 
-/// The order to a process.
+/// What the process has to write.
 #[derive(Debug)]
 pub struct Writer {
-    /// Cancels it.
+    /// Handle that cancels the process.
     pub leash: Arc<Leash>,
-    /// Arguments of `snakes export`, besides the champions.
+    /// Arguments of `snakes export`, apart from the champions.
     pub arguments: Vec<OsString>,
 }
 
-/// Writes champions into a file. `show` is told the share that is done. Returns the path of what was written.
+/// Writes champions to a file. Passes the finished share, from 0 to 1, to `show`. Returns the path of the written file or folder.
 pub fn written(
     writer: &Writer,
     champions: &[(String, Champion)],
@@ -69,7 +69,8 @@ pub fn written(
         .spawn()
         .map_err(failed)?;
     writer.leash.hold(process.stdin.take());
-    // At the same time as the output: a process whose errors fill the pipe, such as those of a driver, would wait for ever.
+    // Errors are read at the same time as the output. A process whose errors fill the pipe, such as those of a driver,
+    // would otherwise block for ever.
     let errors = process.stderr.take().map(BackgroundTask::start_reading).transpose();
     let mut saved = None;
     let lines = process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines());
@@ -85,12 +86,12 @@ pub fn written(
     saved.filter(|_| ended.success()).ok_or_else(|| problem(&errors.unwrap_or_default()))
 }
 
-/// A line of the process.
+/// A line of the process's output.
 #[derive(Debug, PartialEq)]
 enum Said {
-    /// The share that is done.
+    /// Finished share of the file, from 0 to 1.
     Progress(f64),
-    /// The path of what was written.
+    /// Path of the written file or folder.
     Saved(PathBuf),
 }
 
@@ -100,7 +101,7 @@ fn said(line: &str) -> Option<Said> {
     progress.or_else(|| Some(Said::Saved(value["saved"].as_str()?.into())))
 }
 
-/// The error in the last line of what the process said, as a sentence.
+/// Returns the error in the last line of the process's error output, as a sentence.
 fn problem(errors: &str) -> String {
     let last = errors.lines().rev().find_map(|line| line.strip_prefix("error: "));
     let reason = last.unwrap_or("the program that writes it ended early");

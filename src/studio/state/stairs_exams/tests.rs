@@ -1,4 +1,4 @@
-//! Exams as the user begins, cancels and watches them.
+//! Exams that the user begins, cancels and watches.
 
 use super::*;
 use crate::studio::stage::StageMode;
@@ -6,7 +6,7 @@ use crate::studio::state::current_run::climber;
 use snakes_core::save::shipped_champion;
 use snakes_core::score::Trial;
 
-/// A made-up exam in which no snake lands.
+/// Creates an exam in which no snake lands, without simulating it.
 fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
     let conditions = suite.conditions(own);
     let end = ExamEnd {
@@ -43,7 +43,7 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
     let staged = climber(0);
     let own = &staged.champion().trial;
     exams.keep(staged.champion().clone(), vec![made_up(ExamSuite::Stairs, own)]);
-    // The fourth rise and the first tread.
+    // The cell has the fourth rise and the first tread.
     let watch = ExamCommand::Watch { suite: ExamSuite::Stairs, cell: 12 };
     let show = exams.apply(&watch, Some(&staged)).expect("allowed").expect("examined");
     let [there] = show.champions.as_slice() else { panic!("a single lane") };

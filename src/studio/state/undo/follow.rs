@@ -8,11 +8,11 @@ use crate::studio::state::wording::world_in_words;
 use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
 use snakes_core::score::Trial;
 
-/// The champions to show after the plan changed from `from` to `to`: the settings of the world that differ also change
-/// on the stage. `None` if nothing changes there.
+/// Returns the champions to show after the plan changed from `from` to `to`. The world settings that differ also change
+/// on the stage. `None` if this does not affect the stage.
 ///
 /// # Errors
-/// The champion on the stage does not fit the new world.
+/// The champion on the stage does not fit the changed world.
 pub(crate) fn followed(
     stage: ChangedStage,
     from: &RunPlan,
@@ -21,7 +21,7 @@ pub(crate) fn followed(
     let Some(first) = stage.on_show.first() else { return Ok(None) };
     let shown = stage.current().unwrap_or(first);
     let (original, begins) = match stage.mode {
-        // A race has no lane to which a change belongs.
+        // In a race, no lane belongs to a change.
         StageMode::Race => return Ok(None),
         StageMode::WhatIf { before, .. } => (first.clone(), Some(&**before)),
         StageMode::Solo | StageMode::Generation { .. } => (first.simulated(), None),
@@ -32,7 +32,7 @@ pub(crate) fn followed(
     }
     let label = world_in_words(&original.champion().trial, &trial);
     if begins.is_none() && first.is_changed() {
-        // After a change was kept, its lane is alone, and undo changes its world in place.
+        // After a change was kept, its lane is alone on the stage, and undo changes the lane's world.
         let restored = original.in_world(&trial, label);
         restored.check().map_err(unsuited)?;
         return Ok(Some(Show::solo(restored)));
@@ -40,8 +40,8 @@ pub(crate) fn followed(
     stage.with_world(from, &trial, label).map(Some)
 }
 
-/// The world on the stage with the differences between two plans applied. A setting that returns to its value from the
-/// start of the what-if gets the original lane's value.
+/// Applies the differences between two plans to the world on the stage. A setting that returns to its value from the
+/// start of the what-if gets the value of the original lane.
 fn taken_over(
     shown: &Trial,
     original: &Trial,
@@ -50,12 +50,12 @@ fn taken_over(
     to: &RunPlan,
 ) -> Result<Trial, String> {
     let named = |trial: &Trial| -> BTreeMap<String, String> {
-        // A separate ground is compared as a whole, below.
+        // A separate ground is compared as a whole further below.
         let trial = Trial { ground: None, ..trial.clone() };
         fields(&Settings { trial, ..Settings::default() }).into_iter().collect()
     };
     let (old, new) = (named(&from.settings.trial), named(&to.settings.trial));
-    // After a change of preset, the whole world changes on the stage.
+    // After a change of the preset, the whole world on the stage changes.
     let is_other_preset = from.preset != to.preset && from.settings.trial != to.settings.trial;
     let begins = begins.filter(|begins| !is_other_preset || begins.preset == to.preset);
     let (originally, at_first) =
@@ -84,7 +84,7 @@ fn taken_over(
         .map_err(|error| error.to_string())
 }
 
-/// Settings that do not follow a change of preset on the stage, so that the lanes can be compared.
+/// Returns whether a setting of the stage is kept when the preset changes, so that the lanes remain comparable.
 fn stays_with_a_preset(field: &str) -> bool {
     let fields =
         ["trial.duration_s", "trial.fitness", "trial.energy_cost_per_kj", Trial::ENGINE_FIELD];
@@ -98,7 +98,7 @@ mod tests {
     use crate::studio::state::what_if::tests::{changed, changed_by, labels, solo, stage};
     use crate::studio::state::what_if::{WorldChange, another_beside, dropped};
 
-    /// The stage after a step from one plan to another, which must affect it.
+    /// Returns the stage after a step from one plan to another, which must affect the stage.
     fn step(show: &Show, from: &RunPlan, to: &RunPlan) -> Show {
         followed(stage(show), from, to).expect("fits").expect("the world differs")
     }
@@ -116,7 +116,7 @@ mod tests {
         let end = step(&back, &one, &start);
         assert_eq!((end.champions.len(), &end.mode), (1, &StageMode::Solo));
         assert_eq!(end.champions[0].trial(), climber(0).trial());
-        // Redo.
+        // The step is redone.
         let forth = step(&end, &start, &one);
         assert_eq!(forth.champions[1].trial(), first.champions[1].trial());
         assert_eq!(forth.mode, StageMode::what_if(start));
@@ -134,7 +134,7 @@ mod tests {
         let two = run.next_plan().clone();
         let back = step(&three, &two, &one);
         assert_eq!(labels(&back), ["climber", "friction 0.3"]);
-        // Further back the next run has the world of the original, and the copy still stays.
+        // After a further undo, the next run has the world of the original, but the copy stays.
         let first = step(&back, &one, &start);
         assert_eq!(labels(&first), ["climber", "friction 0.3"]);
         let StageMode::WhatIf { current, .. } = first.mode else { panic!("a what-if") };

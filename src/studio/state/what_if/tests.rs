@@ -1,16 +1,16 @@
-//! Copies beside the original: made, left beside the next, kept and discarded.
+//! Copies beside the original: added, kept beside the next copy, kept alone, and discarded.
 
 use super::*;
 use crate::studio::state::current_run::{climber, prepared_run};
 use snakes_core::save::library::{SavePlace, load_entry};
 use snakes_core::world::PhysicsEngine;
 
-/// The built-in champion alone.
+/// Returns the built-in champion alone.
 pub(in crate::studio::state) fn solo() -> Show {
     Show::solo(climber(0))
 }
 
-/// A stage whose changes are tried from the start.
+/// Returns a stage on which changes are tried from the start.
 pub(in crate::studio::state) fn stage(show: &Show) -> ChangedStage<'_> {
     ChangedStage { on_show: &show.champions, mode: &show.mode, moment: None }
 }
@@ -19,7 +19,7 @@ fn field<'a>(field: &'a str, text: &'a str) -> WorldChange<'a> {
     WorldChange::Fields(vec![(field, text)])
 }
 
-/// Applies a change to a stage, which it must affect.
+/// Applies a change to a stage. The change must affect the stage.
 pub(in crate::studio::state) fn changed_by(
     run: &mut CurrentRun,
     show: &Show,
@@ -28,7 +28,7 @@ pub(in crate::studio::state) fn changed_by(
     what_if(run, stage(show), change).expect("allowed").expect("it matters")
 }
 
-/// Applies a change of a field: see [`changed_by`].
+/// Applies a change of one setting: see [`changed_by`].
 pub(in crate::studio::state) fn changed(
     run: &mut CurrentRun,
     show: &Show,
@@ -38,7 +38,7 @@ pub(in crate::studio::state) fn changed(
     changed_by(run, show, &field(name, text))
 }
 
-/// The built-in champion with a copy that is changed after this number of steps.
+/// Returns the built-in champion with a copy that is changed after this number of steps.
 fn changed_at(step: u32, name: &str, text: &str) -> Show {
     let mut rollout = climber(0).rollout();
     while rollout.step() < step {
@@ -74,7 +74,7 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
     let shown = shown.expect("allowed").expect("the original");
     assert_eq!(shown.champions[0].trial(), original.trial());
     assert_eq!(*run.next_plan(), plan, "as it was before the first change");
-    // Other settings changed meanwhile stay.
+    // Other settings that were changed meanwhile are kept.
     changed(&mut run, &solo(), "surface.friction", "0.3");
     run.set_seed(77).expect("allowed");
     run.set_population(9).expect("allowed");
@@ -115,7 +115,7 @@ fn the_engine_of_a_champion_changes_only_where_its_body_demands_it() {
     }
     let in_lanes = changed(&mut run, &solo(), Trial::ENGINE_FIELD, "lanes");
     let kept = kept(&in_lanes.champions, &in_lanes.mode).expect("kept");
-    // The next run has rapier already.
+    // The next run already has the engine rapier.
     run.set_preset("squishy").expect("shipped");
     let soft = changed(&mut run, &kept, "youngs_modulus_pa", "90000");
     assert_eq!(engine_of(&soft), PhysicsEngine::Rapier);
@@ -167,10 +167,10 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     let fixed = another_beside(&run, ice.champions, &ice.mode).expect("a copy");
     let again = another_beside(&run, fixed.champions.clone(), &fixed.mode);
     assert!(again.is_err(), "it stays already");
-    // The further lane has the changes of the latest one, too.
+    // The further lane also has the changes of the latest one.
     let both = changed(&mut run, &fixed, "stairs.rise_m", "0.7");
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 0.3"]);
-    // Another value replaces the lane that does not stay.
+    // Another value replaces the lane that is not kept.
     let both = changed(&mut run, &both, "surface.friction", "2");
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 2"]);
     let after_both = run.next_plan().clone();

@@ -5,7 +5,7 @@ use crate::studio::state::lessons::lesson::{
 };
 use snakes_core::genome::BodyChange;
 
-/// Why bodies need protection.
+/// Lesson on protection: new bodies need time for their gaits to adapt.
 pub(super) const PROTECTION: Lesson = Lesson {
     title: "Why bodies need protection",
     question: "Why does evolution settle so soon on a body?",
@@ -45,14 +45,14 @@ pub(super) const PROTECTION: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/8.md"),
 };
 
-/// Settings of a run with protection: small enough for a lesson.
+/// Settings of a run that protects new bodies, small enough for a lesson.
 const PROTECTED: [(&str, &str); 7] = of_runs("age");
-/// Settings of that run without protection.
+/// Settings of the same run without protection.
 const UNPROTECTED: [(&str, &str); 7] = of_runs("none");
 
 const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 7] {
     [
-        // The engine of the runs of which the conclusion speaks.
+        // The conclusion refers to runs with this engine.
         ("engine", "rapier"),
         ("strategy", "body_ga"),
         ("body_ga.protection", protection),

@@ -2,7 +2,7 @@
 
 use crate::studio::state::lessons::lesson::{Lesson, LessonScene, best_run, furthest, lane, run};
 
-/// Why a ladder helps.
+/// Lesson on the ladder: stairs that become higher as the snakes learn.
 pub(super) const LADDER: Lesson = Lesson {
     title: "Why a ladder helps",
     question: "Does it pay to begin with lower stairs?",
@@ -35,14 +35,14 @@ pub(super) const LADDER: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/9.md"),
 };
 
-/// Stairs with shallow treads and steps of two heights.
+/// Settings of the two staircases: both have shallow treads, but their rises differ.
 const FLIGHTS: [[(&str, &str); 2]; 2] = [
     [("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.2")],
     [("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.4")],
 ];
 
-/// Settings of the run that learns on the stairs themselves.
+/// Settings of the run that evolves directly on the final stairs.
 const DIRECT: [(&str, &str); 2] = [("generations", "54"), ("champion_trials", "0")];
-/// Settings of the run that reaches these stairs by a ladder.
+/// Settings of the run that reaches the final stairs by a ladder.
 const BY_LADDER: [(&str, &str); 3] =
     [("generations", "54"), ("champion_trials", "0"), ("ladder.first_rise_m", "0.1")];

@@ -1,11 +1,11 @@
-//! The lessons about what the authors of the report learned the hard way.
+//! The lessons on the experiences that the authors of the report describe.
 
 use crate::studio::state::lessons::lesson::{
     AS_FOUND, Lesson, LessonScene, best_run, furthest, lane, run, same_hash,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 
-/// Friction: how much?
+/// Lesson on the amount of friction.
 pub(super) const FRICTION: Lesson = Lesson {
     title: "Friction: how much?",
     question: "How much grip do stairs need?",
@@ -47,7 +47,7 @@ pub(super) const FRICTION: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/1.md"),
 };
 
-/// Frame rate and physics steps.
+/// Lesson on the frame rate and the physics steps.
 pub(super) const FRAME_RATE: Lesson = Lesson {
     title: "Frame rate and physics steps",
     question: "Why did the best snake climb on one computer and fall on another?",
@@ -89,7 +89,7 @@ pub(super) const FRAME_RATE: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/2.md"),
 };
 
-/// Limits on the joints.
+/// Lesson on the limits of the joints.
 pub(super) const JOINT_LIMITS: Lesson = Lesson {
     title: "Limits on the joints",
     question: "Does it help evolution to restrict the joints, or does it hinder?",
@@ -130,7 +130,7 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/3.md"),
 };
 
-/// Mutations: how fast should they shrink?
+/// Lesson on the decrease of the mutation range.
 pub(super) const MUTATIONS: Lesson = Lesson {
     title: "Mutations: how fast should they shrink?",
     question: "What happens to the progress of a run when its mutations become smaller?",
@@ -165,7 +165,7 @@ pub(super) const MUTATIONS: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/4.md"),
 };
 
-/// Repeating a run.
+/// Lesson on the repetition of a run.
 pub(super) const REPETITION: Lesson = Lesson {
     title: "Repeating a run",
     question: "Does a run give the same result when you repeat it?",

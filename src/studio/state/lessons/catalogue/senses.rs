@@ -1,8 +1,8 @@
-//! The lessons about senses: what a snake that feels nothing has learned, and what it does with the senses that it has.
+//! The lessons on senses: the limits of a snake without senses, and the use that a snake makes of its senses.
 
 use crate::studio::state::lessons::lesson::{Lesson, LessonScene, furthest, lane};
 
-/// Learned by heart.
+/// Lesson on changed stairs, for a snake without senses and one with senses.
 pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
     title: "Learned by heart",
     question: "Does a snake that climbs its own stairs climb others?",
@@ -41,7 +41,7 @@ pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
     worksheet: include_str!("../../../../../docs/worksheets/6.md"),
 };
 
-/// Take away its eyes.
+/// Lesson on a snake whose sight is taken away.
 pub(super) const BLINDFOLD: Lesson = Lesson {
     title: "Take away its eyes",
     question: "Which of its senses does a snake need?",

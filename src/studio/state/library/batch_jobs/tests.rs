@@ -5,7 +5,7 @@ use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::tests::Tried;
 use snakes_core::save::library::SavePlace;
 
-/// A library of this many saves, and their places.
+/// Creates a library with this many saves, and returns their places.
 fn of_many(count: usize) -> (Tried, Vec<SavePlace>) {
     let mut tried = Tried::new(&["a"]);
     let folder = tried.folder.path();
@@ -40,8 +40,8 @@ fn many_saves_are_deleted_in_the_background_and_restored_together() {
     assert!(tried.own().is_empty());
 }
 
-/// Begins a batch and cancels it at once; repeats this until the batch was not faster. Returns the number of saves
-/// that `count` finds then.
+/// Begins a batch and cancels it at once. Repeats this until the batch was not finished before the cancellation.
+/// Returns the number of saves that `count` finds then.
 fn cancelled(
     tried: &mut Tried,
     begin: impl Fn(&mut Tried),
