@@ -8,20 +8,20 @@ use super::widths::PanelWidths;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::ui::theme;
 
-/// Layout of the panels.
+/// Layout of the panels: docked, stacked, collapsed or floating.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     state: DockState<PanelKind>,
     widths: PanelWidths,
-    /// The size class of the window for which it was drawn last.
+    /// Size class of the window in the last frame; `None` before the first one.
     class: Option<SizeClass>,
     /// Whether to build the default layout as soon as the window's size is known.
     is_to_be_laid_out: bool,
-    /// The panel to focus after that.
+    /// Panel to focus after the default layout is built.
     first: Option<PanelKind>,
-    /// The panels that came to the front or got the focus, the latest last.
+    /// Panels that came to the front or got the focus, the latest last.
     chosen: Vec<PanelKind>,
-    /// The panels in front of their places when that was last noted.
+    /// Panels that were in front of their places when `chosen` was last updated.
     in_front: Vec<PanelKind>,
 }
 
@@ -33,17 +33,17 @@ const HIGH: f32 = 800.0;
 const LEFT: f32 = 384.0;
 /// Width of the right panels in a wide window, in points.
 const RIGHT: f32 = 420.0;
-/// Maximum number of panels in one place: the names of more have no room on their tabs.
+/// Maximum number of panels in one place. The tab bar has no room for more names.
 const MOST_TABS: usize = PanelKind::INITIAL.len();
-/// Share of a full place that its panels keep when another panel opens below them.
+/// Share of a full place's height that its panels keep when another panel opens below them.
 const UPPER_SHARE: f32 = 0.45;
 
 /// Properties of the window that decide the default layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct SizeClass {
-    /// There is room on both sides of the stage.
+    /// Whether panels fit on both sides of the stage.
     is_wide: bool,
-    /// There is room below other panels.
+    /// Whether panels fit below other panels.
     is_high: bool,
 }
 
@@ -68,7 +68,7 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// The default layout for a window of this size, in points.
+    /// Returns the default layout for a window of this size, in points.
     fn default_for(size: egui::Vec2) -> DockState<PanelKind> {
         Self::default_of(SizeClass::of(size), size.x)
     }
@@ -94,14 +94,14 @@ impl Layout {
         state
     }
 
-    /// Returns to the default layout.
+    /// Requests the default layout, which the next call of `state_in` builds.
     pub fn reset(&mut self) {
         self.is_to_be_laid_out = true;
     }
 
-    /// The dock state to draw in a window of this size, in points.
+    /// Returns the dock state to draw in a window of this size, in points.
     ///
-    /// Skips measuring while the UI scale is changing (`is_settled == false`).
+    /// Does not adjust the widths while the UI scale is changing (`is_settled == false`).
     pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
         if self.is_to_be_laid_out {
             self.state = Self::default_for(size);
@@ -125,7 +125,7 @@ impl Layout {
         &mut self.state
     }
 
-    /// Arranges the panels anew if the window has become much larger or smaller, unless a person has arranged them.
+    /// Returns to the default layout when the window has become much larger or smaller, unless the user has rearranged the panels.
     fn follow_class(&mut self, size: egui::Vec2) {
         let class = SizeClass::of(size);
         let Some(before) = self.class.replace(class).filter(|before| *before != class) else {
@@ -136,12 +136,12 @@ impl Layout {
         }
         self.state = Self::default_for(size);
         self.widths.panels_were_rearranged();
-        // The latest choice comes last, so that it is in front where panels share a place now.
+        // The panel chosen last comes last, so that it is in front where several panels now share a place.
         self.chosen.clone().into_iter().for_each(|kind| self.open(kind));
         self.in_front = self.front_panels();
     }
 
-    /// Notes the panels that came to the front since the last call, and the one with the focus.
+    /// Updates `chosen` by the panels that came to the front since the last call, and by the panel with the focus.
     fn note_chosen(&mut self) {
         let front = self.front_panels();
         let focused = self.state.focused_leaf().and_then(|path| self.state.leaf(path).ok());
@@ -154,18 +154,18 @@ impl Layout {
         self.in_front = front;
     }
 
-    /// The panels in front of their places.
+    /// Returns the front panel of each place.
     fn front_panels(&self) -> Vec<PanelKind> {
         let leaves = self.state.iter_leaves();
         leaves.filter_map(|(_, leaf)| leaf.tabs.get(leaf.active.0).copied()).collect()
     }
 
-    /// Whether the layout contains a panel, visible or as a tab.
+    /// Returns whether the layout contains a panel, visible or as a tab.
     pub fn has(&self, kind: PanelKind) -> bool {
         self.state.find_tab(&kind).is_some()
     }
 
-    /// The tab bars: their widths, in points, and their panels.
+    /// Returns the width of each visible tab bar, in points, and its panels.
     pub fn tab_bars(&self) -> Vec<(f32, Vec<PanelKind>)> {
         let leaves = self.state.iter_leaves().filter(|(_, leaf)| !leaf.tab_bar_hidden);
         leaves.map(|(_, leaf)| (leaf.rect().width(), leaf.tabs.clone())).collect()
@@ -196,7 +196,7 @@ impl Layout {
         }
     }
 
-    /// Adds a panel to those at a place, or below them if their tabs leave no room for its name.
+    /// Adds a panel to the place at `path`, or below it if its tab bar has no room for another name.
     fn put_beside(&mut self, path: TabPath, kind: PanelKind) {
         let Ok(leaf) = self.state.leaf_mut(path.node_path()) else { return };
         if leaf.tabs.len() < MOST_TABS || path.surface != SurfaceIndex::main() {
@@ -207,7 +207,7 @@ impl Layout {
         }
     }
 
-    /// The place for a restored panel: beside a related panel, or else beside any.
+    /// Finds the place for a restored panel: beside a related panel, or else beside any panel.
     fn home_of(&self, kind: PanelKind) -> Option<TabPath> {
         let usual: &[PanelKind] = match kind {
             PanelKind::Charts
@@ -221,7 +221,7 @@ impl Layout {
         found(usual).or_else(|| found(&PanelKind::ALL))
     }
 
-    /// Closes the panel that was used last.
+    /// Closes the panel that has the focus.
     pub fn close_front(&mut self) {
         let front = self.state.focused_leaf().and_then(|path| self.state.leaf(path).ok());
         if let Some(kind) = front.and_then(|leaf| leaf.tabs.get(leaf.active.0).copied()) {
@@ -229,7 +229,7 @@ impl Layout {
         }
     }
 
-    /// Closes a panel. The stage stays.
+    /// Closes a panel. The stage cannot be closed.
     fn close(&mut self, kind: PanelKind) {
         if kind != PanelKind::Stage
             && let Some(path) = self.state.find_tab(&kind)
@@ -238,7 +238,7 @@ impl Layout {
         }
     }
 
-    /// The layout as text.
+    /// Returns the layout as text with a checksum, or an empty text before the first layout.
     pub fn to_text(&self) -> String {
         if self.is_to_be_laid_out {
             return String::new();
@@ -247,7 +247,7 @@ impl Layout {
         format!("{} {text}", seal(&text))
     }
 
-    /// The layout from its text, or the default layout if the text is invalid.
+    /// Reads a layout from its text. Returns the default layout if the text is invalid.
     pub fn from_text(text: &str) -> Self {
         // Text from another version or edited by hand could describe a layout that cannot be drawn.
         let own = text.split_once(' ').filter(|(sum, text)| *sum == seal(text));
@@ -263,18 +263,18 @@ impl Layout {
     }
 }
 
-/// Checksum of a layout's text and the program version.
+/// Computes the checksum of a layout's text together with the program's version.
 fn seal(text: &str) -> String {
     format!("{:016x}", xxh3_64(format!("{} {text}", env!("CARGO_PKG_VERSION")).as_bytes()))
 }
 
-/// The panels that share a place, place by place; windows of their own come last.
+/// Returns the panels of each place, and whether the place is in the main window.
 fn arrangement(state: &DockState<PanelKind>) -> Vec<(bool, Vec<PanelKind>)> {
     let leaves = state.iter_leaves();
     leaves.map(|(path, leaf)| (path.surface == SurfaceIndex::main(), leaf.tabs.clone())).collect()
 }
 
-/// Whether the main window has exactly one stage and no panel occurs twice.
+/// Checks that the main window contains the stage, and that no panel occurs twice.
 fn is_sound(state: &DockState<PanelKind>) -> bool {
     let kinds: Vec<PanelKind> = state.iter_all_tabs().map(|(_, kind)| *kind).collect();
     let count = |kind: &PanelKind| kinds.iter().filter(|other| *other == kind).count();
@@ -283,7 +283,7 @@ fn is_sound(state: &DockState<PanelKind>) -> bool {
         && kinds.iter().all(|kind| count(kind) == 1)
 }
 
-/// Style of the dock area.
+/// Returns the style of the dock area.
 pub(crate) fn style(ui: &egui::Ui) -> Style {
     let palette = theme::of(ui);
     let mut style = Style::from_egui(ui.style());

@@ -18,7 +18,7 @@ use super::state::options::OpenedComparison;
 use layout::Layout;
 use scale::UiScale;
 
-/// State of the window.
+/// State of the window: panel layout, UI scale, modal view.
 #[derive(Resource, Debug)]
 pub(super) struct Workspace {
     /// Layout of the panels.
@@ -27,13 +27,13 @@ pub(super) struct Workspace {
     pub scale: UiScale,
     /// Whether the panels are hidden.
     pub is_bare: bool,
-    /// Whether the tour was finished or skipped, in this or an earlier session.
+    /// Whether the tour was finished or skipped, now or in an earlier run of the program.
     pub tour_is_over: bool,
     /// Titles of the sections whose advanced settings are unfolded.
     pub unfolded: BTreeSet<String>,
-    /// Whether the stage is presented on the full screen.
+    /// Whether the stage is presented in full screen.
     is_presenting: bool,
-    /// Whether the presented screen is black.
+    /// Whether the screen is black in the presenting mode.
     is_black: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
@@ -57,32 +57,32 @@ impl Default for Workspace {
 }
 
 impl Workspace {
-    /// The initial state, with or without the tour, and with or without the presenting mode.
+    /// Creates the initial state, with or without the tour, and in the presenting mode or not.
     pub fn new(tour_is_over: bool, is_presenting: bool) -> Self {
         Self { tour_is_over, is_presenting, ..Self::default() }
     }
 
-    /// The open modal view. The tour, which points at panels, waits for the end of the presenting mode.
+    /// Returns the open modal view. A tour is hidden in the presenting mode, because it points at panels.
     pub fn modal(&self) -> Option<Modal> {
         self.modal.filter(|modal| !self.is_presenting || !matches!(modal, Modal::Tour(_)))
     }
 
-    /// Whether the stage is presented on the full screen: without panels and cards, under a large caption.
+    /// Returns whether the stage is presented in full screen: without panels and cards, under a large caption.
     pub fn is_presenting(&self) -> bool {
         self.is_presenting
     }
 
-    /// Whether the stage is presented, but the screen is black meanwhile.
+    /// Returns whether the presenting mode currently shows a black screen instead of the stage.
     pub fn is_black(&self) -> bool {
         self.is_presenting && self.is_black
     }
 
-    /// Shows the stage again, if the screen is black.
+    /// Ends the black screen of the presenting mode, if it is on.
     pub fn end_black(&mut self) {
         self.is_black = false;
     }
 
-    /// Executes a command. Returns a message if there is nothing to do.
+    /// Executes a window command. Returns a message for the user if the command has no effect.
     pub fn apply(&mut self, command: &WindowCommand) -> Option<&'static str> {
         match command {
             WindowCommand::OpenPanel(kind) => self.open(*kind),
@@ -92,7 +92,7 @@ impl Workspace {
             }
             WindowCommand::ClosePanel => self.layout.close_front(),
             WindowCommand::ResetLayout => self.layout.reset(),
-            // The presenting mode shows no panel anyway, and its end brings back what was visible before it.
+            // The presenting mode shows no panels, and its end restores what was visible before it.
             WindowCommand::TogglePanels if self.is_presenting => {}
             WindowCommand::TogglePanels => self.is_bare = !self.is_bare,
             WindowCommand::TogglePresenting => {
@@ -123,13 +123,13 @@ impl Workspace {
         self.layout.open(kind);
     }
 
-    /// Opens a modal view in place of any other, or closes it if it is open.
+    /// Opens a modal view in place of any other, or closes the view if it is open already.
     pub fn toggle_modal(&mut self, modal: Modal) {
         self.leave_tour();
         self.modal = (self.modal != Some(modal)).then_some(modal);
     }
 
-    /// Closes the modal view.
+    /// Closes the open modal view.
     pub fn close_modal(&mut self) {
         self.leave_tour();
         self.modal = None;
@@ -146,7 +146,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Workspace>().add_systems(Update, open_first.in_set(FrameSet::TakeIn));
 }
 
-/// Opens the charts if the studio was opened with a comparison, or else the tour if it was not finished yet.
+/// At the first call, opens the charts if the program was started with a comparison, or else the tour if it is not over.
 fn open_first(
     mut workspace: ResMut<Workspace>,
     opened: Res<OpenedComparison>,

@@ -1,22 +1,22 @@
-//! Scale of the panels: what a person has chosen, within what the window has room for.
+//! Scale of the panels: the user's choice, limited by the size of the window.
 
 use bevy_egui::egui;
 
 use snakes_core::save::UI_SCALES;
 
-/// Minimum size of the window in points of the interface: the stage beside a panel of least width, and the player below
-/// it. A scale that would leave fewer points is not used.
+/// Minimum size of the window in points: the stage beside a panel of minimum width, above the player. A scale that
+/// would leave fewer points is not used.
 pub const LEAST_WINDOW: egui::Vec2 = egui::vec2(800.0, 480.0);
 
-/// Size of a window, in logical pixels, in which the presenting mode has the scale 1.
+/// Window size at which the presenting mode has the scale 1, in logical pixels.
 const PRESENTED: egui::Vec2 = egui::vec2(1000.0, 625.0);
 
-/// Scale of the panels.
+/// Scale of the panels: the user's choice and the window's limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
-    /// The user's choice. A window that becomes larger has it again.
+    /// Scale that the user chose. It applies again when the window becomes large enough.
     chosen: f32,
-    /// The largest one for which the window has room.
+    /// Largest scale for which the window has room.
     largest: f32,
 }
 
@@ -27,17 +27,17 @@ impl Default for UiScale {
 }
 
 impl UiScale {
-    /// The chosen scale, for the preferences.
+    /// Returns the user's choice, for the preferences.
     pub fn chosen(self) -> f32 {
         self.chosen
     }
 
-    /// The scale that is shown.
+    /// Returns the scale in use: the user's choice, or the largest scale that fits.
     pub fn shown(self) -> f32 {
         self.chosen.min(self.largest)
     }
 
-    /// Chooses a scale.
+    /// Stores the user's choice.
     pub fn choose(&mut self, scale: f32) {
         self.chosen = scale;
     }
@@ -51,18 +51,18 @@ impl UiScale {
         self.largest = UI_SCALES.iter().rev().find(has_room).copied().unwrap_or(UI_SCALES[0]);
     }
 
-    /// Scale of the presenting mode in a window of this size, in logical pixels: its texts have the same share of every
-    /// screen.
+    /// Returns the scale of the presenting mode for a window of this size, in logical pixels. Texts take the same share
+    /// of every screen.
     pub fn presenting(window: egui::Vec2) -> f32 {
         let share = window / PRESENTED;
-        // In twentieths, so that a window that is being resized does not rasterize its letters in every frame.
+        // In steps of 0.05, so that the glyphs are not rasterized anew in every frame while the window is resized.
         ((share.x.min(share.y) * 20.0).floor() / 20.0).max(UI_SCALES[0])
     }
 
     /// Chooses the next larger or smaller scale.
     ///
     /// # Errors
-    /// There is none, or the window is too small for it.
+    /// Says that the scale is at its limit, or that the window is too small for the next one.
     pub fn change(&mut self, larger: bool) -> Result<(), &'static str> {
         let shown = self.shown();
         let next = if larger {
@@ -148,7 +148,7 @@ mod tests {
         assert_eq!((scale.shown(), scale.chosen()), (1.25, 2.0));
         scale.fit(egui::vec2(2560.0, 1440.0));
         assert_eq!(scale.shown(), 2.0);
-        // A step counts from what is seen.
+        // A step starts from the scale in use, not from the user's choice.
         scale.fit(egui::vec2(1024.0, 640.0));
         assert_eq!(scale.change(false), Ok(()));
         assert_eq!(scale.shown(), 1.1);

@@ -1,4 +1,4 @@
-//! The current situation, which decides what an action does.
+//! The current situation, which decides which command an action sends.
 
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
@@ -10,7 +10,7 @@ use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::shares::Shares;
 use crate::studio::state::undo::{UndoDirection, UndoHistory};
 
-/// Resources that make up the current situation.
+/// Resources from which the current situation is computed.
 #[derive(SystemParam)]
 pub(crate) struct CurrentSituation<'w> {
     mode: Res<'w, StageMode>,
@@ -21,7 +21,7 @@ pub(crate) struct CurrentSituation<'w> {
 }
 
 impl CurrentSituation<'_> {
-    /// The current situation.
+    /// Returns the current situation.
     pub fn situation(&self) -> Situation {
         let is_sharing = self.shares.busy().is_some();
         let situation = Situation::of(&self.run, &self.mode, &self.workspace, &self.history);
@@ -30,7 +30,7 @@ impl CurrentSituation<'_> {
 }
 
 impl Situation {
-    /// The situation of this state.
+    /// Computes the situation from the run, the stage, the window and the undo history.
     pub fn of(
         run: &CurrentRun,
         mode: &StageMode,

@@ -1,78 +1,78 @@
 //! Widths of the panels beside the stage, in points.
 //!
-//! The dock stores shares of the window's width. What a person chooses is a width: it shall survive a smaller window
-//! and a larger scale, which leave less room for a while. [`PanelWidths`] keeps the chosen widths, and computes the
-//! shares anew whenever the room or the arrangement changes. It does not change which panel is where.
+//! The dock stores shares of the window's width, but the user chooses a width. A chosen width must survive a
+//! temporarily smaller window or larger scale. [`PanelWidths`] keeps the chosen widths, and recomputes the shares
+//! whenever the available width or the arrangement changes. It does not move panels.
 
 use egui_dock::{Node, NodeIndex, Tree};
 use serde::{Deserialize, Serialize};
 
 use crate::studio::commands::panel::PanelKind;
 
-/// Minimum width of a panel, in points: its contents, its margins and its scroll bar. The panels' tests check that their
-/// contents fit.
+/// Minimum width of a panel, in points: contents, margins and scroll bar. The panels' tests check that the contents
+/// fit.
 pub const LEAST_PANEL: f32 = 356.0;
-/// Minimum fraction of the window for the stage, beside panels that are wider than they need to be.
+/// Minimum share of the window's width for the stage when panels are wider than their minimum.
 const STAGE_SHARE: f32 = 0.4;
-/// Width of the stage, in points, from which the buttons of the player fit below it.
+/// Minimum width of the stage, in points, at which the player's buttons fit below it.
 const ROOMY_STAGE: f32 = 400.0;
 /// Minimum width of the stage, in points, beside panels of minimum width.
 const LEAST_STAGE: f32 = 200.0;
-/// Largest difference between shares that are the same.
+/// Tolerance within which two shares count as equal.
 const SAME: f32 = 1.0e-5;
 
-/// The place of panels beside the stage: the side, and the number of splits further out on the same side.
+/// Place of panels beside the stage: the side of the stage, and the number of splits further out on that side.
 type Place = (StageSide, usize);
 
-/// A side of the stage.
+/// Side of the stage on which panels are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum StageSide {
     Left,
     Right,
 }
 
-/// The chosen widths of the panels beside the stage.
+/// Widths that the user chose for the panels beside the stage, in points.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PanelWidths {
     chosen: Vec<(Place, f32)>,
-    /// The shares of the stage's side that were set last, by split. Another share is a person's choice.
+    /// Share of each split's width that was set last for the side of the stage. A different share means that the user dragged the split.
     #[serde(skip)]
     shares: Vec<(NodeIndex, f32)>,
-    /// The width for which they were set, in points.
+    /// Window width for which `shares` were set, in points; 0 if unknown.
     #[serde(skip)]
     room: f32,
 }
 
-/// A split with the stage on one side and panels on the other.
+/// A horizontal split with the stage on one side and panels on the other.
 struct Beside {
     node: NodeIndex,
     place: Place,
     /// Minimum width of the panels, in points.
     least: f32,
-    /// Fraction of the split's width on the side of the stage.
+    /// Fraction of the split's width that the side of the stage takes.
     share: f32,
 }
 
 impl PanelWidths {
-    /// Forgets all widths, for a new layout.
+    /// Removes all chosen widths, for a new layout.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes note that the program has arranged the panels anew. Chosen widths stay.
+    /// Marks the shares as outdated after the program has rearranged the panels. Chosen widths stay.
     pub fn panels_were_rearranged(&mut self) {
         self.shares.clear();
         self.room = 0.0;
     }
 
-    /// Whether the widths can be those of a layout.
+    /// Checks that the number of widths and each width are plausible.
     pub fn are_sound(&self) -> bool {
         let is_sound = |width: f32| width.is_finite() && (0.0..=20_000.0).contains(&width);
         self.chosen.len() <= 20 && self.chosen.iter().all(|(_, width)| is_sound(*width))
     }
 
-    /// Takes over what a person has dragged since the last call, and fits the panels into a window of this width, in
-    /// points.
+    /// Stores the widths that the user has dragged since the last call, and fits the panels into a window of this
+    /// width, in points.
     pub fn fit(&mut self, tree: &mut Tree<PanelKind>, stage: NodeIndex, width: f32) {
         let splits = beside(tree, stage);
         self.note_dragged(&splits, width);
@@ -93,7 +93,7 @@ impl PanelWidths {
         self.room = width;
     }
 
-    /// The chosen width of the panels at a place, in points.
+    /// Returns the chosen width of the panels at a place, in points, or the minimum width.
     fn of(&self, place: Place) -> f32 {
         let chosen = self.chosen.iter().find(|(of, _)| *of == place);
         chosen.map_or(LEAST_PANEL, |(_, width)| *width)
@@ -104,10 +104,10 @@ impl PanelWidths {
         self.chosen.push((place, width));
     }
 
-    /// Notes the widths of splits that are new or were dragged.
+    /// Stores the panel widths of splits that are new or were dragged.
     fn note_dragged(&mut self, splits: &[Beside], width: f32) {
         let is_first = self.shares.is_empty();
-        // Shares were dragged in the window as it was.
+        // Dragged shares refer to the window width of the last call.
         let mut room = if self.room > 0.0 { self.room } else { width };
         for split in splits {
             let set = self.shares.iter().find(|(node, _)| *node == split.node);
@@ -122,7 +122,7 @@ impl PanelWidths {
     }
 }
 
-/// The splits on the way from the root to the stage, the outermost first.
+/// Returns the splits on the path from the root to the stage, the outermost first.
 fn beside(tree: &Tree<PanelKind>, stage: NodeIndex) -> Vec<Beside> {
     let mut way: Vec<NodeIndex> =
         std::iter::successors(Some(stage), |node| node.parent()).collect();
@@ -145,7 +145,7 @@ fn beside(tree: &Tree<PanelKind>, stage: NodeIndex) -> Vec<Beside> {
     way.windows(2).filter_map(split_of).collect()
 }
 
-/// Number of panels side by side below a node.
+/// Counts the panels side by side below a node.
 fn columns(tree: &Tree<PanelKind>, node: NodeIndex) -> usize {
     if node.0 >= tree.len() {
         return 1;
@@ -164,15 +164,15 @@ fn columns(tree: &Tree<PanelKind>, node: NodeIndex) -> usize {
     }
 }
 
-/// The widths for a window of this width, in points: those that are wanted, if the stage keeps its share. Otherwise all
-/// shrink towards their minimum by the same part of what they can spare.
+/// Computes the panel widths for a window of this width, all in points. Panels get the wanted widths if the stage keeps
+/// its share. Otherwise all shrink towards their minimum by the same part of what exceeds it.
 fn fitted(wanted: &[f32], splits: &[Beside], width: f32) -> Vec<f32> {
     let least: f32 = splits.iter().map(|split| split.least).sum();
     let spare: f32 = wanted.iter().zip(splits).map(|(wanted, split)| wanted - split.least).sum();
     let beside_roomy = width - (width * STAGE_SHARE).max(ROOMY_STAGE);
     let room = beside_roomy.max(least).min((width - LEAST_STAGE).max(0.0));
     if room < least {
-        // Not even the minimum has room.
+        // The window is too narrow even for the minimum widths.
         return splits.iter().map(|split| split.least * room / least).collect();
     }
     let part = if spare > 0.0 { ((room - least) / spare).min(1.0) } else { 1.0 };
@@ -189,13 +189,13 @@ mod tests {
     use crate::studio::ui::theme;
     use egui_dock::DockState;
 
-    // Panels are tested at this width inside their margins and their scroll bar.
+    // The panels' tests draw contents of this width, inside the margins and the scroll bar.
     const _: () = assert!(LEAST_PANEL - 3.5 * theme::GAP >= theme::PANEL_WIDTH);
 
     const LEFT: Place = (StageSide::Left, 0);
     const RIGHT: Place = (StageSide::Right, 0);
 
-    /// The stage between panels of 384 and 420 points, in a window of 1600 points.
+    /// Creates the stage between panels of 384 and 420 points, in a window of 1600 points.
     fn on_both_sides() -> (DockState<PanelKind>, PanelWidths) {
         let mut state = DockState::new(vec![PanelKind::Stage]);
         let surface = state.main_surface_mut();
@@ -212,7 +212,7 @@ mod tests {
         widths.fit(state.main_surface_mut(), stage, width);
     }
 
-    /// Widths of the panels on the left and on the right, and of the stage, in points.
+    /// Returns the widths of the left panels, the right panels and the stage, in points.
     fn drawn(state: &DockState<PanelKind>, width: f32) -> [f32; 3] {
         let fraction = |node: NodeIndex| match &state.main_surface()[node] {
             Node::Horizontal(split) => split.fraction,
@@ -227,7 +227,7 @@ mod tests {
     fn panels_have_their_widths_again_after_a_larger_scale() {
         let (mut state, mut widths) = on_both_sides();
         assert_eq!(drawn(&state, 1600.0), [384.0, 420.0, 796.0]);
-        // The scales 1.1, 1.25, 1.5 and 1.75 leave that many points.
+        // Window widths in points that the scales 1.1, 1.25, 1.5 and 1.75 leave.
         for points in [1454.5, 1280.0, 1066.7, 914.3] {
             fit(&mut state, &mut widths, points);
             let [left, right, stage] = drawn(&state, points);

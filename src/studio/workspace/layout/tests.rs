@@ -78,7 +78,7 @@ fn the_default_layout_follows_the_window_and_keeps_the_panel_in_front() {
     layout.state_in(egui::vec2(1920.0, 1080.0), true);
     assert_eq!(columns(&layout), 4, "stage, charts, champions and the other panels");
     assert!(is_in_front(&layout, PanelKind::World));
-    // A person's own arrangement stays.
+    // A layout that the user has arranged is kept.
     layout.close(PanelKind::Lessons);
     layout.state_in(egui::vec2(1280.0, 720.0), true);
     assert_eq!(columns(&layout), 4);
