@@ -1,8 +1,8 @@
 //! Recovery from a lost graphics device, for example after a driver restart or a switch between two GPUs.
 //!
 //! If the renderer reports the loss, drawing restarts on another device. Usually the renderer panics in the middle of a
-//! frame instead, and this process cannot draw any more. The program then restarts itself with the same arguments, and
-//! the run continues from its folder.
+//! frame instead, and the process cannot draw again. The program then restarts itself with the same arguments, and the
+//! run continues from its folder.
 
 #[cfg(unix)]
 use std::ffi::OsString;
@@ -19,27 +19,27 @@ use crate::studio::error::StudioError;
 use crate::studio::state::run_context::RunInProgress;
 use crate::studio::ui::notifications::Notices;
 
-/// Reason why drawing ended for good, if it did. The caller reads it after the window is closed.
+/// Reason why drawing ended for good, if it did. `studio::run` reads it after the window is closed.
 #[derive(Resource, Debug, Clone, Default)]
 pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
 
 impl Failure {
-    /// The reason, or `None` while drawing works.
+    /// Returns the reason why drawing ended, or `None` while it works.
     pub fn message(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 
-/// Environment variable that counts how often the program has restarted itself.
+/// Name of the environment variable that counts how often the program has restarted itself.
 const REOPENED: &str = "SNAKES_REOPENED";
-/// Maximum number of restarts. A driver that has failed more often will fail again.
+/// Maximum number of restarts. A driver that fails more often is unlikely to recover.
 const MAX_RESTARTS: u32 = 3;
 
-/// Number of lost devices.
+/// Number of times that the graphics device was lost since the start of the program.
 #[derive(Resource, Debug, Default)]
 struct Losses(u32);
 
-/// Maximum number of lost devices per session before drawing is given up.
+/// Maximum number of lost devices before drawing ends for good.
 const MAX_LOSSES: u32 = 5;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -48,7 +48,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Startup, report_restart);
 }
 
-/// How often the program has restarted itself.
+/// Reads from the environment how often the program has restarted itself.
 fn restarts() -> u32 {
     std::env::var(REOPENED).ok().and_then(|text| text.parse().ok()).unwrap_or(0)
 }
@@ -63,8 +63,8 @@ fn report_restart(mut notices: ResMut<Notices>) {
     }
 }
 
-/// Restarts the program if the graphics driver caused this panic, or ends it with a message if a restart fails. Returns
-/// for any other panic.
+/// Restarts the program if the graphics driver caused the panic. Exits with an error message if the restart fails.
+/// Returns if the panic has another cause.
 ///
 /// After a panic in the renderer, dropping its buffers panics again, which would abort the process without a message.
 pub(crate) fn recover_or_exit(info: &PanicHookInfo<'_>, run_folder: &RunInProgress) {
@@ -78,12 +78,12 @@ pub(crate) fn recover_or_exit(info: &PanicHookInfo<'_>, run_folder: &RunInProgre
     let message = format!("the graphics driver failed ({said})");
     // The panicking thread may hold this lock, so do not block on it.
     let run = run_folder.try_lock().ok().and_then(|mut run| run.take());
-    // Writing to standard error may fail. There is no other place to report that.
+    // A failure to write to standard error cannot be reported anywhere else.
     let _ = writeln!(std::io::stderr(), "error: {}", StudioError::Crashed { message, run });
     std::process::exit(1)
 }
 
-/// Replaces this process by a new one, which releases all locks and so frees the run's folder.
+/// Replaces the process by a new one. This releases all locks, including that of the run's folder.
 #[cfg(unix)]
 fn restart_program() {
     use std::os::unix::process::CommandExt;
@@ -94,17 +94,17 @@ fn restart_program() {
     let _ = command.args(arguments).env(REOPENED, (restarts() + 1).to_string()).exec();
 }
 
-/// The arguments for the new process. `--restart` is dropped, because that run has begun and must continue now.
+/// Returns the arguments for the new process, without `--restart`: the run has begun and must continue now.
 #[cfg(unix)]
 fn restart_arguments(arguments: impl Iterator<Item = OsString>) -> impl Iterator<Item = OsString> {
     arguments.filter(|argument| argument != "--restart")
 }
 
-/// Other systems cannot replace a process; the message explains how to continue.
+/// Does nothing where a process cannot be replaced. The error message then explains how to continue.
 #[cfg(not(unix))]
 fn restart_program() {}
 
-/// Requests a new device, or gives up with a message.
+/// Requests a new graphics device, or gives up with a message after too many losses.
 fn recover(error: &RenderError, studio: &mut World, _: &mut World) -> RenderErrorPolicy {
     let mut losses = studio.resource_mut::<Losses>();
     losses.0 += 1;

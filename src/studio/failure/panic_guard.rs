@@ -1,8 +1,8 @@
-//! Turns a missing display or a crash into a one-line error.
+//! Turns a missing display or a crash into a one-line error message.
 //!
 //! Without a display or a graphics driver, winit and the renderer panic. A panic before the first frame therefore means
-//! that no window can be opened; a later panic is a fault of the program. The run is safe then, because every finished
-//! generation was saved at once.
+//! that no window can be opened. A later panic is a bug. The run is safe then, because every finished generation was
+//! saved at once.
 
 use std::panic;
 use std::panic::{AssertUnwindSafe, PanicHookInfo};
@@ -22,7 +22,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Last, || WINDOW_IS_OPEN.store(true, Ordering::Relaxed));
 }
 
-/// Runs the app. A panic before its first frame becomes [`StudioError::NoWindow`], a later one
+/// Runs the app. Turns a panic before the first frame into [`StudioError::NoWindow`], and a later panic into
 /// [`StudioError::Crashed`].
 pub(crate) fn guarded(
     run_folder: &RunInProgress,
@@ -39,7 +39,7 @@ pub(crate) fn guarded(
         let mut first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert_with(|| if is_open { said(info) } else { reason(info) });
     }));
-    // Unwinding drops the app and the background run, which finishes writing first.
+    // Unwinding drops the app and the background run, which first finishes writing.
     panic::catch_unwind(AssertUnwindSafe(run)).map_err(|_| {
         let first = FIRST_PANIC.lock().unwrap_or_else(PoisonError::into_inner).take();
         let message = first.unwrap_or_else(|| "unknown reason".to_owned());
@@ -52,14 +52,14 @@ pub(crate) fn guarded(
     })
 }
 
-/// Message and location of the panic.
+/// Returns the first line of the panic's message and its location.
 fn said(info: &PanicHookInfo<'_>) -> String {
     let message = info.payload_as_str().unwrap_or("a panic without a message");
     let place = info.location().map(|place| format!(" at {place}")).unwrap_or_default();
     message.lines().next().unwrap_or_default().to_owned() + &place
 }
 
-/// Short form of the panic's message.
+/// Returns the reason why no window can be opened, from the panic's message.
 fn reason(info: &PanicHookInfo<'_>) -> String {
     let message = info.payload_as_str().unwrap_or("unknown reason");
     if message.contains("event loop") {
@@ -102,7 +102,7 @@ mod tests {
         });
         let Err(StudioError::Crashed { run, .. }) = ended else { panic!("{ended:?}") };
         assert_eq!(run.as_ref(), Some(&source.folder));
-        // Its thread has released the folder, and no finished generation is lost.
+        // The run's thread has released the folder, and no finished generation is lost.
         let again = RunSource::in_folder(&source.folder).expect("a run").open("a test");
         assert!(again.expect("free and whole").reports.len() as u32 >= last);
     }
