@@ -13,11 +13,11 @@ use crate::studio::ui::decimals::decimals;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Greatest y that a middle limb reached in the current run, in metres; `None` without a champion.
+/// Greatest y that the middle limb of a champion reached in the current run, in metres; `None` without a champion.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct BestSoFar(pub Option<f32>);
 
-/// Marks the entities of a lane's flag.
+/// Marks the entities of a flag.
 #[derive(Component)]
 struct Flag;
 
@@ -28,16 +28,16 @@ struct Cloth {
     cloth: Handle<StandardMaterial>,
 }
 
-/// Height of the post, in metres, so that the flag flies above the snake.
+/// Height of the flag's post, in metres: the flag is above the snake.
 const POST_M: f32 = 2.3;
-/// Radius of the post, in metres.
+/// Radius of the flag's post, in metres.
 const POST_RADIUS_M: f32 = 0.035;
-/// Distance of the post from the left edge of the stairs, in metres. Seen from the right, it stands behind the snake.
+/// Distance of the post from the left edge of the stairs, in metres. Seen from the right, the post is behind the snake.
 const ASIDE_M: f32 = 0.2;
-/// Height of the cloth and of its digits, in metres.
+/// Height of the flag's cloth and of its digits, in metres.
 const CLOTH_M: f32 = 0.62;
 const DIGIT_M: f32 = 0.27;
-/// Half the thickness of the cloth, in metres.
+/// Half the thickness of the flag's cloth, in metres.
 const CLOTH_HALF_M: f32 = 0.012;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -64,7 +64,7 @@ fn look_up(run: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
     best.set_if_neq(BestSoFar(reached_m.reduce(f32::max)));
 }
 
-/// Spawns a flag on the first lane and removes outdated ones.
+/// Spawns the flag on the first lane, and removes outdated flags.
 fn plant(
     best: Res<BestSoFar>,
     lanes: Query<(Entity, Ref<Lane>)>,
@@ -78,7 +78,7 @@ fn plant(
         flags.iter().for_each(|flag| commands.entity(flag).despawn());
     }
     let Some(y_m) = best.0 else { return };
-    // Only the nearest lane has a flag.
+    // Only the first lane, which is nearest to the camera, has a flag.
     for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0 && !lane.is_ghost()) {
         if !best.is_changed() && !lane.is_added() {
             continue;
@@ -88,7 +88,7 @@ fn plant(
         let middle = Vec3::new(0.0, width_m / 2.0, POST_M - CLOTH_M / 2.0);
         let mut writing = lettering.begin();
         for side in [1.0, -1.0] {
-            // Readable from the right, where the camera usually is, and from the left.
+            // The text is on both sides, for cameras on the right, which is usual, and on the left.
             let right = if side > 0.0 { Dir3::Y } else { Dir3::NEG_Y };
             let middle = middle + Vec3::X * side * (CLOTH_HALF_M + 0.006);
             writing.text(&text, DIGIT_M, TextPlacement { middle, right, up: Dir3::Z });
@@ -116,7 +116,7 @@ fn plant(
     }
 }
 
-/// Base of the post: at the left edge of the stairs, on the surface there.
+/// Returns the base of the flag's post: at the left edge of the stairs, on their surface.
 fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
     let x_m = ASIDE_M - stairs.width_m / 2.0;
     Vec3::new(x_m, y_m, stairs.surface_z_m(x_m, y_m))

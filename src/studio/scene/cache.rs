@@ -1,6 +1,6 @@
-//! Meshes, materials and textures that were made last, so that lanes which look alike share them.
+//! Cache of recent meshes, materials and textures, which lanes that look alike share.
 
-/// Values by key, the oldest first.
+/// Cached values by key, the oldest first.
 #[derive(Debug)]
 pub(crate) struct SceneCache<K, V>(Vec<(K, V)>);
 
@@ -11,7 +11,7 @@ impl<K, V> Default for SceneCache<K, V> {
 }
 
 impl<K: Clone + PartialEq, V: Clone> SceneCache<K, V> {
-    /// The value of a key. `make` makes it unless it is kept, in the place of the oldest one if there are `most` values.
+    /// Returns the value of a key. If it is not cached, calls `make`, and removes the oldest value if there are `most` already.
     pub fn get(&mut self, key: &K, most: usize, make: impl FnOnce() -> V) -> V {
         if let Some((_, known)) = self.0.iter().find(|(of, _)| of == key) {
             return known.clone();
@@ -24,7 +24,7 @@ impl<K: Clone + PartialEq, V: Clone> SceneCache<K, V> {
         new
     }
 
-    /// All values.
+    /// Returns all cached values.
     pub fn values(&self) -> impl Iterator<Item = &V> {
         self.0.iter().map(|(_, value)| value)
     }

@@ -1,6 +1,6 @@
 //! The camera: orbit, pan, zoom, follow.
 //!
-//! The world keeps the core's axes, so the camera has z up instead of everything being turned.
+//! The scene uses the axes of the core, in which z points up.
 
 pub mod mouse;
 pub mod rig;
@@ -29,9 +29,9 @@ use crate::studio::ui::viewport::StageArea;
 use rig::CameraRig;
 use view::CameraView;
 
-/// Transform of a fixed camera from the default side, with a stretch of the y axis in view, in metres.
+/// Returns the transform of a fixed camera, from the default side, that shows the range of y from `from_y_m` to `to_y_m`, in metres.
 pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
-    // At this distance the stretch, seen at an angle, fills the width of a 16:9 picture.
+    // At this ratio the range of y, seen at an angle, fills the width of a 16:9 picture.
     const DISTANCE_PER_LENGTH: f32 = 0.95;
     let distance_m =
         ((to_y_m - from_y_m) * DISTANCE_PER_LENGTH).max(*CameraView::DISTANCE_M.start());
@@ -39,7 +39,7 @@ pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
     view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))
 }
 
-/// Components that every camera of the scene shares: no tone mapping, and fog that hides the end of the
+/// Returns the components that every camera of the scene shares: no tone mapping, and fog that hides the end of the
 /// ground.
 pub(crate) fn camera_components(msaa: Msaa, palette: &Palette) -> impl Bundle {
     (
@@ -54,28 +54,28 @@ pub(crate) fn camera_components(msaa: Msaa, palette: &Palette) -> impl Bundle {
     )
 }
 
-/// The camera that draws the stage.
+/// Marks the camera that draws the stage.
 #[derive(Component)]
 pub(crate) struct StageCamera;
 
-/// Rotation per 1000 pixels of dragging, in radians.
+/// Rotation per pixel of dragging, in radians.
 const TURN_RAD_PER_PIXEL: f32 = 0.006;
-/// Movement of the target per pixel of dragging, as a fraction of the distance.
+/// Movement of the target per pixel of dragging, as a fraction of the camera's distance from it.
 const PAN_PER_PIXEL: f32 = 0.0012;
-/// Zoom factor per wheel line.
+/// Change of the zoom per line of the mouse wheel, as a fraction.
 const ZOOM_PER_LINE: f32 = 0.12;
-/// Trackpad scroll that equals a wheel line, in pixels.
+/// Trackpad scroll that equals one line of the mouse wheel, in pixels.
 const PIXELS_PER_LINE: f32 = 40.0;
-/// Follow rate, in 1/s. In a short time t the camera covers the fraction `rate * t` of the distance.
+/// Follow rate, in 1/s. In a short time t the camera covers the fraction `rate * t` of its distance from the goal.
 const FOLLOW_PER_S: f32 = 4.0;
-/// Distance below which the camera stops moving, in metres.
+/// Distance from the goal below which the camera stops moving, in metres.
 const FOLLOWED_M: f32 = 0.005;
-/// Visible length of the lanes ahead of and behind the snakes, in metres.
+/// Length of the lanes that stays visible ahead of and behind the snakes, in metres.
 const AHEAD_M: f32 = 9.0;
 const BEHIND_M: f32 = 6.0;
 /// Rate at which the camera approaches its target view, in 1/s.
 const GLIDE_PER_S: f32 = 14.0;
-/// Zoom factor for a pinch over the trackpad's whole scale.
+/// Zoom factor of a pinch over the whole trackpad.
 const ZOOM_PER_PINCH: f32 = 1.0;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -85,7 +85,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (steer, follow, glide, fit_to_area).chain().in_set(FrameSet::Draw));
 }
 
-/// Spawns a camera for the stage and one for egui over the whole window.
+/// Spawns a camera for the stage, and one for egui over the whole window.
 fn set_up(
     mut commands: Commands,
     mut egui_settings: ResMut<EguiGlobalSettings>,
@@ -118,11 +118,11 @@ fn set_up(
 #[derive(Debug, Default)]
 pub(crate) struct CameraDrag {
     last_cursor: Option<Vec2>,
-    /// Whether the button was pressed over the stage. A drag that starts on a panel belongs to the panel.
+    /// Whether the mouse button was pressed over the stage. Otherwise the drag belongs to a panel.
     began_on_stage: bool,
 }
 
-/// Applies drags, wheel and trackpad gestures to the view, unless a panel or a limb uses them.
+/// Applies drags, the mouse wheel and trackpad gestures to the view, unless a panel or a held limb uses them.
 fn steer(
     mut rig: ResMut<CameraRig>,
     (buttons, keys): (Res<ButtonInput<MouseButton>>, Res<ButtonInput<KeyCode>>),
@@ -133,7 +133,7 @@ fn steer(
     scroll: Res<AccumulatedMouseScroll>,
     mut pinches: MessageReader<PinchGesture>,
 ) {
-    // Use the cursor position, because tablets and remote desktops report no relative motion.
+    // The cursor position is used, because tablets and remote desktops report no relative motion.
     let cursor = window.cursor_position();
     let drag = match (grip.last_cursor, cursor) {
         (Some(last), Some(now)) => now - last,
@@ -181,9 +181,9 @@ fn steer(
     }
 }
 
-/// Keeps the middle of the snake or of all snakes in view.
+/// Moves the camera's anchor towards the middle of the followed snake or of all snakes.
 fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Real>>) {
-    // The camera leaves ghosts alone: they surround the lane that it follows.
+    // Ghosts are ignored, because they surround the lane that the camera follows.
     let lanes = || lanes.iter().filter(|lane| !lane.is_ghost());
     let count = lanes().count();
     if count == 0 {
@@ -191,7 +191,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     }
     let is_new = lanes().any(|lane| lane.is_added());
     if is_new && (count > 1) != (rig.lanes > 1) {
-        // A view for one lane does not suit several.
+        // The view for one lane does not suit several, and the reverse.
         rig.lanes = count;
         let camera_mode = rig.camera_mode;
         rig.take(if camera_mode == CameraMode::Free { CameraMode::Follow } else { camera_mode });
@@ -199,7 +199,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     rig.lanes = count;
     rig.lane = rig.lane.filter(|of| !is_new && lanes().any(|lane| lane.number() == *of));
     let of_one = |lane: &Lane| {
-        // Following the snake's sideways motion would make viewers seasick.
+        // The sideways motion of the snake is ignored, because following it would make viewers seasick.
         let middle = lane.drawn_middle();
         Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
     };
@@ -214,7 +214,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
         None => rig.anchor = Some(goal),
         Some(anchor) if rig.follows => {
             let share = 1.0 - (1.0 + FOLLOW_PER_S * time.delta_secs()).recip();
-            // Stop at a small distance, or a paused picture would keep changing by single pixels.
+            // The camera stops at a small distance. Otherwise a paused picture would keep changing by single pixels.
             let is_there = anchor.distance(goal) < FOLLOWED_M;
             rig.anchor = Some(if is_there { goal } else { anchor.lerp(goal, share) });
         }
@@ -222,17 +222,17 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     }
 }
 
-/// Points that have to be in view, kept from frame to frame, so that no frame allocates.
+/// Points that must be in view. The buffers are reused, so that no frame allocates.
 #[derive(Debug, Default)]
 struct InView {
     points: Vec<Vec3>,
     snakes: Vec<Vec3>,
-    /// Cards over the stage: see [`StageArea::covers`].
+    /// Rectangles of the cards over the stage: see [`StageArea::covers`].
     covers: Vec<Rect>,
 }
 
-/// Moves towards the target view: far enough away to see all lanes if the camera follows all, and so that no card over
-/// the stage covers the followed snakes.
+/// Moves the camera towards the target view. If it follows all lanes, it goes far enough away to show them all. It also
+/// keeps the followed snakes clear of the cards over the stage.
 fn glide(
     mut rig: ResMut<CameraRig>,
     lanes: Query<&Lane>,
@@ -245,7 +245,7 @@ fn glide(
     let InView { points, snakes, covers } = &mut *in_view;
     points.clear();
     snakes.clear();
-    // A camera that makes room while the mouse holds a limb would pull that limb along.
+    // If the camera moved aside while the mouse holds a limb, it would pull the limb along.
     if !selection.is_holding() {
         covers.clear();
         covers.extend(area.covers());
@@ -277,7 +277,7 @@ fn glide(
     }
 }
 
-/// Limits the stage's viewport to the area beside the panels.
+/// Limits the viewport of the stage's camera to the area beside the panels.
 fn fit_to_area(
     area: Res<StageArea>,
     window: Single<&Window, With<PrimaryWindow>>,

@@ -1,7 +1,7 @@
 //! Confetti from the finish when a snake lands during playback.
 //!
-//! Where a piece is depends only on its lane and the time since the landing, so a repeated landing looks the same.
-//! After a jump in time nothing is thrown, and pictures without a window have none.
+//! The position of a piece depends only on its lane and the time since the landing, so a repeated landing looks the
+//! same. After a jump in time there is no confetti, and neither in pictures without a window.
 
 use bevy::prelude::*;
 
@@ -13,21 +13,21 @@ use crate::studio::stage::playback::Playback;
 use crate::studio::ui::theme::{Palette, Theme};
 use snakes_core::world::Stairs;
 
-/// Thick lines: the pieces.
+/// Gizmo group of the pieces, which are thick lines.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct Pieces;
 
-/// Pieces per landing.
+/// Number of pieces per landing.
 const PIECES: u32 = 44;
-/// How long they fly, in simulated seconds.
+/// Duration of the pieces' flight, in simulated seconds.
 const FLIGHT_S: f64 = 2.0;
-/// Width of a piece, in pixels, and its length, in metres.
+/// Width of a piece in pixels, and its length in metres.
 const PIECE_PIXELS: f32 = 6.0;
 const PIECE_M: f32 = 0.17;
-/// Longest real time that passes between two frames of playback, in seconds. More is a jump.
+/// Longest real time between two frames of playback, in seconds. A longer time counts as a jump.
 const LONGEST_FRAME_S: f64 = 0.6;
 
-/// Lanes whose landing was played, and the time of the last frame.
+/// Lanes with confetti in the air, and the playback time of the last frame.
 #[derive(Debug, Default)]
 struct Celebration {
     lanes: Vec<usize>,
@@ -45,7 +45,7 @@ fn set_up(mut config: ResMut<GizmoConfigStore>) {
 }
 
 impl Celebration {
-    /// Goes on to a time. `landings` are the lanes that have landed by then, with the time of each landing.
+    /// Advances to the playback time. `landings` are the lanes that have landed by then, with the time of each landing in seconds.
     fn pass(&mut self, playback: &Playback, landings: impl Iterator<Item = (usize, f64)>) {
         let (before_s, now_s) = (self.time_s, playback.time_s());
         self.time_s = now_s;
@@ -88,7 +88,7 @@ fn throw(
     }
 }
 
-/// Draws the pieces of a lane, some seconds after its landing.
+/// Draws the confetti of a lane, `since_s` seconds after its landing.
 fn draw(lane: &Lane, since_s: f32, palette: &Palette, gizmos: &mut Gizmos<Pieces>) {
     let opacity = ((FLIGHT_S as f32 - since_s) / 0.5).clamp(0.0, 1.0);
     for piece in 0..PIECES {
@@ -99,7 +99,7 @@ fn draw(lane: &Lane, since_s: f32, palette: &Palette, gizmos: &mut Gizmos<Pieces
     }
 }
 
-/// Position of a piece, in the coordinates of its lane, in metres, and its direction.
+/// Computes the position of a piece in its lane, in metres, and its direction.
 fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Vec3) {
     let share = |salt: u32| chance(lane as u32, piece * 8 + salt);
     let top_m = stairs.height_m(stairs.steps);
@@ -107,7 +107,7 @@ fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Ve
     let start = Vec3::new(across_m, finish_y_m(stairs), top_m + FINISH_M);
     let thrown_m_s =
         Vec3::new((share(1) - 0.5) * 2.6, (share(2) - 0.5) * 4.0, 1.4 + share(3) * 2.4);
-    // Paper soon falls at a constant speed.
+    // Paper soon falls at a constant speed, because of its drag.
     const DRAG_PER_S: f32 = 1.8;
     let falls_m_s = 1.6 + share(4) * 0.9;
     let flown_s = (1.0 - libm::expf(-DRAG_PER_S * since_s)) / DRAG_PER_S;
@@ -117,7 +117,7 @@ fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Ve
     (at.with_z(at.z.max(top_m + 0.03)), along)
 }
 
-/// A number from 0 to 1 that depends on nothing but its arguments.
+/// Returns a pseudorandom number from 0 to 1 that depends only on its arguments.
 fn chance(lane: u32, salt: u32) -> f32 {
     let mut mixed = lane.wrapping_mul(0x9E37_79B1) ^ salt.wrapping_mul(0x85EB_CA77) ^ 0x5EED;
     mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
@@ -131,7 +131,7 @@ mod tests {
 
     const LANDED_S: f64 = 3.0;
 
-    /// The celebrating lanes after frames at these times, in seconds.
+    /// Returns the lanes with confetti after frames at these times, in seconds.
     fn celebrated(times_s: &[f64], is_playing: bool) -> Vec<usize> {
         let mut celebration = Celebration::default();
         for time_s in times_s {

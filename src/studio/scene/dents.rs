@@ -1,4 +1,4 @@
-//! Dents: where a surface is soft, a dark patch around each limb that has sunk into it.
+//! Dents: a dark patch around each limb that has sunk into a soft surface.
 //!
 //! The physics lets limbs sink into a soft surface, but the drawn surface is flat, so a sunken limb would look cut off.
 
@@ -13,42 +13,42 @@ use crate::studio::stage::lane::Lane;
 use snakes_core::world::{Pose, Stairs};
 use snakes_lab::mesh::MeshBuilder;
 
-/// The patch of a limb; the head is 0.
+/// Patch of the limb with this index; the head is 0.
 #[derive(Component, Debug)]
 struct Dent(usize);
 
-/// Mesh and material of all patches.
+/// Mesh and material that all patches share.
 #[derive(Resource, Debug)]
 struct Patch {
     mesh: Handle<Mesh>,
     material: Handle<StandardMaterial>,
 }
 
-/// A place at which a limb has sunk in.
+/// Part of a limb that has sunk into a soft surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sunken {
     /// Centre of the sunken part, on the surface, in metres.
     centre: Vec3,
-    /// Direction of the limb in the floor plan, in radians from y.
+    /// Direction of the limb seen from above, in radians from y.
     yaw_rad: f32,
     /// Size of the sunken part across and along the limb, in metres.
     size_m: Vec2,
-    /// Greatest depth, in metres.
+    /// Greatest depth of the sunken part, in metres.
     depth_m: f32,
 }
 
-/// Least share of softness that shows dents. See [`SurfaceLook::soft`].
+/// Minimum softness of a surface, from 0 to 1, at which it shows dents. See [`SurfaceLook::soft`].
 const LEAST_SOFT: f32 = 0.15;
-/// Least depth that is drawn, in metres.
+/// Minimum depth of a drawn dent, in metres.
 const LEAST_DEPTH_M: f32 = 0.006;
-/// Greatest depth, in metres. What lies deeper has gone through the side of a step.
+/// Maximum depth of a dent, in metres. A deeper point has passed through the side of a step.
 const MOST_DEPTH_M: f32 = 0.8;
-/// Width of a patch's rim beyond the sunken part, in metres, and more for each metre of depth.
+/// Width of a patch's rim beyond the sunken part, in metres, and its increase per metre of depth.
 const RIM_M: f32 = 0.10;
 const RIM_PER_M: f32 = 1.2;
-/// Height of patches above the surface, in metres: above the lights of the steps.
+/// Height of patches above the surface, in metres: above the strips of the steps.
 const ABOVE_M: f32 = 0.014;
-/// Points along a limb that are compared with the surface.
+/// Number of points along each edge of a limb that are compared with the surface.
 const POINTS: usize = 9;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -63,9 +63,9 @@ impl FromWorld for Patch {
     }
 }
 
-/// A square of one metre that fades out towards its edges.
+/// Returns a square of one metre that fades out towards its edges.
 fn patch() -> Mesh {
-    /// Cells along a side.
+    /// Number of cells along a side.
     const CELLS: usize = 8;
     let mut solid = MeshBuilder::default();
     solid.patch(CELLS, CELLS, |column, row| {
@@ -73,7 +73,7 @@ fn patch() -> Mesh {
         [at.extend(0.0), Vec3::Z]
     });
     to_fading_mesh(solid, |at| {
-        // Round at the corners, dark up to half of the way.
+        // The opacity is full up to half of the way to the edges, with rounded corners.
         let out = libm::powf(
             libm::powf((at.x * 2.0).abs(), 4.0) + libm::powf((at.y * 2.0).abs(), 4.0),
             0.25,
@@ -83,7 +83,7 @@ fn patch() -> Mesh {
     })
 }
 
-/// Spawns the hidden patches of a new lane with a soft surface.
+/// Spawns hidden patches for a new lane with a soft surface.
 fn build(lanes: Query<(Entity, &Lane), Added<Lane>>, patch: Res<Patch>, mut commands: Commands) {
     for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
         let trial = lane.trial();
@@ -106,7 +106,7 @@ fn build(lanes: Query<(Entity, &Lane), Added<Lane>>, patch: Res<Patch>, mut comm
     }
 }
 
-/// Moves the patches to the limbs that have sunk in.
+/// Moves the patches to the limbs that have sunk in, and hides the others.
 fn place(
     lanes: Query<(&Lane, &Children)>,
     mut dents: Query<(&Dent, &mut Transform, &mut Visibility)>,
@@ -124,7 +124,7 @@ fn place(
             };
             visibility.set_if_neq(Visibility::Inherited);
             let rim_m = 2.0 * (RIM_M + RIM_PER_M * sunken.depth_m);
-            // Half of the patch is its soft edge.
+            // Half of the patch is its soft rim.
             let size = (sunken.size_m * 1.3 + Vec2::splat(rim_m)).extend(1.0);
             transform.set_if_neq(
                 Transform::from_translation(sunken.centre + Vec3::Z * ABOVE_M)
@@ -135,7 +135,7 @@ fn place(
     }
 }
 
-/// The place at which a limb lies deepest below the surface.
+/// Finds the part of a limb that lies deepest below the surface; `None` if there is none.
 fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
     let ahead = pose.rotation * Vec3::Y;
     let yaw_rad = libm::atan2f(-ahead.x, ahead.y);
@@ -145,7 +145,7 @@ fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
         [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]]
             .map(|[x, z]| Vec3::new(half.x * x, y, half.z * z))
     });
-    // Below the surface: the point on it, and the depth.
+    // Points below the surface: the point on the surface above each, and the depth.
     let below = points.filter_map(|in_limb| {
         let at = *pose * in_limb;
         let surface_z_m = stairs.surface_z_m(at.x, at.y);
@@ -155,7 +155,7 @@ fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
         (is_inside && !is_over_edge).then(|| (at.with_z(surface_z_m), depth_m))
     });
     let (deepest, depth_m) = below.clone().reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    // The extent of the points on the same tread, in the directions of the limb.
+    // Extent of the points on the deepest point's tread, in the directions of the limb.
     let turn = Mat2::from_angle(-yaw_rad);
     let on_tread = below.filter(|(at, _)| at.z == deepest.z).map(|(at, _)| turn * at.truncate());
     let (least, most) =
@@ -165,7 +165,7 @@ fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
     Some(Sunken { centre, yaw_rad, size_m: most - least, depth_m })
 }
 
-/// Whether a point, so deep below its tread, has come in through the riser: it lies nearer to that than to the tread.
+/// Returns whether a point below a tread has entered through the riser: it is nearer to the riser than to the tread.
 fn is_through_riser(stairs: &Stairs, y_m: f32, depth_m: f32) -> bool {
     let climbed = stairs.steps_climbed(f64::from(y_m));
     climbed > 0 && y_m - stairs.riser_y_m(climbed - 1) < depth_m
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_limb_that_presses_into_a_riser_leaves_no_dent_on_the_tread_above() {
         let stairs = Stairs::default();
-        // Its front is 5 cm inside the first riser, at y = 3; its lower side is on the ground.
+        // The limb's front is 5 cm inside the first riser, at y = 3; its lower side is on the ground.
         assert_eq!(sunken(&at(2.05, 0.5), SIZE, &stairs), None);
     }
 

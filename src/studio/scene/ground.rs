@@ -1,4 +1,4 @@
-//! The ground, and a grid that fades out before it could flicker.
+//! The ground, and a grid that fades out in the distance before it could flicker.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::light::NotShadowCaster;
@@ -7,16 +7,16 @@ use bevy::prelude::*;
 
 use super::props::themed;
 
-/// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of this one.
+/// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of the drawn one.
 const GROUND_HALF_M: f32 = 600.0;
-/// Half the side of the grid, in metres.
+/// Half the side of the grid on the ground, in metres.
 const GRID_HALF_M: f32 = 70.0;
-/// Distance between the grid's lines, in metres: a tread of the report's stairs.
+/// Distance between the lines of the grid, in metres: the tread of the report's stairs.
 const GRID_CELL_M: f32 = 2.0;
 /// Height of the grid above the ground, in metres, to avoid z-fighting.
 const GRID_HEIGHT_M: f32 = 0.01;
 
-/// Materials of the ground.
+/// Materials of the ground and of its grid.
 #[derive(Resource, Debug)]
 struct Earth {
     ground: Handle<StandardMaterial>,
@@ -30,7 +30,7 @@ pub(crate) fn plugin(app: &mut App) {
 impl FromWorld for Earth {
     fn from_world(world: &mut World) -> Self {
         let dull = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.1, ..default() };
-        // The grid is translucent, so that a line in the shadow is darker than the shadow.
+        // The grid is translucent, so that a line in a shadow is darker than the shadow.
         let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
         Self {
             ground: themed(world, dull, |palette| palette.ground),
@@ -41,13 +41,13 @@ impl FromWorld for Earth {
 
 fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<Earth>) {
     let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
-    // The ground has nothing below it to shade. As a caster it would draw saw-teeth along the foot of every wall.
+    // There is nothing below the ground to shade. If the ground cast shadows, it would draw saw-teeth along the foot of every wall.
     commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone()), NotShadowCaster));
     commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(earth.grid.clone())));
 }
 
-/// Lines on the ground, one tread apart in both directions, which make distances visible. The grid fades out towards
-/// its end.
+/// Returns the grid on the ground, which makes distances visible. Its lines are one tread apart in both directions, and
+/// fade out towards its end.
 fn grid() -> Mesh {
     let (mut points, mut colors) = (Vec::new(), Vec::new());
     let mut half_line = |from: [f32; 2], to: [f32; 2], aside_m: f32| {
@@ -56,7 +56,7 @@ fn grid() -> Mesh {
         colors.extend([[1.0, 1.0, 1.0, opacity], [1.0, 1.0, 1.0, 0.0]]);
     };
     let cells = (GRID_HALF_M / GRID_CELL_M) as i32;
-    // One line runs through the first riser, at y = 3.
+    // One line coincides with the first riser of the report's stairs, at y = 3.
     let middle = [-1.0, 1.0];
     for cell in -cells..=cells {
         let aside_m = cell as f32 * GRID_CELL_M;

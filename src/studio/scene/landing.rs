@@ -1,8 +1,8 @@
-//! Fittings of the stairs: a railing, a finish at the last step, a wall with a door at
-//! its end. The door has the size of a door, which gives everything else its scale.
+//! Fittings of the stairs: a railing, a finish at the last step, and a wall with a door. The door has the size of a
+//! real door, which shows the scale of the scene.
 //!
-//! The physics knows none of it; it stands beside and above the snake's way. A lane has three meshes, shared by lanes
-//! with the same stairs.
+//! The fittings have no physics; they are beside and above the snake's way. Each lane has three meshes, which lanes
+//! with the same stairs share.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
@@ -16,33 +16,33 @@ use snakes_core::schema::PerPart;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Height of the railing above tread and landing, in metres.
+/// Height of the railing above treads and landing, in metres.
 const RAIL_M: f32 = 1.0;
 /// Radius of the railing's bars, in metres.
 const RAIL_RADIUS_M: f32 = 0.04;
-/// Greatest distance between the posts of the railing, in metres.
+/// Maximum distance between the posts of the railing, in metres.
 const POST_EVERY_M: f32 = 4.0;
-/// Distance of railing and posts from the edge of the stairs, in metres.
+/// Distance of the railing and of the finish's posts from the edge of the stairs, in metres.
 const INSIDE_M: f32 = 0.1;
 /// Clear height of the finish above the landing, in metres: a rearing snake fits below it.
 pub(crate) const FINISH_M: f32 = 4.0;
-/// Height of the finish's chequered board, and side of its squares, in metres.
+/// Height of the finish's chequered board, in metres.
 const BOARD_M: f32 = 0.5;
-/// Distance of the finish from the edge of the last step, in metres: behind its strip.
+/// Distance of the finish behind the edge of the last step, in metres: behind the strip on the edge.
 const BEHIND_EDGE_M: f32 = 0.2;
 /// Depth of the chequered line on the floor, in metres.
 const LINE_M: f32 = 0.5;
-/// Height of the wall at the end of the landing above it, and its thickness, in metres.
+/// Height above the landing of the wall at its end, and thickness of the wall, in metres.
 const WALL_M: f32 = 3.2;
 const WALL_THICK_M: f32 = 0.25;
 /// Width and height of the door, in metres.
 const DOOR_M: [f32; 2] = [1.1, 2.1];
-/// Height of paint above its surface, in metres.
+/// Height of painted areas above their surface, in metres.
 const PAINT_M: f32 = 0.006;
-/// Shortest landing that has a finish, in metres.
+/// Minimum depth of a landing with a finish, in metres.
 const SHORTEST_M: f32 = 1.0;
 
-/// Materials of the landing.
+/// Materials of the fittings of the stairs.
 #[derive(Resource, Debug)]
 struct Fittings {
     wood: Handle<StandardMaterial>,
@@ -65,7 +65,7 @@ impl FromWorld for Fittings {
     }
 }
 
-/// Spawns the fittings of a new lane.
+/// Spawns the fittings of a new lane with stairs.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     fittings: Res<Fittings>,
@@ -93,14 +93,14 @@ fn build(
     }
 }
 
-/// A railing along the left side, behind the snake as the default camera sees it, and the door.
+/// Builds the door, and the railing on the left, which is behind the snake in the default view.
 fn railing(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let x_m = INSIDE_M - stairs.width_m / 2.0;
     let top_m = stairs.height_m(stairs.steps);
     let end_m = stairs.end_y_m();
     let at = |y_m: f32, z_m: f32| Vec3::new(x_m, y_m, z_m);
-    // The handrail follows the middles of the treads, then the landing.
+    // The handrail connects the middles of the treads, then follows the landing.
     let on_tread = |step: u32| {
         at(stairs.riser_y_m(step) + stairs.step_tread_m(step) / 2.0, stairs.height_m(step + 1))
     };
@@ -135,12 +135,12 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Width and height of the door, which is narrower on narrow stairs.
+/// Returns the width and height of the door, in metres. The door is narrower on narrow stairs.
 fn door_m(stairs: &Stairs) -> [f32; 2] {
     [DOOR_M[0].min(stairs.width_m * 0.6), DOOR_M[1]]
 }
 
-/// The wall at the end of the landing, and the posts and the beam of the finish.
+/// Builds the wall at the end of the landing, and the posts and the board of the finish.
 fn wall(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let top_m = stairs.height_m(stairs.steps);
@@ -153,14 +153,14 @@ fn wall(stairs: &Stairs) -> MeshBuilder {
             let foot = Vec3::new((half_m - INSIDE_M) * side, y_m, top_m);
             solid.cylinder(foot, foot + Vec3::Z * (FINISH_M + BOARD_M), 0.07);
         }
-        // The board, which bears the cheques on both sides.
+        // The board, which has squares on both sides.
         let middle = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
         solid.rounded_box(middle, Vec3::new(stairs.width_m, 0.06, BOARD_M), 0.01, 1);
     }
     solid
 }
 
-/// The chequered line on the floor, and both sides of the board above it; and the door's frame and handle.
+/// Builds the chequered line on the floor, the squares on both sides of the board above it, and the door's frame and handle.
 fn cheques(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let top_m = stairs.height_m(stairs.steps);
@@ -194,7 +194,7 @@ fn cheques(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Two rows of white and dark squares; `right` and `up` lead from the middle to the edges.
+/// Adds two rows of white and dark squares around `middle`. `right` and `up` lead from the middle to the edges.
 fn squares(solid: &mut MeshBuilder, middle: Vec3, right: Vec3, up: Vec3) {
     let columns = (right.length() / up.length() * 2.0).round().max(2.0) as usize;
     let (half, tall) = (right / columns as f32, up / 2.0);
@@ -209,13 +209,13 @@ fn squares(solid: &mut MeshBuilder, middle: Vec3, right: Vec3, up: Vec3) {
     }
 }
 
-/// Position of the finish on the y axis, in metres: behind the edge of the last step. A snake whose middle block is on
-/// that has landed.
+/// Returns the position of the finish on the y axis, in metres: behind the edge of the last step. A snake has landed
+/// when its middle block is at this position.
 pub(crate) fn finish_y_m(stairs: &Stairs) -> f32 {
     stairs.landing_y_m() + BEHIND_EDGE_M
 }
 
-/// Whether the landing is deep enough for a finish.
+/// Returns whether the landing is deep enough for a finish.
 fn has_finish(stairs: &Stairs) -> bool {
     let last = stairs.steps.saturating_sub(1);
     stairs.landing_m + stairs.step_tread_m(last) - stairs.step_slope_m(last) >= SHORTEST_M

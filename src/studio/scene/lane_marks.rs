@@ -1,4 +1,4 @@
-//! The colours of lanes side by side: a collar on each snake, and stripes on the ground beside its lane.
+//! Colours of lanes side by side: a collar on each snake, and stripes on the ground beside its lane.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
@@ -12,15 +12,15 @@ use crate::studio::ui::theme::Palette;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Materials in the colours of the lanes, in their order.
+/// Materials in the colours of the lanes, by the lane's number.
 #[derive(Resource, Debug)]
 pub(crate) struct LaneColors(Vec<Handle<StandardMaterial>>);
 
-/// Marks what shows the colour of a lane. It is hidden while there is only one.
+/// Marks an entity that shows the colour of its lane. It is hidden while there is only one lane.
 #[derive(Component, Debug)]
 pub(crate) struct LaneMark;
 
-/// Number of colours of the palette.
+/// Number of lane colours in the palette.
 const COLORS: usize = 10;
 /// Width of a stripe, in metres.
 const STRIPE_M: f32 = 0.16;
@@ -45,7 +45,7 @@ impl FromWorld for LaneColors {
 }
 
 impl LaneColors {
-    /// The material of a lane; the first is 0.
+    /// Returns the material of a lane; the first lane is 0.
     pub fn of(&self, number: usize) -> Handle<StandardMaterial> {
         self.0[number % self.0.len()].clone()
     }
@@ -70,7 +70,7 @@ fn build(
     }
 }
 
-/// A stripe on each side, from behind the snake to the end of the landing.
+/// Builds a stripe on each side of a lane, from behind the snake to the end of the landing.
 fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [from_m, to_m] = strip_y_m(stairs, start_m);
@@ -83,7 +83,7 @@ fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
     solid
 }
 
-/// Shows the marks while several snakes run side by side.
+/// Shows the lanes' colours while several snakes are side by side, and hides them otherwise.
 fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) {
     let are_many = lanes.iter().filter(|lane| !lane.is_ghost()).nth(1).is_some();
     let wanted = if are_many { Visibility::Inherited } else { Visibility::Hidden };

@@ -1,9 +1,9 @@
 //! Shape of a limb: a rounded block with a stripe along its top, a light belly, hinges at its ends, and a face on the
 //! head.
 //!
-//! Blocks are drawn a few centimetres shorter at joints, so that the hinges show: a drum and a pin across the front
-//! limb, about which it bends, and a collar on the rear limb, about which it twists. The stripes show a twist. The
-//! physics ignores all of this.
+//! Blocks are drawn a few centimetres shorter at joints, so that the hinges are visible. A drum and a pin across the
+//! front limb show the bend axis; a collar on the rear limb shows the twist axis. The stripes show a twist. The physics
+//! ignores all of these details.
 
 use bevy::prelude::*;
 
@@ -11,41 +11,41 @@ use super::meshes::{BALL_SIDES, to_mesh, to_mesh_along};
 use crate::studio::ui::theme::palette::{AXIS_TONE, BELLY_TONE, TONGUE_TONE};
 use snakes_lab::mesh::{Eyes, LIMB_EDGE, MeshBuilder};
 
-/// Parameters of a limb's shape.
+/// Parameters of a limb's drawn shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LimbShape {
-    /// Its physical size across x, along y and along z, in metres.
+    /// Physical size of the limb across x, along y and along z, in metres.
     pub size: Vec3,
-    /// Whether another limb is in front of it; false for the head.
+    /// Whether another limb is in front of the limb; false for the head.
     pub has_front: bool,
-    /// Whether another limb is behind it; false for the tail.
+    /// Whether another limb is behind the limb; false for the tail.
     pub has_rear: bool,
-    /// Whether the hinge about which it bends belongs to it, as in a creature, instead of the limb in front of it.
+    /// Whether the hinge about which the limb bends is drawn on the limb, as in a creature, instead of on the limb in front of it.
     pub has_own_hinge: bool,
-    /// Number of its parts: a soft limb has several, and rounder edges.
+    /// Number of the limb's parts. A soft limb has several, and rounder edges.
     pub parts: usize,
 }
 
-/// Gap at a joint on each limb, in metres.
+/// Gap that a joint leaves at each of its limbs, in metres.
 const CUT_M: f32 = 0.07;
-/// Radius of the edges of a soft limb, as a fraction of its smallest side.
+/// Radius of the edges of a soft limb, as a fraction of the smallest side.
 const SOFT_EDGE: f32 = 0.42;
-/// Pieces along a soft limb that stay straight, per part.
+/// Number of straight pieces along a soft limb, per part.
 const PIECES: usize = 6;
-/// Height of paint above its surface, in metres, to avoid z-fighting.
+/// Height of painted areas above the block's surface, in metres, to avoid z-fighting.
 const PAINT_M: f32 = 0.006;
-/// Length of the pin outside a limb's sides, in metres.
+/// Length by which a hinge's pin stands out of the limb's sides, in metres.
 const PIN_END_M: f32 = 0.035;
-/// Height of the belly, as a fraction of the limb's.
+/// Height of the belly, as a fraction of the limb's height.
 const BELLY: f32 = 0.26;
 
 impl LimbShape {
-    /// Smaller side of the cross-section, which scales joints and eyes.
+    /// Returns the smaller side of the cross-section, in metres, which scales joints and eyes.
     fn thickness_m(&self) -> f32 {
         self.size.x.min(self.size.z)
     }
 
-    /// Gaps at the front and at the rear, in metres.
+    /// Returns the gaps at the front and at the rear, in metres.
     fn cuts_m(&self) -> [f32; 2] {
         let cut_m = CUT_M.min(self.size.y * 0.15);
         [self.has_front, self.has_rear].map(|has| if has { cut_m } else { 0.0 })
@@ -55,13 +55,13 @@ impl LimbShape {
         self.size.min_element() * if self.parts > 1 { SOFT_EDGE } else { LIMB_EDGE }
     }
 
-    /// The places along y of the parts' centres, from the front, in metres.
+    /// Returns the centres of the parts along y, from the front, in metres.
     fn part_centres_m(&self) -> Vec<f32> {
         let part_m = self.size.y / self.parts.max(1) as f32;
         (0..self.parts).map(|part| self.size.y / 2.0 - part_m * (part as f32 + 0.5)).collect()
     }
 
-    /// The mesh of a body of this shape. That of a soft limb follows its parts: see [`Self::bind_poses`].
+    /// Builds the limb's mesh from a solid. The mesh of a soft limb follows the limb's parts: see [`Self::bind_poses`].
     pub fn mesh_of(&self, mut solid: MeshBuilder) -> Mesh {
         if self.parts < 2 {
             return to_mesh(solid);
@@ -73,28 +73,28 @@ impl LimbShape {
         to_mesh_along(solid, &self.part_centres_m())
     }
 
-    /// For each part of a soft limb the way from the limb's frame to the part's at rest.
+    /// Returns, for each part of a soft limb, the transform from the limb's frame to the part's frame at rest.
     pub fn bind_poses(&self) -> Vec<Mat4> {
         let to_part = |y_m: f32| Mat4::from_translation(Vec3::NEG_Y * y_m);
         self.part_centres_m().into_iter().map(to_part).collect()
     }
 
-    /// The block, in the snake's red or blue.
+    /// Builds the block, which is red or blue.
     pub fn block(&self) -> MeshBuilder {
         let [front, rear] = self.cuts_m();
         let size = self.size - Vec3::Y * (front + rear);
         let mut solid = MeshBuilder::default();
-        // Wide edges need more pieces, or the belly would lie beneath them.
+        // Wider edges need more pieces, or else the belly would be hidden beneath them.
         let pieces = if self.parts > 1 { 10 } else { 4 };
         solid.rounded_box(Vec3::Y * (rear - front) / 2.0, size, self.edge_m(), pieces);
         solid
     }
 
-    /// Light parts: stripe, belly, eyes and tongue.
+    /// Builds the light details: stripe, belly, eyes and tongue.
     pub fn white(&self) -> MeshBuilder {
         let mut solid = MeshBuilder::default();
         let [front_cut, rear_cut] = self.cuts_m();
-        // The head's stripe ends behind the eyes.
+        // The stripe on the head ends behind the eyes.
         let front =
             if self.has_front { front_cut + self.edge_m() } else { self.eyes().radius_m * 3.4 };
         let rear = rear_cut + self.edge_m();
@@ -111,9 +111,10 @@ impl LimbShape {
         solid
     }
 
-    /// A light band around the lower part, which follows the block's round edges.
+    /// Adds the belly: a light band around the lower part, which follows the block's round edges.
     fn belly(&self, solid: &mut MeshBuilder) {
-        // Strips of the band from one side over the bottom to the other. Wide edges need more, or the band would cut into them.
+        // Number of strips of the band, from one side across the bottom to the other. Wide edges need more, or else the
+        // band would cut into them.
         let strips = if self.parts > 1 { 40 } else { 14 };
         let [front, rear] = self.cuts_m();
         let edge_m = self.edge_m();
@@ -121,7 +122,7 @@ impl LimbShape {
         let middle_y = (rear - front) / 2.0;
         let (half_x, half_z) = (self.size.x / 2.0, self.size.z / 2.0);
         let inner = Vec2::new(half_x - edge_m, half_z - edge_m).max(Vec2::ZERO);
-        // From the right end of the band to the left one: up the side, around the edge, along the bottom.
+        // Goes from the right end of the band to the left one: down the side, around the edge, along the bottom, and up again.
         let place = |strip: usize| {
             let share = strip as f32 / strips as f32;
             let side = if share < 0.5 { 1.0 } else { -1.0 };
@@ -147,7 +148,7 @@ impl LimbShape {
         });
     }
 
-    /// A forked tongue, on both of its sides.
+    /// Adds a forked tongue, which is visible from all sides.
     fn tongue(&self, solid: &mut MeshBuilder) {
         solid.tone(TONGUE_TONE);
         let unit = self.thickness_m();
@@ -159,7 +160,7 @@ impl LimbShape {
         }
     }
 
-    /// Dark parts: hinges and pupils.
+    /// Builds the dark details: hinges and pupils.
     pub fn dark(&self) -> MeshBuilder {
         let mut solid = MeshBuilder::default();
         let (thickness, half) = (self.thickness_m(), self.size.y / 2.0);
@@ -170,12 +171,12 @@ impl LimbShape {
             solid.cylinder(joint - drum, joint + drum, thickness * OWN_HINGE);
         }
         if self.has_rear {
-            // The drum fills the gap of a high arch.
+            // The drum fills the gap that a strong bend opens.
             let joint = Vec3::Y * -half;
             let drum = Vec3::X * (self.size.x * 0.34);
             solid.cylinder(joint - drum, joint + drum, thickness * 0.2);
             for side in [1.0, -1.0] {
-                // A lug at each side holds the pin.
+                // The lug on each side holds the pin.
                 let lug = Vec3::new(side * self.size.x * 0.42, -half + rear * 0.9, 0.0);
                 let size = Vec3::new(self.size.x * 0.08, rear * 2.6, thickness * 0.3);
                 solid.rounded_box(lug, size, size.x * 0.4, 1);
@@ -188,7 +189,7 @@ impl LimbShape {
             self.eyes().add_pupils_to(&mut solid, BALL_SIDES);
         }
         if self.has_rear || self.has_own_hinge {
-            // The axis of bending: a bright pin that stands out at both sides.
+            // The bend axis is a bright pin that stands out at both sides.
             solid.tone(AXIS_TONE);
             let joint = Vec3::Y * if self.has_own_hinge { half } else { -half };
             let end = Vec3::X * (self.size.x / 2.0 + PIN_END_M);
@@ -198,12 +199,12 @@ impl LimbShape {
         solid
     }
 
-    /// A ring around the head in the colour of its lane.
+    /// Builds a ring around the head, in the colour of the snake's lane.
     pub fn collar(&self) -> MeshBuilder {
         let mut solid = MeshBuilder::default();
         let band = self.thickness_m() * COLLAR_OUT;
         let size = Vec3::new(self.size.x + band, self.size.y * 0.13, self.size.z + band);
-        // Behind the middle of the head, where a neck would be.
+        // The ring is behind the middle of the head, where a neck would be.
         solid.rounded_box(Vec3::NEG_Y * self.size.y * 0.2, size, self.edge_m(), 3);
         solid
     }
@@ -213,9 +214,9 @@ impl LimbShape {
     }
 }
 
-/// Radius of the hinge of a limb of a creature, as a fraction of its thickness.
+/// Radius of the hinge on a creature's limb, as a fraction of the limb's thickness.
 const OWN_HINGE: f32 = 0.12;
-/// How much thicker a collar is than the head, as a fraction of the head's thickness.
+/// Thickness that a collar adds to the head's, as a fraction of the head's thickness.
 const COLLAR_OUT: f32 = 0.07;
 
 #[cfg(test)]
@@ -256,7 +257,7 @@ mod tests {
 
     #[test]
     fn eyes_and_the_axis_of_a_joint_are_seen_from_the_side() {
-        // In the Side view, only what stands out of the side faces is in sight.
+        // The Side view shows only what stands out of the side faces.
         let of_eyes = |at: &Vec3| if at.y > 0.4 { at.x } else { 0.0 };
         let [left, right] = reach(&HEAD.white(), of_eyes);
         assert!(left < -0.6 && right > 0.6, "{left} to {right}");

@@ -1,4 +1,4 @@
-//! Bodies of vertices and triangles as Bevy's meshes, which are kept on the graphics card only.
+//! Conversion of solids of vertices and triangles to Bevy's meshes, which are kept only on the graphics card.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology, VertexAttributeValues};
@@ -6,10 +6,10 @@ use bevy::prelude::*;
 
 use snakes_lab::mesh::MeshBuilder;
 
-/// Sides of balls: enough for something as thick as an arm.
+/// Number of sides of a ball; enough for a ball as thick as an arm.
 pub(crate) const BALL_SIDES: usize = 14;
 
-/// The mesh of a body.
+/// Converts a solid to a mesh.
 pub(crate) fn to_mesh(solid: MeshBuilder) -> Mesh {
     let flat = |of: Vec<Vec3>| of.into_iter().map(|at| at.to_array()).collect::<Vec<_>>();
     let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD);
@@ -21,15 +21,15 @@ pub(crate) fn to_mesh(solid: MeshBuilder) -> Mesh {
         .with_inserted_indices(Indices::U32(solid.indices))
 }
 
-/// The mesh of a body with an opacity at each vertex, which depends on its place.
+/// Converts a solid to a mesh with an opacity at each vertex, which depends on the vertex's position.
 pub(crate) fn to_fading_mesh(solid: MeshBuilder, opacity: impl Fn(&Vec3) -> f32) -> Mesh {
     let color = |at: &Vec3| [1.0, 1.0, 1.0, opacity(at)];
     let colors: Vec<[f32; 4]> = solid.positions.iter().map(color).collect();
     to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
-/// A mesh each of whose vertices follows the two bones next to it, by their distances along y. `bones_m` has the bones'
-/// places on the y axis at rest, in metres, the highest first.
+/// Converts a solid to a mesh whose vertices each follow the two neighbouring bones, weighted by their distances along
+/// y. `bones_m` has the positions of the bones on the y axis at rest, in metres, in descending order.
 pub(crate) fn to_mesh_along(solid: MeshBuilder, bones_m: &[f32]) -> Mesh {
     let last = bones_m.len().saturating_sub(1);
     let bones = solid.positions.iter().map(|at| {
@@ -47,7 +47,7 @@ pub(crate) fn to_mesh_along(solid: MeshBuilder, bones_m: &[f32]) -> Mesh {
         .with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, weights)
 }
 
-/// A mesh with a texture that repeats every `tile_m` metres, projected along the axis that each face looks at.
+/// Converts a solid to a mesh with a texture that repeats every `tile_m` metres, projected along the main axis of each face's normal.
 pub(crate) fn to_tiled_mesh(solid: MeshBuilder, tile_m: f32) -> Mesh {
     let place = |(at, normal): (&Vec3, &Vec3)| {
         let facing = normal.abs();

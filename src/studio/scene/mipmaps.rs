@@ -5,16 +5,16 @@ use bevy::image::{ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 
-/// Values from 0 to 1, row by row.
+/// A rectangle of values from 0 to 1, row by row.
 pub(crate) struct Channel {
     /// Number of values in a row.
     pub width: usize,
-    /// The values.
+    /// Values of all rows, from 0 to 1.
     pub values: Vec<f32>,
 }
 
 impl Channel {
-    /// The texture with this number of mipmaps, the picture itself among them; `pixel` makes a pixel of a value from 0 to 255.
+    /// Builds a texture with this number of mipmaps, including the picture itself. `pixel` converts a value from 0 to 255 to a pixel.
     pub fn into_image(
         self,
         mipmaps: u32,
@@ -42,7 +42,7 @@ impl Channel {
         image
     }
 
-    /// The next mipmap: each value is the mean of four.
+    /// Returns the next mipmap: each value is the mean of four.
     fn halved(&self) -> Self {
         let width = self.width / 2;
         let height = self.values.len() / self.width / 2;

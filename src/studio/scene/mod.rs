@@ -1,4 +1,4 @@
-//! The scene: its light. Each other part is in a file of its own. All colours come from the theme.
+//! The scene: its light, and the plugins of its parts. All colours come from the theme.
 
 pub mod best_flag;
 mod cache;
@@ -38,7 +38,7 @@ use super::ui::theme::Theme;
 use props::Props;
 use quality::Quality;
 
-/// The scene of the window: all that is drawn, with the camera and the mouse.
+/// Adds the scene of the window: everything that is drawn, the camera and the mouse.
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((
         drawing,
@@ -50,7 +50,7 @@ pub(super) fn plugin(app: &mut App) {
     ));
 }
 
-/// The parts of the scene that pictures without a window have, too.
+/// Adds the parts of the scene that pictures without a window also have.
 pub(super) fn drawing(app: &mut App) {
     app.init_resource::<Theme>()
         .init_resource::<Props>()
@@ -76,11 +76,11 @@ pub(super) fn drawing(app: &mut App) {
         );
 }
 
-/// Ratio of the shadows' reach to the distance of the camera's target, so that they cover its surroundings.
+/// Ratio of the shadows' reach to the distance of the point at which the camera looks, so that shadows cover its surroundings.
 const SHADOWS_BEYOND: f32 = 1.7;
-/// Range of the shadows' reach, in metres from the camera.
+/// Allowed reach of the shadows, in metres from the camera.
 const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
-/// Ratio between steps of the shadows' reach. Steps keep shadows from crawling while the camera moves.
+/// Ratio between two steps of the shadows' reach. The reach changes in steps, so that shadows do not crawl while the camera moves.
 const SHADOW_STEP: f32 = 1.3;
 
 fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
@@ -93,7 +93,7 @@ fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
             shadow_depth_bias: 0.09,
             ..default()
         },
-        // From behind the viewer's right shoulder, so that treads and risers are lit differently.
+        // The light comes from behind the viewer's right shoulder, so that treads and risers have different brightness.
         Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
         shadows_until(*SHADOWS_END_M.end()),
     ));
@@ -103,7 +103,7 @@ fn shadows_until(end_m: f32) -> CascadeShadowConfig {
     CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: end_m, ..default() }.build()
 }
 
-/// Fits the shadow map to the view: shadows are sharp from near by and still present from far away.
+/// Fits the shadow map to the view. Shadows are sharp when the camera is near, and remain visible when it is far away.
 fn fit_shadows(
     cameras: Query<&Transform, With<Camera3d>>,
     mut suns: Query<&mut CascadeShadowConfig, With<DirectionalLight>>,
@@ -117,7 +117,7 @@ fn fit_shadows(
     }
 }
 
-/// Reach of the shadows for a camera: beyond the ground point that it looks at.
+/// Returns the reach of the shadows for a camera, in metres: beyond the ground point at which it looks.
 fn shadows_end_m(camera: &Transform) -> f32 {
     let down = (-camera.forward().z).max(0.01);
     let looked_at_m = camera.translation.z.max(0.0) / down;
@@ -127,7 +127,7 @@ fn shadows_end_m(camera: &Transform) -> f32 {
     nearest_m * libm::powf(SHADOW_STEP, steps)
 }
 
-/// Applies the theme to light and fog.
+/// Applies the theme's colours to light and fog.
 fn dress(
     theme: Res<Theme>,
     mut suns: Query<&mut DirectionalLight>,

@@ -1,4 +1,4 @@
-//! Labels in the picture: name tags above several snakes, with the distance of each, and the label of the fitness line.
+//! Labels in the picture: name tags with the distance above each of several snakes, and the label of the fitness line.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -15,8 +15,8 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(EguiPrimaryContextPass, draw);
 }
 
-/// A tag, moved sideways so that the edge of the stage cuts none of its text. A tag whose snake is out of sight stays
-/// where it is.
+/// Moves a tag sideways so that the edge of the stage cuts none of its text. A tag whose snake is out of view is not
+/// moved.
 fn within(tag: egui::Rect, stage: egui::Rect) -> egui::Rect {
     let stage = stage.shrink(theme::GAP / 2.0);
     if !stage.x_range().contains(tag.center().x) {
@@ -26,7 +26,7 @@ fn within(tag: egui::Rect, stage: egui::Rect) -> egui::Rect {
     tag.translate(egui::vec2(aside, 0.0))
 }
 
-/// Height of a tag's anchor above the head's centre, in metres.
+/// Height of a tag's anchor point above the centre of the head, in metres.
 const OVER_HEAD_M: f32 = 1.6;
 
 fn draw(
@@ -73,7 +73,7 @@ fn draw(
         let size = galley.size() + egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
         let over = egui::Rect::from_center_size(at - egui::vec2(0.0, size.y / 2.0), size);
         let mut rect = within(over, stage);
-        // Move a tag up if it would cover another.
+        // Moves a tag up while it would cover another.
         while let Some(other) = placed.iter().find(|other| other.intersects(rect)) {
             rect = rect.translate(egui::vec2(0.0, other.top() - rect.bottom() - 2.0));
         }

@@ -9,21 +9,21 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::stage::selection::Selection;
 use crate::studio::ui::theme::{Palette, Theme};
 
-/// The visible overlays.
+/// Overlays that are visible.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Overlays(Vec<Overlay>);
 
-/// Lines that are drawn in front of everything.
+/// Gizmo group of lines that are drawn in front of everything.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct OnTop;
 
 impl Overlays {
-    /// Whether an overlay is visible.
+    /// Returns whether an overlay is visible.
     pub fn shows(&self, overlay: Overlay) -> bool {
         self.0.contains(&overlay)
     }
 
-    /// Whether any overlay is visible.
+    /// Returns whether any overlay is visible.
     pub fn shows_any(&self) -> bool {
         !self.0.is_empty()
     }
@@ -45,17 +45,17 @@ impl Overlays {
     }
 }
 
-/// Width of lines, in pixels.
+/// Width of the overlays' lines, in pixels.
 const LINE_PIXELS: f32 = 3.0;
-/// Length of the arrow for a force equal to the snake's weight, in metres.
+/// Length of the arrow for a force that equals the snake's weight, in metres.
 pub(crate) const WEIGHT_M: f32 = 3.0;
-/// Maximum length of an arrow, in metres. An impact can be a hundred times the weight.
+/// Maximum length of a force's arrow, in metres. The force of an impact can be a hundred times the weight.
 const LONGEST_ARROW_M: f32 = 6.0;
-/// Radius of a torque's arrow, as a fraction of the limb's larger cross-section side.
+/// Radius of the arrow around a joint's axis, as a fraction of the longer side of the limb's cross-section.
 const TORQUE_RADIUS: f32 = 0.8;
-/// Angle of the arrow for the maximum torque, in radians.
+/// Angle that the arrow of the maximum torque covers, in radians.
 const FULL_TORQUE_RAD: f32 = 4.7;
-/// Smallest torque that is drawn, as a fraction of the maximum.
+/// Smallest torque that is drawn, as a fraction of the maximum torque.
 const MIN_TORQUE_SHARE: f32 = 0.02;
 /// Height of the fitness line above a tread, in metres.
 const ABOVE_M: f32 = 0.04;
@@ -116,7 +116,7 @@ fn draw(
     }
 }
 
-/// Outlines the parts of the selected limb.
+/// Draws the outlines of the selected limb's parts.
 fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     for (pose, part) in lane.drawn_poses().zip(&lane.body().parts) {
         if part.limb == limb {
@@ -128,7 +128,7 @@ fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTo
     }
 }
 
-/// A cross at every contact, and the force on the limb as an arrow from it.
+/// Draws a cross at every contact, with an arrow for the force on the limb.
 fn contacts(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     let weight_n = lane.body().mass_kg() * lane.trial().physics.gravity_m_s2.max(0.1);
     for contact in &lane.readings().contacts {
@@ -141,7 +141,7 @@ fn contacts(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     }
 }
 
-/// An arrow around each axis of each joint; its angle is proportional to the torque.
+/// Draws an arrow around each axis of each joint. The angle of the arrow is proportional to the torque.
 fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     let body = lane.body();
     let poses: Vec<_> = lane.drawn_poses().collect();
@@ -151,31 +151,31 @@ fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
         let at = *front * joint.anchor_m(length_m) + lane.offset();
         let turn = joint.axes(front.rotation);
         let radius_m = width_m.max(height_m) * TORQUE_RADIUS;
-        // About x, from the top; drawn at the limb's sides, where it is visible.
+        // The bend arrow turns about x and starts at the top. It is drawn at the limb's sides, where it is visible.
         let share = torque.bend_nm / joint.max_bend_torque_nm.max(1.0e-6);
         for side in [-1.0, 1.0] {
             let centre = at + turn * Vec3::X * (side * (width_m / 2.0 + 0.1));
             let (up, ahead) = (turn * Vec3::Z, turn * Vec3::NEG_Y);
             bent_arrow(gizmos, centre, [up, ahead], radius_m * 0.75, share, palette);
         }
-        // About y, from the top.
+        // The twist arrow turns about y and starts at the top.
         let share = torque.twist_nm / joint.max_twist_torque_nm.max(1.0e-6);
         let (up, aside) = (turn * Vec3::Z, turn * Vec3::X);
         bent_arrow(gizmos, at, [up, aside], radius_m * 1.1, share, palette);
     }
 }
 
-/// Greatest number of lines side by side in a torque's arrow, and their distance, in metres.
+/// Maximum number of lines side by side in a torque's arrow, and their spacing in metres.
 const MOST_LINES: f32 = 6.0;
 const LINES_APART_M: f32 = 0.03;
 
-/// Number of lines side by side in the arrow of a torque, as a fraction of the maximum.
+/// Returns the number of lines side by side in a torque's arrow. `share` is the torque as a fraction of the maximum.
 fn lines_of(share: f32) -> u32 {
     (share.abs().min(1.0) * MOST_LINES).ceil() as u32
 }
 
-/// An arrow along a circle, from the direction `from` towards `towards`, or reversed. Its colour says the direction of
-/// the torque; its length and width, the size.
+/// Draws an arrow along a circle, from the direction `from` towards `towards`, or in reverse if `share` is negative.
+/// The colour shows the direction of the torque; the length and width show its size.
 fn bent_arrow(
     gizmos: &mut Gizmos<OnTop>,
     centre: Vec3,
@@ -205,19 +205,19 @@ fn bent_arrow(
     gizmos.arrow(before, end, color).with_tip_length(tip_m);
 }
 
-/// Middle of the fitness line, in the coordinates of its lane, in metres.
+/// Returns the middle of the fitness line in its lane, in metres.
 fn fitness_line_middle(lane: &Lane) -> Vec3 {
     let y_m = lane.drawn_middle().y;
     Vec3::new(0.0, y_m, lane.trial().stairs.surface_z_m(0.0, y_m) + ABOVE_M)
 }
 
-/// Right end of the fitness line in the scene, in metres, where its label stands.
+/// Returns the right end of the fitness line in the scene, in metres, where its label is drawn.
 pub(crate) fn fitness_line_end(lane: &Lane) -> Vec3 {
     let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
     fitness_line_middle(lane) + half_width + lane.offset()
 }
 
-/// A line across the lane below the centre of the middle limb, and one up to it.
+/// Draws a line across the lane below the centre of the middle limb, and a line from there up to the centre.
 fn fitness_line(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
     let middle = lane.drawn_middle();
     let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);

@@ -1,4 +1,4 @@
-//! Meshes and materials that the parts of the scene share, and colours of the theme.
+//! Meshes and materials that the parts of the scene share, and materials that follow the theme.
 
 use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
@@ -6,11 +6,11 @@ use bevy_egui::egui::Color32;
 
 use crate::studio::ui::theme::{Palette, Theme};
 
-/// Materials whose colours follow the theme, each with its colour.
+/// Materials whose colours follow the theme, each with a function for its colour.
 #[derive(Resource, Default)]
 pub(crate) struct ThemedMaterials(Vec<(Handle<StandardMaterial>, Box<ColorOfTheme>)>);
 
-/// The colour of a material in a theme.
+/// Function that returns the colour of a material in a theme.
 type ColorOfTheme = dyn Fn(&Palette) -> Color + Send + Sync;
 
 /// Adds a material whose colour follows the theme.
@@ -25,7 +25,7 @@ pub(crate) fn themed(
     handle
 }
 
-/// Gives the materials the colours of the theme.
+/// Sets the colours of the materials to those of the theme.
 pub(super) fn recolor(
     theme: Res<Theme>,
     themed: Res<ThemedMaterials>,
@@ -38,7 +38,7 @@ pub(super) fn recolor(
     }
 }
 
-/// A colour of the panels for the scene.
+/// Converts a colour of the panels for the scene.
 pub(crate) fn in_scene(color: Color32) -> Color {
     let [red, green, blue, _] = color.to_array();
     Color::srgb_u8(red, green, blue)
@@ -47,7 +47,7 @@ pub(crate) fn in_scene(color: Color32) -> Color {
 /// Opacity of a ghost's limbs.
 const GHOST_ALPHA: f32 = 0.18;
 
-/// Shared meshes and materials.
+/// Meshes and materials that the parts of the scene share.
 #[derive(Resource, Debug)]
 pub(crate) struct Props {
     /// A cube of one metre; a transform scales it to any box.
@@ -56,10 +56,10 @@ pub(crate) struct Props {
     pub red: Handle<StandardMaterial>,
     /// Material of the second, fourth, ... limb.
     pub blue: Handle<StandardMaterial>,
-    /// The cube for ghosts: its faces have their own brightness, because the materials of ghosts have no light.
+    /// Cube for the limbs of ghosts. Its faces differ in brightness, because the materials of ghosts are unlit.
     pub ghost_cube: Handle<Mesh>,
-    /// Materials of the limbs of ghosts, translucent. Where thirty ghosts overlap, each pixel is drawn a hundred times, which
-    /// has to be cheap.
+    /// Translucent material of the red limbs of ghosts. It must be cheap: where thirty ghosts overlap, each pixel is
+    /// drawn a hundred times.
     pub red_ghost: Handle<StandardMaterial>,
     pub blue_ghost: Handle<StandardMaterial>,
 }
@@ -69,7 +69,7 @@ impl FromWorld for Props {
         let mut meshes = world.resource_mut::<Assets<Mesh>>();
         let [cube, ghost_cube] =
             [Cuboid::from_length(1.0).mesh().build(), shaded_cube()].map(|mesh| meshes.add(mesh));
-        // Little reflectance keeps the red and the blue of the report under a bright sky.
+        // A low reflectance preserves the red and the blue of the report under a bright sky.
         let limb = StandardMaterial { perceptual_roughness: 0.5, reflectance: 0.25, ..default() };
         let ghost = StandardMaterial { alpha_mode: AlphaMode::Blend, unlit: true, ..limb.clone() };
         Self {
@@ -83,7 +83,7 @@ impl FromWorld for Props {
     }
 }
 
-/// A cube of one metre whose faces are brighter the more they face upwards.
+/// Builds a cube of one metre whose faces are brighter the more they face upwards.
 fn shaded_cube() -> Mesh {
     let mesh = Cuboid::from_length(1.0).mesh().build();
     let normals = mesh.attribute(Mesh::ATTRIBUTE_NORMAL).and_then(VertexAttributeValues::as_float3);
@@ -95,7 +95,7 @@ fn shaded_cube() -> Mesh {
     mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
-/// A transform that scales the unit cube to a box.
+/// Returns the transform that scales the unit cube to a box.
 pub(crate) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
     Transform::from_translation(centre).with_scale(size)
 }

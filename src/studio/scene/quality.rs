@@ -1,7 +1,7 @@
-//! Quality of rendering: lower for software rendering.
+//! Quality of rendering, which is lower for software rendering.
 //!
-//! Without a graphics card, the CPU cores that run evolution also draw every sample of every pixel. Anti-aliasing and
-//! sharp shadows cost too much there.
+//! Without a graphics card, the CPU cores that run evolution also compute every sample of every pixel. Anti-aliasing
+//! and sharp shadows are then too expensive.
 
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
@@ -10,14 +10,14 @@ use wgpu_types::DeviceType;
 /// Quality settings of the renderer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Quality {
-    /// Anti-aliasing samples per pixel.
+    /// Number of anti-aliasing samples per pixel.
     pub msaa: Msaa,
     /// Side length of the shadow map, in pixels.
     pub shadow_map_pixels: usize,
 }
 
 impl Quality {
-    /// Settings for a type of device.
+    /// Returns the quality settings for a type of device.
     pub fn of(device: DeviceType) -> Self {
         match device {
             DeviceType::Cpu => Self { msaa: Msaa::Off, shadow_map_pixels: 1024 },
@@ -25,7 +25,7 @@ impl Quality {
         }
     }
 
-    /// Settings for the renderer's adapter.
+    /// Returns the quality settings for the renderer's adapter.
     pub fn for_adapter(adapter: &RenderAdapterInfo) -> Self {
         Self::of(adapter.0.device_type)
     }

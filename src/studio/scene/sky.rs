@@ -1,6 +1,6 @@
 //! The sky: a dome around the camera, from the horizon's colour to the zenith's.
 //!
-//! The ground fades into the same colour, so the horizon is seamless.
+//! The ground fades into the horizon's colour, so the horizon is seamless.
 
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::light::{EnvironmentMapLight, NotShadowCaster, NotShadowReceiver};
@@ -12,16 +12,16 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::{Palette, Theme};
 use snakes_lab::mesh::MeshBuilder;
 
-/// Radius of the dome, in metres: beyond the end of the ground, within the camera's far plane.
+/// Radius of the sky's dome, in metres: beyond the end of the ground, within the camera's far plane.
 const RADIUS_M: f32 = 900.0;
-/// Upper end of the gradient above the horizon, in radians: low, because cameras see only the lower sky.
+/// Elevation above the horizon where the sky's gradient ends, in radians: low, because cameras see only the lower sky.
 const ZENITH_RAD: f32 = 0.55;
-/// Rings of the gradient.
+/// Number of rings of the dome that form the gradient.
 const RINGS: usize = 20;
-/// Sides of the dome.
+/// Number of sides of the dome.
 const SIDES: usize = 24;
 
-/// Marks the dome.
+/// Marks the dome of the sky.
 #[derive(Component)]
 struct Dome;
 
@@ -63,10 +63,10 @@ fn dress(
     }
 }
 
-/// Brightness at which a mirror shows the sky as it is drawn, in cd/m², for the exposure of Bevy's cameras.
+/// Brightness of the reflected sky that matches the drawn one, in cd/m², for the exposure of Bevy's cameras.
 const MIRROR_CD_M2: f32 = 1000.0;
 
-/// Lets smooth surfaces, such as ice, reflect the sky. Its light on rough ones is the ambient light already.
+/// Lets smooth surfaces, such as ice, reflect the sky. The ambient light already accounts for the sky's light on rough surfaces.
 fn reflect(
     theme: Res<Theme>,
     cameras: Query<(Entity, Has<EnvironmentMapLight>), With<Camera3d>>,
@@ -86,7 +86,7 @@ fn reflect(
         commands.entity(camera).insert(EnvironmentMapLight {
             diffuse_map: dark.diffuse_map,
             intensity: MIRROR_CD_M2,
-            // The map's up is y, the world's is z.
+            // In the environment map y points up; in the world, z.
             rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
             ..reflected
         });
@@ -104,10 +104,10 @@ fn follow(
     }
 }
 
-/// The dome is seen from inside, so columns go to the left.
+/// Builds the dome of the sky. It is seen from inside, so its columns go to the left.
 fn dome(palette: &Palette) -> Mesh {
     let angle = |ring: usize| match ring {
-        // Below the horizon, only a camera near the end of the ground sees the dome.
+        // The dome continues below the horizon, which only a camera near the end of the ground sees.
         0 => -0.35,
         ring if ring > RINGS => std::f32::consts::FRAC_PI_2,
         ring => ZENITH_RAD * (ring - 1) as f32 / (RINGS - 1) as f32,

@@ -1,6 +1,6 @@
-//! Draws the snake between the last two physics steps: red and blue blocks with joints.
+//! Draws the snake as red and blue blocks with joints, interpolated between the last two physics steps.
 //!
-//! A ghost is only its translucent blocks: without details, shadow and collar, so that thirty of them stay cheap.
+//! A ghost consists only of translucent blocks. Without details, shadow and collar, thirty ghosts are still cheap to draw.
 
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
@@ -19,22 +19,22 @@ use snakes_core::world::{JointPlan, Pose};
 #[derive(Component, Debug)]
 struct SnakePart(usize);
 
-/// Meshes of a limb.
+/// Meshes of a limb, and the bind poses of its parts.
 #[derive(Debug, Clone)]
 struct LimbMeshes {
     block: Handle<Mesh>,
     white: Handle<Mesh>,
     dark: Handle<Mesh>,
     collar: Handle<Mesh>,
-    /// Ways from the frame of a soft limb to those of its parts.
+    /// Transforms from the frame of a soft limb to those of its parts at rest.
     bind_poses: Handle<SkinnedMeshInverseBindposes>,
 }
 
-/// Meshes by shape, shared by snakes of the same build.
+/// Cached meshes by shape, which snakes with the same limbs share.
 #[derive(Resource, Debug, Default)]
 struct Shapes(SceneCache<LimbShape, LimbMeshes>);
 
-/// Materials of the limbs' details.
+/// Materials of the details on limbs.
 #[derive(Resource, Debug)]
 struct Trim {
     white: Handle<StandardMaterial>,
@@ -47,7 +47,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
 
-/// Maximum number of cached shapes. Tuning a snake's size creates many.
+/// Maximum number of cached shapes. Dragging a slider for the snake's size creates many.
 const MAX_SHAPES: usize = 64;
 
 impl FromWorld for Trim {
@@ -61,7 +61,7 @@ impl FromWorld for Trim {
     }
 }
 
-/// Spawns the limbs of a new lane.
+/// Spawns the limbs of a new lane's snake.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     (props, trim, colors): (Res<Props>, Res<Trim>, Res<LaneColors>),
@@ -117,7 +117,8 @@ fn build(
                 let bind_poses = bind_poses.add(shape.bind_poses());
                 LimbMeshes { block, white, dark, collar, bind_poses }
             });
-            // A rigid limb's meshes are its part's; those of a soft limb follow all of its parts, wherever their own place is.
+            // The meshes of a rigid limb are children of its part. Those of a soft limb follow all of its parts,
+            // whatever their own transform is.
             let joints = bones.clone();
             let skin = (bones.len() > 1).then(|| {
                 let inverse_bindposes = shapes.bind_poses.clone();
@@ -148,7 +149,7 @@ fn build(
     }
 }
 
-/// Moves the parts. Unchanged transforms are not written, so Bevy does not propagate them again.
+/// Moves the parts of the snakes. Unchanged transforms are not written, so that Bevy does not propagate them again.
 fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Transform)>) {
     for (lane, children) in &lanes {
         let mut parts = parts.iter_many_mut(children);
@@ -168,7 +169,7 @@ mod tests {
     use crate::studio::stage::staged_champion::StagedChampion;
     use snakes_core::save::shipped_champion;
 
-    /// An app with a lane and a ghost of the same snake.
+    /// Creates an app with a lane and a ghost of the same snake.
     fn app() -> App {
         let loaded = shipped_champion().expect("well formed");
         let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);

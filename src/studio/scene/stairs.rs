@@ -1,4 +1,4 @@
-//! The stairs of a lane, and the strip of ground before them, each with the look of its surface.
+//! The stairs of a lane and the strip of ground before them, with the look of their surfaces.
 
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
@@ -14,18 +14,18 @@ use crate::studio::ui::theme::Theme;
 use snakes_core::world::{StairBox, Stairs};
 use snakes_lab::mesh::MeshBuilder;
 
-/// How far the strip of ground reaches beyond the stairs on both sides, in metres.
+/// Width by which the strip of ground extends beyond the stairs on each side, in metres.
 pub(crate) const STRIP_ASIDE_M: f32 = 0.4;
-/// How far the strip of ground begins behind the snake, in metres.
+/// Length of the strip of ground behind the snake, in metres.
 const STRIP_BEHIND_M: f32 = 3.0;
-/// How far the strip goes on where there are no stairs, in metres.
+/// Length of the strip of ground ahead of the snake where there are no stairs, in metres.
 const STRIP_AHEAD_M: f32 = 40.0;
-/// Height of the strip above the ground, in metres: below the lines of the grid.
+/// Height of the strip of ground above the ground, in metres: below the lines of the grid.
 const STRIP_M: f32 = 0.004;
-/// Brightness of every other step, so that treads of the same material stand out from each other.
+/// Brightness factor of every other step, so that adjacent treads of the same material can be told apart.
 const OTHER_STEP: f32 = 0.86;
 
-/// The material that casts the shadow of stairs.
+/// Material of the mesh that casts the stairs' shadow.
 #[derive(Resource, Debug)]
 struct Caster(Handle<StandardMaterial>);
 
@@ -36,13 +36,13 @@ pub(crate) fn plugin(app: &mut App) {
 impl FromWorld for Caster {
     fn from_world(world: &mut World) -> Self {
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        // Only faces that look away from the light cast: a face that receives light never shadows itself in the
-        // saw-tooth pattern of the shadow map's pixels.
+        // Only faces that look away from the light cast shadows. A lit face would shadow itself in the saw-tooth
+        // pattern of the shadow map's pixels.
         Self(materials.add(StandardMaterial { cull_mode: Some(Face::Front), ..default() }))
     }
 }
 
-/// Spawns the stairs of new lanes. A ghost stands on those of another lane.
+/// Spawns the stairs of new lanes. Ghosts share the stairs of another lane.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     theme: Res<Theme>,
@@ -68,7 +68,7 @@ fn build(
         if trial.stairs.steps == 0 {
             continue;
         }
-        // Lanes side by side mostly have the same stairs.
+        // Lanes side by side usually have the same stairs.
         let mesh =
             last.get(&trial.stairs, 1, || meshes.add(to_tiled_mesh(solid(&trial.stairs), TILE_M)));
         commands.entity(entity).with_children(|parent| {
@@ -78,7 +78,7 @@ fn build(
     }
 }
 
-/// The stairs as one closed body. Boxes side by side would have hidden faces, which cast shadows on those in sight.
+/// Builds the stairs as one closed solid. Adjacent boxes would have hidden faces, which would cast shadows on the visible ones.
 fn solid(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let half_m = stairs.width_m / 2.0;
@@ -86,11 +86,11 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
     let mut corner = 0;
     for step in 0..stairs.steps {
         solid.tone(tone_of(step));
-        // Riser or slope, with the two faces of a nosing between, and tread.
+        // The faces of a step: the riser or slope, two faces of a nosing if there is one, and the tread.
         let faces = if stairs.step_nosing_m(step) > 0.0 { 4 } else { 2 };
         for ends in outline[corner..=corner + faces].windows(2) {
             let [from, to] = [ends[0], ends[1]].map(|[y_m, z_m]| Vec3::new(0.0, y_m, z_m));
-            // A tread at the level of the ground belongs to the strip of ground.
+            // A tread at ground level is drawn with the strip of ground.
             if from != to && from.z.max(to.z) > 0.0 {
                 solid.sheet((from + to) / 2.0, Vec3::X * half_m, (to - from) / 2.0);
             }
@@ -109,12 +109,13 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Brightness of a step.
+/// Returns the brightness factor of a step for red, green and blue.
 fn tone_of(step: u32) -> Vec3 {
     Vec3::splat(if step.is_multiple_of(2) { 1.0 } else { OTHER_STEP })
 }
 
-/// Where the stairs stand on the ground: the ends along y of their boxes, and of slopes from or to the ground, in metres.
+/// Returns the ranges of y, in metres, where the stairs touch the ground: those of their boxes, and of slopes that
+/// begin or end at ground level.
 fn raised_m(stairs: &Stairs) -> Vec<[f32; 2]> {
     let boxes = stairs.boxes().into_iter().filter(|of| of.min_m[2] == 0.0);
     let slopes_here = |step: &u32| {
@@ -126,7 +127,7 @@ fn raised_m(stairs: &Stairs) -> Vec<[f32; 2]> {
     boxes.map(|of| [of.min_m[1], of.max_m[1]]).chain(slopes).collect()
 }
 
-/// Both sides of the stairs, down to the ground.
+/// Adds both sides of the stairs, down to the ground.
 fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
     let half_m = stairs.width_m / 2.0;
     for StairBox { step, min_m, max_m } in stairs.boxes() {
@@ -142,7 +143,7 @@ fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
         solid.tone(tone_of(step));
         let foot = [stairs.riser_y_m(step), stairs.height_m(step)];
         let top = [stairs.tread_y_m(step), stairs.height_m(step + 1)];
-        // The triangle over the lower of both levels; on a slope down it lies below the upper end.
+        // The triangle above the lower level of the slope. On a slope down, its corner is below the upper end.
         let corner = if top[1] > foot[1] { [top[0], foot[1]] } else { [foot[0], top[1]] };
         for x_m in [half_m, -half_m] {
             let [foot, corner, top] = [foot, corner, top].map(|[y, z]| Vec3::new(x_m, y, z));
@@ -151,14 +152,15 @@ fn sides(solid: &mut MeshBuilder, stairs: &Stairs) {
     }
 }
 
-/// Start and end of the strip of ground along y, in metres, for a snake whose tail begins at `start_m`.
+/// Returns the start and the end of the strip of ground along y, in metres. The snake's tail begins at `start_m`.
 pub(crate) fn strip_y_m(stairs: &Stairs, start_m: f32) -> [f32; 2] {
     let from_m = start_m - STRIP_BEHIND_M;
     let to_m = if stairs.steps == 0 { start_m + STRIP_AHEAD_M } else { stairs.first_riser_y_m };
     [from_m, to_m.max(from_m)]
 }
 
-/// The strip of ground before the stairs, and the treads at its level. The physical ground is infinite; the strip shows its surface.
+/// Builds the strip of ground before the stairs, and the treads at ground level. The physical ground is infinite; the
+/// strip shows its surface.
 fn strip(stairs: &Stairs, start_m: f32) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [from_m, to_m] = strip_y_m(stairs, start_m);
@@ -202,7 +204,7 @@ mod tests {
         for stairs in samples() {
             let solid = solid(&stairs);
             let volume = solid.volume_m3();
-            // The area between the outline and the ground, by trapezia.
+            // The area between the outline and the ground, as a sum of trapezia.
             let outline = stairs.outline_m();
             let area: f32 = outline
                 .windows(2)

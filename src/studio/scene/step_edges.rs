@@ -1,4 +1,4 @@
-//! Strips at the front edges of the steps. Those of the steps below the snake glow.
+//! Strips at the front edges of the steps. The strips of the steps below the snake are lit.
 
 use std::f32::consts::PI;
 
@@ -12,7 +12,7 @@ use crate::studio::stage::lane::Lane;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Step index of a strip; the lowest is 0.
+/// Strip on the edge of a step, with the index of the step; the lowest is 0.
 #[derive(Component, Debug)]
 struct StepEdge {
     step: u32,
@@ -27,12 +27,12 @@ struct Strips {
     glow: Handle<StandardMaterial>,
 }
 
-/// Depth of a strip along the tread and height along the riser, in metres.
+/// Depth of a strip along the tread, and its height along the riser, in metres.
 const DEPTH_M: f32 = 0.12;
 const HEIGHT_M: f32 = 0.06;
-/// How far a strip stands out of both, in metres.
+/// Thickness by which a strip stands out of tread and riser, in metres.
 const OUT_M: f32 = 0.012;
-/// Extent of the glow over the tread and down the riser, in metres.
+/// Extent of the glow of a lit strip across the tread and down the riser, in metres.
 const GLOW_BACK_M: f32 = 0.55;
 const GLOW_DOWN_M: f32 = 0.3;
 const GLOW_ON_NOSING_M: f32 = 0.1;
@@ -55,7 +55,7 @@ impl FromWorld for Strips {
     }
 }
 
-/// Spawns the strips of a new lane.
+/// Spawns the strips of a new lane's stairs.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     props: Res<Props>,
@@ -84,7 +84,7 @@ fn build(
                     StepEdge { step, is_lit: false },
                     Mesh3d(glow.clone()),
                     MeshMaterial3d(strips.glow.clone()),
-                    // Turned, not mirrored: of a mirrored mesh the back would be seen, which is not drawn.
+                    // Rotated, not mirrored: a mirrored mesh would show its back faces, which are not drawn.
                     Transform::from_translation(edge)
                         .with_rotation(Quat::from_rotation_z(if ahead < 0.0 { PI } else { 0.0 })),
                     Visibility::Hidden,
@@ -95,20 +95,20 @@ fn build(
     }
 }
 
-/// Middle of a step's front edge, or of the edge from which it leads down.
+/// Returns the middle of a step's front edge, or of the edge from which the step leads down.
 fn edge(stairs: &Stairs, step: u32) -> Vec3 {
     let [y_m, z_m] = stairs.edge_m(step);
     Vec3::new(0.0, y_m, z_m)
 }
 
-/// Two patches over the tread and down the riser that fade out away from the edge.
+/// Builds the glow of a strip: two patches over the tread and down the riser that fade out away from the edge.
 fn glow(stairs: &Stairs) -> Mesh {
     let mut solid = MeshBuilder::default();
     let half = Vec3::X * stairs.width_m / 2.0;
     let least = |of: &dyn Fn(u32) -> f32| (0..stairs.steps).map(of).fold(f32::MAX, f32::min);
     let back_m = GLOW_BACK_M.min(least(&|step| stairs.step_tread_m(step)));
     let lowest_m = least(&|step| stairs.step_rise_m(step).abs());
-    // A nosing's front is 0.1 m high, or half the rise.
+    // The front of a nosing is 0.1 m high, or half the rise.
     let down_m = if stairs.nosing_m > 0.0 {
         GLOW_ON_NOSING_M.min(lowest_m / 2.0)
     } else {
@@ -123,7 +123,7 @@ fn glow(stairs: &Stairs) -> Mesh {
 /// Opacity of the glow at the edge.
 const GLOW_OPACITY: f32 = 0.65;
 
-/// Lights the strips of the steps under the middle limb.
+/// Lights the strips of the steps under the middle limb, and darkens the others.
 fn light(
     lanes: Query<(&Lane, &Children)>,
     strips: Res<Strips>,

@@ -1,4 +1,4 @@
-//! Labels on the ground and the stairs: distance along the lane, and step numbers.
+//! Labels on the ground and the stairs: a scale of distances along the lane, and step numbers.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
@@ -8,22 +8,22 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::Stairs;
 
-/// Distance between numbers, in metres.
+/// Distance between the numbers of the scale, in metres.
 const NUMBER_EVERY_M: i32 = 5;
-/// Height of the ground's digits, in metres.
+/// Height of the scale's digits, in metres.
 const DIGIT_M: f32 = 0.7;
-/// Distance of the scale from the stairs, in metres.
+/// Distance between the scale and the stairs, in metres.
 const ASIDE_M: f32 = 0.5;
-/// Length of the marks at numbers, in metres, and at each metre between them.
+/// Length of the scale's marks at numbers, and of those at each metre between them, in metres.
 const LONG_MARK_M: f32 = 0.7;
 const SHORT_MARK_M: f32 = 0.3;
-/// Width of a mark, in metres.
+/// Width of a mark of the scale, in metres.
 const MARK_M: f32 = 0.07;
 /// Opacity of the scale, as a fraction of the step numbers' opacity.
 const SCALE_OPACITY: f32 = 0.62;
-/// Height of paint above its surface, in metres: above the ground's grid.
+/// Height of painted labels above their surface, in metres: above the grid.
 const PAINT_M: f32 = 0.015;
-/// Height of a step's number, as a fraction of its rise.
+/// Height of a step's number, as a fraction of the step's rise.
 const NUMBER_SHARE: f32 = 0.5;
 /// Maximum height of a step's number, in metres.
 const MAX_NUMBER_M: f32 = 0.5;
@@ -44,7 +44,7 @@ fn paint(
     for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
         let mut writing = lettering.begin();
         if lane.number() == 0 {
-            // Only the nearest lane is labelled. Large digits need less contrast than small ones.
+            // Only the nearest lane is labelled. The scale's large digits need less contrast than small ones.
             writing.thin(SCALE_OPACITY);
             scale(&mut writing, lane);
             writing.thin(1.0);
@@ -58,7 +58,7 @@ fn paint(
     }
 }
 
-/// Distances along the lane, readable from the right of the stairs.
+/// Adds the scale of distances along the lane, readable from the right of the stairs.
 fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
     let trial = lane.trial();
     let start_m = trial.start_y_m - lane.body().length_m() / 2.0;
@@ -81,14 +81,14 @@ fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
     }
 }
 
-/// Step numbers on the risers, under the nosings, and on the slopes. Steps down have none: they face away.
+/// Adds step numbers on the risers, under the nosings, and on the slopes. Steps that lead down have none, because they face away.
 fn numbers(writing: &mut TextMeshBuilder<'_>, stairs: &Stairs) {
     for step in (0..stairs.steps).filter(|&step| stairs.step_rise_m(step) > 0.0) {
         let (rise_m, slope_m) = (stairs.step_rise_m(step), stairs.step_slope_m(step));
         let (below_m, nosing_m) = (stairs.height_m(step), stairs.step_nosing_m(step));
         let digit_m = (rise_m * NUMBER_SHARE).min(MAX_NUMBER_M);
         let riser = Vec3::new(0.0, slope_m, rise_m);
-        // Under an overhang the number would be hidden; the lower half of the riser is in sight from afar.
+        // Under a nosing, the number is on the lower part of the riser, which is visible from far away.
         let share = if nosing_m > 0.0 { 0.3 } else { 0.46 };
         let foot =
             Vec3::new(stairs.width_m / 2.0 - NUMBER_ASIDE_M, stairs.riser_y_m(step), below_m);

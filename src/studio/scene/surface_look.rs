@@ -1,45 +1,45 @@
-//! How a surface looks, from its settings: ice, glue, mud, trampoline, rubber, stone, and every mixture between them.
+//! Computes how a surface looks from its settings: ice, glue, mud, trampoline, rubber, stone, and mixtures of them.
 //!
-//! A pure function: the same settings always look the same, and a small change of a setting is a small change of the
-//! look. The physics does not read it.
+//! The same settings always look the same, and a small change of a setting causes a small change of the look. The
+//! physics does not use the look.
 
 use bevy::prelude::*;
 
 use crate::studio::ui::theme::Palette;
 use snakes_core::world::Surface;
 
-/// The look of a surface. All fields are shares from 0 to 1.
+/// Look of a surface. All fields are shares from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceLook {
-    /// Little friction: pale ice.
+    /// Share of ice: pale, for little friction.
     pub ice: f32,
-    /// Much friction: amber glue.
+    /// Share of glue: amber, for much friction.
     pub glue: f32,
-    /// So much friction that nothing ever slides: dark resin. Deepens the colour of glue.
+    /// Share of resin in the colour of glue: darker, for so much friction that nothing slides.
     pub resin: f32,
-    /// Gives the energy of an impact back although it is hard: rubber with flecks.
+    /// Share of rubber: with flecks, for a hard surface from which limbs bounce.
     pub rubber: f32,
-    /// Yields deeply and springs back: a woven mat.
+    /// Share of a woven mat, for a surface that yields deeply and springs back.
     pub woven: f32,
-    /// Yields without springing back, and damps: mud.
+    /// Share of mud, for a surface that yields without springing back, and damps.
     pub mud: f32,
-    /// Yields under load, so that limbs leave dents.
+    /// Softness of the surface: how far limbs sink in and leave dents.
     pub soft: f32,
-    /// Creeps under load: a wet film.
+    /// Share of a wet film, for a surface that creeps under load.
     pub wet: f32,
-    /// Grains of stone or dust; they disappear under ice, glue and mud.
+    /// Share of the grains of stone or dust, which ice, glue and mud cover.
     pub speckle: f32,
-    /// Roughness of the material; 0 is a mirror.
+    /// Roughness of the surface's material; 0 is a mirror.
     pub roughness: f32,
-    /// Reflectance of the material.
+    /// Reflectance of the surface's material.
     pub gloss: f32,
 }
 
-/// Number of steps of each share in [`SurfaceLook::key`]: finer than an eye can tell apart.
+/// Number of steps of each share in [`SurfaceLook::key`]: finer than the eye can distinguish.
 const LEVELS: f32 = 32.0;
 
 impl SurfaceLook {
-    /// The look of a surface with these settings.
+    /// Computes the look of a surface with these settings.
     pub fn of(surface: &Surface) -> Self {
         let friction = surface.friction.max(0.0);
         let ice = 1.0 - log_share(friction, 0.05, 0.7);
@@ -57,7 +57,7 @@ impl SurfaceLook {
         let sinks = soft * (1.0 - springs_back) * (0.3 + 0.7 * damped);
         let mud = 1.0 - (1.0 - sinks) * (1.0 - 0.7 * hard_damped);
 
-        // In the order in which one covers the other.
+        // The order of the layers is that in which they cover each other.
         let through = |values: [f32; 6]| {
             let [stone, of_ice, of_glue, of_rubber, of_woven, of_mud] = values;
             let layers = [
@@ -85,7 +85,7 @@ impl SurfaceLook {
         }
     }
 
-    /// The colour of the surface in a theme.
+    /// Returns the colour of the surface in a theme.
     pub fn tint(&self, palette: &Palette) -> Color {
         let glue = palette.glue.mix(&palette.resin, self.resin);
         let layers = [
@@ -97,13 +97,13 @@ impl SurfaceLook {
         ];
         let dry =
             layers.into_iter().fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
-        // Water darkens what soaks it up; ice stays as bright.
+        // Wetness darkens a surface, but not ice.
         let soaked = 1.0 - 0.22 * self.wet * (1.0 - self.ice);
         let linear = dry.to_linear();
         Color::linear_rgb(linear.red * soaked, linear.green * soaked, linear.blue * soaked)
     }
 
-    /// Equal for looks that an eye cannot tell apart.
+    /// Returns a key that is equal for looks that the eye cannot distinguish.
     pub fn key(&self) -> [u8; 11] {
         let Self { ice, glue, resin, rubber, woven, mud, soft, wet, speckle, roughness, gloss } =
             *self;
@@ -112,17 +112,17 @@ impl SurfaceLook {
     }
 }
 
-/// Where a value lies between two others: 0 up to `from`, 1 from `to` on.
+/// Returns the position of a value in a range: 0 up to `from`, 1 from `to` on.
 fn share(value: f32, from: f32, to: f32) -> f32 {
     ((value - from) / (to - from)).clamp(0.0, 1.0)
 }
 
-/// As [`share`], on a logarithmic scale, like the sliders of these settings.
+/// As [`share`], but on a logarithmic scale, which the sliders of these settings also have.
 fn log_share(value: f32, from: f32, to: f32) -> f32 {
     share(libm::logf(value.max(1.0e-9)), libm::logf(from), libm::logf(to))
 }
 
-/// A mixture of two values.
+/// Interpolates linearly from `from`, at share 0, to `to`, at share 1.
 pub(crate) fn mix(from: f32, to: f32, share: f32) -> f32 {
     from + (to - from) * share
 }
@@ -139,7 +139,7 @@ mod tests {
         preset.settings.trial.surface
     }
 
-    /// The surfaces that a picture must tell apart without labels.
+    /// Returns the surfaces that a picture must make distinguishable without labels.
     fn surfaces() -> [(&'static str, Surface); 6] {
         [
             ("stone", Surface::default()),

@@ -9,14 +9,14 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Surface;
 
-/// Cache of materials and textures by their look.
+/// Cached materials and textures, by their look.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SurfaceMaterials {
     materials: SceneCache<[u8; 11], (SurfaceLook, Handle<StandardMaterial>)>,
     textures: SceneCache<Grain, Handle<Image>>,
 }
 
-/// Maximum number of cached materials and textures: more than lanes show at once. A slider that is dragged makes many.
+/// Maximum number of cached materials and textures: more than lanes show at once. Dragging a slider creates many.
 const MAX_CACHED: usize = 48;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -25,7 +25,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 impl SurfaceMaterials {
-    /// The material of a surface.
+    /// Returns the material of a surface. Surfaces that look the same share it.
     pub fn of(
         &mut self,
         surface: &Surface,
@@ -40,7 +40,7 @@ impl SurfaceMaterials {
             let material = materials.add(StandardMaterial {
                 base_color: look.tint(theme.palette()),
                 base_color_texture: Some(texture),
-                // Zero is a mirror, whose highlight is smaller than a pixel.
+                // Zero would be a mirror, whose highlight is smaller than a pixel.
                 perceptual_roughness: look.roughness.max(0.08),
                 reflectance: look.gloss,
                 ..default()

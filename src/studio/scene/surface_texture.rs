@@ -1,7 +1,7 @@
-//! The grain of surfaces, drawn in code: speckle, cracks in ice, shine of glue, ripples of mud, the weave of a mat.
+//! Procedural textures of surfaces: speckle, cracks in ice, shine of glue, ripples of mud, the weave of a mat.
 //!
-//! A texture only darkens the colour of its material, as a factor in linear light. All of its shapes are several pixels wide and it has mipmaps, so
-//! that nothing shimmers in the distance. It is the same for the same look on every machine.
+//! A texture only darkens the colour of its material, as a factor in linear light. Its shapes are several pixels wide
+//! and it has mipmaps, so that nothing shimmers in the distance. The same look has the same texture on every machine.
 
 use bevy::image::{ImageAddressMode, ImageFilterMode, ImageSamplerDescriptor};
 use bevy::prelude::*;
@@ -14,15 +14,15 @@ use super::surface_look::{SurfaceLook, mix};
 pub(crate) const TILE_M: f32 = 4.0;
 /// Side of a texture, in pixels: a power of two.
 const SIDE: usize = 256;
-/// Threads of the weave along a side.
+/// Number of threads of the weave along a side of the texture.
 const THREADS: usize = 16;
-/// Steps of each share in [`Grain`].
+/// Number of steps of each share in [`Grain`].
 const LEVELS: f32 = 8.0;
 
-/// Brightness of a kind of surface at a pixel, from 0 to 1.
+/// Function that returns the brightness of a kind of surface at a pixel, from 0 to 1.
 type Drawn = fn(usize, usize) -> f32;
 
-/// The parts of a look that its texture shows, in coarse steps, so that few textures are ever drawn.
+/// Shares of a look that affect its texture, in coarse steps, so that few textures are needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Grain {
     speckle: u8,
@@ -48,10 +48,10 @@ impl From<&SurfaceLook> for Grain {
 }
 
 impl Grain {
-    /// Brightness of a texture at a pixel, from 0 to 1.
+    /// Returns the brightness of the texture at a pixel, from 0 to 1.
     fn at(self, x: usize, y: usize) -> f32 {
         let share = |step: u8| f32::from(step) / LEVELS;
-        // Dust and dark minerals: grains of some centimetres on slow clouds.
+        // Stone: dark and pale grains of some centimetres on larger clouds.
         let clouds = noise(x, y, 8, 1) * 0.6 + noise(x, y, 16, 2) * 0.4;
         let dark = rise(noise(x, y, 64, 3), 0.66, 0.80);
         let pale = rise(noise(x, y, 64, 4), 0.70, 0.82);
@@ -90,7 +90,7 @@ impl Grain {
     }
 }
 
-/// Clouded ice with pale, straight cracks that end somewhere.
+/// Draws clouded ice with straight, pale cracks of limited length.
 fn ice(x: usize, y: usize) -> f32 {
     let clouds = noise(x, y, 4, 11) * 0.7 + noise(x, y, 8, 12) * 0.3;
     let is_cracked = rise(noise(x, y, 5, 13), 0.45, 0.65);
@@ -99,33 +99,33 @@ fn ice(x: usize, y: usize) -> f32 {
     mix(sheen, 1.0, cracks * is_cracked)
 }
 
-/// Thick, smooth waves that catch the light.
+/// Draws thick, smooth waves with highlights.
 fn glue(x: usize, y: usize) -> f32 {
     let height = |x, y| noise(x, y, 7, 21) * 0.5 + noise(x, y, 4, 22) * 0.5;
     0.80 + 2.2 * slope(x, y, height)
 }
 
-/// Bright flecks in a dark mat.
+/// Draws bright flecks in a dark mat.
 fn rubber(x: usize, y: usize) -> f32 {
     let flecks = rise(noise(x, y, 64, 31), 0.70, 0.78).max(rise(noise(x, y, 40, 32), 0.74, 0.80));
     0.32 + 0.06 * noise(x, y, 16, 33) + 0.62 * flecks
 }
 
-/// Threads that cross over and under each other.
+/// Draws threads that cross over and under each other.
 fn woven(x: usize, y: usize) -> f32 {
     let across = |at: usize| {
         let place = at as f32 * THREADS as f32 / SIDE as f32;
         (place as usize, place - libm::floorf(place))
     };
     let ((column, in_column), (row, in_row)) = (across(x), across(y));
-    // The thread on top is lit along its middle; between two threads it is dark.
+    // The upper thread is bright along its middle; the gap between two threads is dark.
     let round = |share: f32| libm::sinf(share * std::f32::consts::PI);
     let (along, beside) =
         if (column + row) % 2 == 0 { (in_row, in_column) } else { (in_column, in_row) };
     0.30 + 0.70 * rise(round(beside), 0.1, 0.75) * (0.55 + 0.45 * round(along))
 }
 
-/// Heavy lumps and puddles.
+/// Draws heavy lumps and puddles.
 fn mud(x: usize, y: usize) -> f32 {
     let height = |x, y| noise(x, y, 24, 41) * 0.35 + noise(x, y, 9, 42) * 0.65;
     let puddle = rise(height(x, y), 0.42, 0.30);
@@ -133,22 +133,22 @@ fn mud(x: usize, y: usize) -> f32 {
     mix(lumps, 0.50, puddle)
 }
 
-/// How far a relief rises towards one corner of the texture, from where its light comes.
+/// Returns how far a relief rises towards the corner of the texture from which it is lit.
 fn slope(x: usize, y: usize, height: impl Fn(usize, usize) -> f32) -> f32 {
-    /// Distance over which the relief is compared, in pixels.
+    /// Distance over which the heights are compared, in pixels.
     const OVER: usize = 3;
     let back = |at: usize| (at + SIDE - OVER) % SIDE;
     let on = |at: usize| (at + OVER) % SIDE;
     height(on(x), on(y)) - height(back(x), back(y))
 }
 
-/// Smooth step from 0 at `from` to 1 at `to`.
+/// Interpolates smoothly from 0 at `from` to 1 at `to`.
 fn rise(value: f32, from: f32, to: f32) -> f32 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
-/// Smooth noise from 0 to 1 over `cells` cells a side, which continues over the edges of the texture.
+/// Returns smooth noise from 0 to 1 with `cells` cells per side. The noise continues across the edges of the texture.
 fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     let across = |at: usize| {
         let place = at as f32 * cells as f32 / SIDE as f32;
@@ -163,7 +163,7 @@ fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     mix(low, high, up)
 }
 
-/// Distance from the border between irregular cells, `cells` a side, as a share of a cell.
+/// Returns the distance from the border between irregular cells, `cells` per side, as a share of a cell.
 fn between_cells(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     let at = Vec2::new(x as f32, y as f32) * cells as f32 / SIDE as f32;
     let own = at.floor();
@@ -182,7 +182,7 @@ fn between_cells(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     second - nearest
 }
 
-/// A number from 0 to 1 that looks random and depends on nothing but its arguments.
+/// Returns a pseudorandom number from 0 to 1 that depends only on its arguments.
 fn random(x: u32, y: u32, seed: u32) -> f32 {
     let mut mixed =
         x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
@@ -231,7 +231,7 @@ mod tests {
             let difference = |a: (usize, usize), b: (usize, usize)| {
                 (grain.at(a.0, a.1) - grain.at(b.0, b.1)).abs()
             };
-            // The mean difference of two neighbouring columns.
+            // Mean difference between two columns of pixels.
             let between = |left: usize, right: usize| {
                 let rows = (0..SIDE).step_by(4).map(|y| difference((left, y), (right, y)));
                 rows.sum::<f32>() * 4.0 / SIDE as f32

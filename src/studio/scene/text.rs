@@ -1,7 +1,7 @@
 //! Text in the scene: on the ground, on risers, on flags.
 //!
-//! All characters share one atlas texture; a text is a mesh of one rectangle per character. The atlas is drawn once
-//! from the panels' font, slightly bolder, with mipmaps, without which distant numbers would shimmer.
+//! All characters share one atlas texture; the mesh of a text has one rectangle per character. The atlas is drawn once
+//! from the panels' font, slightly bolder. Its mipmaps keep distant numbers from shimmering.
 
 mod atlas;
 
@@ -13,13 +13,13 @@ use snakes_lab::mesh::MeshBuilder;
 
 use atlas::{Atlas, BASELINE, CELL, MARGIN};
 
-/// The atlas and its materials.
+/// The atlas of characters, and materials for texts.
 #[derive(Resource, Debug)]
 pub(crate) struct TextMeshes {
     atlas: Atlas,
-    /// Material for sunlit surfaces: a veil that darkens or lightens the surface below it.
+    /// Material of text on sunlit surfaces: it darkens or lightens the surface below.
     pub paint: Handle<StandardMaterial>,
-    /// Material for a flag's cloth.
+    /// Material of text on the flag's cloth.
     pub on_flag: Handle<StandardMaterial>,
 }
 
@@ -57,22 +57,22 @@ pub(crate) struct TextMeshBuilder<'a> {
 /// Position and orientation of a text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TextPlacement {
-    /// Centre of the text.
+    /// Centre of the text in the scene, in metres.
     pub middle: Vec3,
-    /// Direction of writing.
+    /// Direction in which the text is written.
     pub right: Dir3,
     /// Up direction of the characters.
     pub up: Dir3,
 }
 
 impl TextMeshes {
-    /// A builder without text.
+    /// Starts a mesh without text.
     pub fn begin(&self) -> TextMeshBuilder<'_> {
         let (solid, uvs, colors) = default();
         TextMeshBuilder { atlas: &self.atlas, solid, uvs, colors, opacity: 1.0 }
     }
 
-    /// Width of a text with digits of a given height, in metres.
+    /// Returns the width of a text, in metres, with digits of this height, in metres.
     pub fn width_m(&self, text: &str, digit_height_m: f32) -> f32 {
         let pixels: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
         pixels * digit_height_m / self.atlas.digit_height()
@@ -85,7 +85,7 @@ impl TextMeshBuilder<'_> {
         self.opacity = opacity;
     }
 
-    /// Adds a text with digits of a given height, in metres.
+    /// Adds a text with digits of this height, in metres.
     pub fn text(&mut self, text: &str, digit_height_m: f32, place: TextPlacement) {
         let metres = digit_height_m / self.atlas.digit_height();
         let width: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
@@ -98,13 +98,13 @@ impl TextMeshBuilder<'_> {
         }
     }
 
-    /// Adds a bar around a place, with a width and a height in metres.
+    /// Adds a bar centred on a place, with a width and a height in metres.
     pub fn bar(&mut self, width_m: f32, height_m: f32, place: TextPlacement) {
         let bar = Rect::from_center_size(Vec2::ZERO, Vec2::new(width_m, height_m));
         self.rectangle(bar, self.atlas.solid(), place);
     }
 
-    /// Adds a rectangle in the plane of a place, with a part of the atlas, whose y runs downwards.
+    /// Adds a rectangle in the plane of a place. `part` is its part of the atlas, whose y runs downwards.
     fn rectangle(&mut self, on_plane: Rect, part: Rect, place: TextPlacement) {
         let TextPlacement { middle, right, up } = place;
         let (at, half) = (on_plane.center(), on_plane.half_size());
@@ -114,7 +114,7 @@ impl TextMeshBuilder<'_> {
         self.colors.extend([[1.0, 1.0, 1.0, self.opacity]; 4]);
     }
 
-    /// The finished mesh.
+    /// Returns the finished mesh.
     pub fn into_mesh(self) -> Mesh {
         to_mesh(self.solid)
             .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, self.uvs)

@@ -13,7 +13,7 @@ use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::state::shares::ShareLook;
 use crate::studio::ui::theme::Theme;
 
-/// State of the view.
+/// System parameters that make up the state of the view.
 #[derive(SystemParam)]
 pub(crate) struct ViewParams<'w, 's> {
     rig: ResMut<'w, CameraRig>,
@@ -24,7 +24,7 @@ pub(crate) struct ViewParams<'w, 's> {
 }
 
 impl ViewParams<'_, '_> {
-    /// The look of the stage, for a film.
+    /// Returns the look of the stage, for an exported film: camera mode, theme and overlays.
     pub fn look(&self) -> ShareLook {
         let shown = |overlay: &Overlay| self.overlays.shows(*overlay);
         ShareLook {
@@ -34,7 +34,7 @@ impl ViewParams<'_, '_> {
         }
     }
 
-    /// Executes a command.
+    /// Executes a command to the view.
     pub fn apply(&mut self, command: &ViewCommand) {
         match command {
             ViewCommand::SetCamera(camera_mode) => self.rig.take(*camera_mode),

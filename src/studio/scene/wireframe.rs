@@ -17,12 +17,12 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, hold_worlds.in_set(FrameSet::Draw));
 }
 
-/// Colour of the collision shapes of the snake's blocks.
+/// Returns the colour of the collision shapes of the snake's blocks.
 pub(crate) fn block_color() -> Color {
     of_engine(DebugRenderStyle::default().collider_dynamic_color)
 }
 
-/// Colour of the collision shapes of stairs and ground.
+/// Returns the colour of the collision shapes of stairs and ground.
 pub(crate) fn stairs_color() -> Color {
     of_engine(DebugRenderStyle::default().collider_fixed_color)
 }
@@ -31,7 +31,7 @@ fn of_engine([hue, saturation, lightness, alpha]: [f32; 4]) -> Color {
     Color::hsla(hue, saturation, lightness, alpha)
 }
 
-/// Shows the worlds of all lanes to the plugin, which draws them later in the frame.
+/// Passes the worlds of all lanes to the debug plugin, which draws them later in the frame.
 fn hold_worlds(
     overlays: Res<Overlays>,
     mut lines: ResMut<DebugRenderContext>,
@@ -48,8 +48,8 @@ fn hold_worlds(
     }
 }
 
-/// Draws the contacts of the engine *lanes* as the plugin draws those of rapier: the gap or the overlap of each point, and
-/// its normal.
+/// Draws the contacts of the engine *lanes* in the style in which the plugin draws those of rapier: the gap or the
+/// overlap of each point, and the normal.
 fn draw_contacts(lane: &Lane, gizmos: &mut Gizmos) {
     let style = DebugRenderStyle::default();
     let contacts = lane.simulation().map(|simulation| simulation.contacts_in_lanes());

@@ -1,7 +1,8 @@
-//! The mouse on the snake: click a limb to see its numbers, drag it to pull it by a spring, double click to look at it.
+//! Mouse control of the snake. A click on a limb shows its numbers, a drag pulls it by a spring, and a double click
+//! turns the camera to it.
 //!
-//! A ray through the pointer is cast at the worlds of the lanes as they are drawn, so that it hits the visible surface in
-//! simulations and recordings alike.
+//! A ray through the pointer is cast into the worlds of the lanes as they are drawn. It therefore hits the visible
+//! surface in simulations and in recordings.
 
 use bevy::input::mouse::MouseButtonInput;
 use bevy::prelude::*;
@@ -19,18 +20,18 @@ use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::viewport::StageArea;
 use snakes_core::world::{Pull, Vector};
 
-/// Presses of the mouse button that later presses and releases are compared with.
+/// Earlier presses of the mouse button, with which later presses and releases are compared.
 #[derive(Resource, Debug, Default)]
 struct MousePresses {
-    /// Where the button went down beside all limbs, in pixels: a click there clears the selection.
+    /// Where the button was pressed beside all limbs, in pixels. A release at the same place is a click, which clears the selection.
     beside: Option<Vec2>,
-    /// When and where the button went down last, in seconds and pixels.
+    /// Time and position of the last press, in seconds and pixels; `None` before the first one.
     last: Option<(f32, Vec2)>,
 }
 
-/// A pointer that moves less than this has clicked, in pixels.
+/// Maximum movement of the pointer between press and release of a click, in pixels.
 const CLICK_PIXELS: f32 = 5.0;
-/// Two presses within this time, in seconds, at one place are a double click, on the stage and in panels.
+/// Maximum time between the two presses of a double click, in seconds, on the stage and in panels.
 pub(crate) const DOUBLE_CLICK_S: f32 = 0.4;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -40,12 +41,12 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, clear_selection.in_set(FrameSet::Draw));
 }
 
-/// The ray through the pointer.
+/// Returns the ray through the pointer, in the scene.
 fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<Ray3d> {
     camera.viewport_to_world(place, cursor).ok()
 }
 
-/// A press on a limb selects and holds it; a double click turns the camera to the surface under the pointer.
+/// Selects and holds the limb that is pressed. A double click turns the camera to the surface under the pointer.
 fn press(
     mut selection: ResMut<Selection>,
     mut earlier: ResMut<MousePresses>,
@@ -69,10 +70,10 @@ fn press(
     };
     let Some(ray) = ray_at(cursor, *camera) else { return };
     let hits = worlds.iter_mut().filter_map(|mut world| world.cast_ray(ray));
-    // Of ghosts that are still in one place, the last.
+    // Among ghosts at the same place, the last one is hit.
     let hit = hits.max_by(|a, b| b.distance_m.total_cmp(&a.distance_m));
     let now_s = time.elapsed_secs();
-    // Slow frames can deliver a press late, or two at once.
+    // A slow frame can deliver a press late, or two presses at once.
     let follows_another = earlier.last.is_some_and(|(then_s, at)| {
         now_s - then_s < DOUBLE_CLICK_S + time.delta_secs() && at.distance(cursor) < CLICK_PIXELS
     });
@@ -94,7 +95,7 @@ fn press(
     selection.grab(lane.number(), limb, held);
 }
 
-/// The pointer moves the held limb in the plane that faces the camera.
+/// Moves the held limb with the pointer, in a plane that faces the camera.
 fn drag(
     mut selection: ResMut<Selection>,
     window: Single<&Window, With<PrimaryWindow>>,
@@ -126,8 +127,8 @@ fn drag(
     }
 }
 
-/// Releases the limb when the button is up or its lane is gone. A click beside all limbs clears the selection; a drag
-/// there turns the camera and keeps the selection.
+/// Releases the limb when the button is up or the limb's lane is gone. A click beside all limbs clears the selection. A
+/// drag there turns the camera and keeps the selection.
 fn release(
     mut selection: ResMut<Selection>,
     mut earlier: ResMut<MousePresses>,
@@ -148,8 +149,8 @@ fn release(
     }
 }
 
-/// Clears the selection when other lanes take the stage. In a race, it selects the leader; in a what-if, the latest
-/// copy, and the same limb as before.
+/// Updates the selection when new lanes are added. In general it is cleared; in a race, the leader's lane is selected;
+/// in a what-if, the latest copy, with the same limb as before.
 fn clear_selection(
     mut selection: ResMut<Selection>,
     mode: Res<StageMode>,
@@ -159,7 +160,7 @@ fn clear_selection(
         return;
     }
     if matches!(*mode, StageMode::WhatIf { .. }) {
-        // It starts over with every change.
+        // A what-if is restarted at every change.
         selection.lane = added.iter().map(Lane::number).max().unwrap_or_default();
         return;
     }
@@ -170,7 +171,7 @@ fn clear_selection(
     }
 }
 
-/// The lane with the greatest recorded fitness; the last of equal ones, which is the latest generation.
+/// Returns the lane with the greatest recorded fitness; among equal ones the last, which is the latest generation.
 fn leader(lanes: impl Iterator<Item = (usize, f32)>) -> usize {
     lanes.max_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).map_or(0, |(lane, _)| lane)
 }

@@ -1,28 +1,28 @@
-//! State of the camera: its mode, its view, and what it follows.
+//! State of the camera: mode, view, and what it follows.
 
 use bevy::prelude::*;
 
 use super::view::CameraView;
 use crate::studio::commands::camera_mode::CameraMode;
 
-/// Distance to a point that was double-clicked, in metres.
+/// Distance of the camera from a point that was double-clicked, in metres.
 const FOCUS_M: f32 = 12.0;
-/// Rotation by hand from which a view is no longer that of its camera mode, in radians.
+/// Rotation by hand after which the view no longer counts as that of its camera mode, in radians.
 const TURNED_RAD: f32 = 0.05;
 
-/// State of the camera.
+/// State of the camera: mode, view, and what it follows.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct CameraRig {
     pub(super) camera_mode: CameraMode,
-    /// The target view.
+    /// Target view of the camera.
     pub(super) view: CameraView,
-    /// The current view, which approaches the target view.
+    /// Current view of the camera, which approaches the target view.
     pub(super) shown: CameraView,
-    /// Whether the camera follows the snake, or all snakes.
+    /// Whether the camera follows one snake or all snakes.
     pub(super) follows: bool,
-    /// The followed lane; `None` follows all.
+    /// Lane that the camera follows; `None` for all lanes.
     pub(super) lane: Option<usize>,
-    /// Smoothed position of the followed snakes, in metres.
+    /// Smoothed position of the followed snakes, in metres; `None` before the first frame.
     pub(super) anchor: Option<Vec3>,
     pub(super) lanes: usize,
 }
@@ -43,7 +43,7 @@ impl Default for CameraRig {
 }
 
 impl CameraRig {
-    /// The current camera mode.
+    /// Returns the current camera mode.
     pub fn camera_mode(&self) -> CameraMode {
         self.camera_mode
     }
@@ -53,7 +53,7 @@ impl CameraRig {
         self.camera_mode = camera_mode;
         self.follows = camera_mode != CameraMode::Free;
         if self.follows {
-            // Turn the short way round.
+            // Wrap the current yaw, so that the camera turns the short way.
             let turn = std::f32::consts::TAU;
             self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
             self.view = CameraView::of(camera_mode, self.lanes);
@@ -64,8 +64,8 @@ impl CameraRig {
         }
     }
 
-    /// Returns to an earlier mode and view, after the presenting mode has moved the camera by itself. If the stage has one lane
-    /// instead of several meanwhile, or the other way round, only the mode comes back, because the view would not suit them.
+    /// Restores an earlier mode and view after the presenting mode has moved the camera. If the number of lanes has
+    /// changed between one and several, only the mode is restored, because the view would not suit them.
     pub fn restore(&mut self, before: &Self) {
         self.take(before.camera_mode);
         let is_free = before.camera_mode == CameraMode::Free;
@@ -74,18 +74,18 @@ impl CameraRig {
         }
         (self.view, self.shown, self.lane) = (before.view, before.view, before.lane);
         if is_free {
-            // A free camera stands where it stood; a following one is with its snake at once.
+            // A free camera returns to its position. A following camera starts at its snake.
             self.anchor = before.anchor;
         }
     }
 
-    /// Turns the view about the vertical, in radians.
+    /// Turns the view about the vertical axis, in radians.
     pub fn turn_by(&mut self, yaw_rad: f32) {
         self.view.yaw_rad += yaw_rad;
     }
 
-    /// Takes note that the view was turned by hand: then it may no longer be that from the side or from above, but one
-    /// that follows at an angle.
+    /// Updates the mode after the view was turned by hand: a turned view from the side or from above becomes a
+    /// following view at an angle.
     pub(super) fn turned_by_hand(&mut self) {
         let own = CameraView::of(self.camera_mode, self.lanes);
         let (yaw_rad, pitch_rad) = (self.view.yaw_rad, self.view.pitch_rad);
@@ -93,7 +93,7 @@ impl CameraRig {
             CameraMode::Side => {
                 (yaw_rad - own.yaw_rad).abs().max((pitch_rad - own.pitch_rad).abs())
             }
-            // Turned about the vertical, it still looks from above.
+            // A view that is turned only about the vertical axis is still from above.
             CameraMode::Top => (pitch_rad - own.pitch_rad).abs(),
             CameraMode::Follow | CameraMode::Free => 0.0,
         };
@@ -102,7 +102,7 @@ impl CameraRig {
         }
     }
 
-    /// Focuses on a lane's snake or, without a lane, on a fixed point, in metres.
+    /// Focuses on a lane's snake or, if `lane` is `None`, on a fixed point, in metres.
     pub fn focus_on(&mut self, lane: Option<usize>, point: Vec3) {
         self.view.distance_m = self.view.distance_m.min(FOCUS_M);
         self.lane = lane;
@@ -111,17 +111,17 @@ impl CameraRig {
             (self.camera_mode, self.follows) = (CameraMode::Follow, true);
         } else {
             (self.camera_mode, self.follows) = (CameraMode::Free, false);
-            // Glide from the current target to the point.
+            // The offset starts at the current target, so that the camera glides to the point.
             self.view.offset = point - self.anchor.unwrap_or_default();
         }
     }
 
-    /// Whether the camera keeps all lanes in view.
+    /// Returns whether the camera keeps several lanes in view.
     pub(super) fn frames_all(&self) -> bool {
         self.follows && self.lane.is_none() && self.lanes > 1
     }
 
-    /// Current transform of the camera.
+    /// Returns the current transform of the camera.
     pub fn place(&self) -> Transform {
         self.shown.looking_at(self.anchor.unwrap_or_default() + self.shown.offset)
     }

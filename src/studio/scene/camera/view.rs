@@ -1,4 +1,4 @@
-//! A camera view: yaw, pitch, distance, and the distance that shows all given points.
+//! A camera view: yaw, pitch, distance, and the computation of the distance that shows all given points.
 
 use bevy::prelude::*;
 
@@ -7,28 +7,28 @@ use crate::studio::commands::camera_mode::CameraMode;
 /// Camera position relative to its target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CameraView {
-    /// Yaw about z, in radians: 0 looks from +x, so that the stairs rise to the right.
+    /// Yaw of the camera about z, in radians: 0 looks from +x, so that the stairs rise to the right.
     pub yaw_rad: f32,
-    /// Pitch above the horizon, in radians.
+    /// Pitch of the camera above the horizon, in radians.
     pub pitch_rad: f32,
-    /// Distance from the target, in metres. With several lanes in view it is a zoom relative to [`Self::DEFAULT_M`].
+    /// Distance of the camera from its target, in metres. With several lanes in view it acts as a zoom relative to [`Self::DEFAULT_M`].
     pub distance_m: f32,
-    /// Offset of the target, in metres; relative to the snake if the camera follows it.
+    /// Offset of the camera's target, in metres; relative to the snake if the camera follows it.
     pub offset: Vec3,
 }
 
 impl CameraView {
-    /// Default distance, in metres.
+    /// Default distance of the camera from its target, in metres.
     pub const DEFAULT_M: f32 = 24.0;
-    /// Range of distances, in metres.
+    /// Allowed distances of the camera from its target, in metres.
     pub const DISTANCE_M: std::ops::RangeInclusive<f32> = 3.0..=120.0;
-    /// Range of pitches, in radians: never quite overhead, never below the ground.
+    /// Allowed pitches, in radians: never exactly overhead, never below the ground.
     pub const PITCH_RAD: std::ops::RangeInclusive<f32> = 0.02..=1.55;
 
-    /// Initial view of a camera mode. Several lanes are seen more from behind, so that none hides the next.
+    /// Returns the initial view of a camera mode. Several lanes are seen more from behind, so that they do not hide each other.
     pub fn of(camera_mode: CameraMode, lanes: usize) -> Self {
         let (yaw_rad, pitch_rad, offset) = match camera_mode {
-            // From the right, slightly behind and above, to show the stairs and the snake.
+            // The view is from the right, slightly behind and above, to show the stairs and the snake.
             CameraMode::Follow | CameraMode::Free if lanes <= 1 => {
                 (-0.55, 0.36, Vec3::new(0.0, 3.0, 0.5))
             }
@@ -43,13 +43,13 @@ impl CameraView {
         Quat::from_rotation_z(self.yaw_rad) * Quat::from_rotation_y(-self.pitch_rad)
     }
 
-    /// Camera transform for a target.
+    /// Returns the transform of the camera for this target.
     pub fn looking_at(&self, target: Vec3) -> Transform {
         let eye = target + self.turn() * Vec3::X * self.distance_m;
         Transform::from_translation(eye).looking_at(target, Vec3::Z)
     }
 
-    /// Interpolates towards another view.
+    /// Interpolates between this view, at share 0, and another one, at share 1.
     pub fn towards(&self, goal: &Self, share: f32) -> Self {
         let mix = |from: f32, to: f32| from + (to - from) * share;
         Self {
@@ -60,7 +60,7 @@ impl CameraView {
         }
     }
 
-    /// Whether two views look the same.
+    /// Returns whether two views look the same.
     pub fn is_near(&self, other: &Self) -> bool {
         (self.yaw_rad - other.yaw_rad).abs() < 1.0e-3
             && (self.pitch_rad - other.pitch_rad).abs() < 1.0e-3
@@ -68,9 +68,9 @@ impl CameraView {
             && self.offset.distance(other.offset) < 2.0e-3
     }
 
-    /// Moves back and aside until all points are in view and none of the snakes' is below a cover. `covers` are parts of
-    /// the picture at its left or right edge, in fractions from the upper left corner. `aspect` is width over height.
-    /// The previous distance acts as a zoom relative to [`Self::DEFAULT_M`].
+    /// Moves back and aside until all points are in view and no point of the snakes is below a cover. `covers` are
+    /// parts of the picture at its left or right edge, in fractions from the upper left corner. `aspect` is width over
+    /// height. The previous distance acts as a zoom relative to [`Self::DEFAULT_M`].
     pub fn framing(
         self,
         target: Vec3,
@@ -86,7 +86,7 @@ impl CameraView {
         let left = widest(at_left().map(|cover| cover.max.x).fold(-CARD_MARGIN, f32::max));
         let right = widest(at_right().map(|cover| 1.0 - cover.min.x).fold(-CARD_MARGIN, f32::max));
         let bottom = widest(at_right().map(|cover| 1.0 - cover.min.y).fold(-CARD_MARGIN, f32::max));
-        // The nearest view whose margins keep the snakes clear of the covers, each no wider than needed.
+        // Finds the nearest view whose margins keep the snakes clear of the covers. Each margin is no wider than needed.
         let view = |margins: FreeMargins| self.framing_beside(target, points, aspect, margins);
         let clear = |most: FreeMargins, counts: fn(&Rect) -> bool| -> Option<Self> {
             let covers = covers.iter().filter(|cover| counts(cover));
@@ -107,19 +107,19 @@ impl CameraView {
         if at_right().next().is_none() {
             return without_messages;
         }
-        // Messages at the lower right: the snakes go above them or beside them, whichever keeps them larger.
+        // Messages at the lower right leave two options: the snakes go above or beside them. The option with the larger snakes is chosen.
         let margins = [(0.0, bottom), (right, 0.0), (right, bottom)].into_iter().flat_map(
             |(right, bottom)| [0.0, left].map(|left| FreeMargins { left, right, bottom }),
         );
         let views = margins.filter_map(|margins| clear(margins, |_| true));
         let nearest = views.min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-        // Messages pass; tiny snakes would be worse than one that is covered for some seconds.
+        // Messages disappear after some seconds, which is better than tiny snakes.
         let most_m = without_messages.distance_m * MAX_FURTHER;
         nearest.filter(|view| view.distance_m <= most_m).unwrap_or(without_messages)
     }
 
-    /// Moves aside, without changing the distance, as little as is needed for no point of the snakes to be below a
-    /// cover. If that is not possible, the view stays.
+    /// Moves aside, at the same distance, as little as is needed so that no point of the snakes is below a cover. If
+    /// this is not possible, returns the view unchanged.
     pub fn beside(self, target: Vec3, snakes: &[Vec3], aspect: f32, covers: &[Rect]) -> Self {
         if covers.is_empty() {
             return self;
@@ -141,7 +141,7 @@ impl CameraView {
         views.find(is_free).unwrap_or(self)
     }
 
-    /// Whether a point of the snakes is below a cover, or close to its edge.
+    /// Returns whether a point of the snakes is below a cover or close to its edge.
     fn covers_any<'c>(
         &self,
         target: Vec3,
@@ -162,23 +162,23 @@ impl CameraView {
         let points = points.iter().copied();
         let distance_m = self.distance_beside(target, points, aspect, free) * zoom;
         let half_height_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0);
-        // It puts the target into the middle between the margins.
+        // The offset puts the target into the middle between the margins.
         let aside = Vec3::Y * (aspect * (free.left - free.right)) + Vec3::Z * free.bottom;
         let offset = self.offset - self.turn() * aside * half_height_m;
         Self { distance_m, offset, ..self }
     }
 
-    /// Where a point is in the picture of a view of `target`, in fractions from the upper left corner.
+    /// Returns the position of a point in a view of `target`, in fractions of the picture from the upper left corner.
     fn share_of_picture(&self, target: Vec3, point: Vec3, aspect: f32) -> Vec2 {
         let at = self.turn().inverse() * (point - target);
-        // In the view's frame x points at the eye, y to the right, z up.
+        // In the frame of the view, x points at the eye, y to the right, z up.
         let half_height_m =
             (self.distance_m - at.x).max(0.01) * libm::tanf(VERTICAL_VIEW_RAD / 2.0);
         let half_width_m = half_height_m * aspect.max(0.1);
         Vec2::new(0.5 + at.y / half_width_m / 2.0, 0.5 - at.z / half_height_m / 2.0)
     }
 
-    /// Distance from `target` at which all points are in view, in metres. `aspect` is width over height.
+    /// Returns the distance from `target` at which all points are in view, in metres. `aspect` is width over height.
     pub fn distance_to_see(
         &self,
         target: Vec3,
@@ -188,7 +188,7 @@ impl CameraView {
         self.distance_beside(target, points, aspect, FreeMargins::default())
     }
 
-    /// As [`Self::distance_to_see`], with free margins: the target is in the middle between them.
+    /// As [`Self::distance_to_see`], but leaves margins free. The target is in the middle between them.
     fn distance_beside(
         &self,
         target: Vec3,
@@ -199,15 +199,15 @@ impl CameraView {
         let into_view = self.turn().inverse();
         let upright = libm::tanf(VERTICAL_VIEW_RAD / 2.0);
         let across = upright * aspect.max(0.1);
-        // Edges of the content, in halves of the picture's width and height from its middle, and the room to each side
-        // of the target.
+        // Edges of the content, in halves of the picture's width and height from its middle, and the width and height
+        // on each side of the target.
         let edge = 1.0 / MARGIN;
         let (right, left) = (edge - 2.0 * free.right, 2.0 * free.left - edge);
         let (top, bottom) = (edge, 2.0 * free.bottom - edge);
         let wide = across * (edge - free.left - free.right);
         let high = upright * (edge - free.bottom);
         let needed = points.into_iter().map(|point| {
-            // In the view's frame x points at the eye, y to the right, z up.
+            // In the frame of the view, x points at the eye, y to the right, z up.
             let at = into_view * (point - target);
             let to_right = (at.y + right * across * at.x) / wide;
             let to_left = (-at.y - left * across * at.x) / wide;
@@ -219,7 +219,7 @@ impl CameraView {
     }
 }
 
-/// Margins of the picture in which no point is to be, as fractions of its width or height.
+/// Margins of the picture without any points, as fractions of its width or height.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct FreeMargins {
     left: f32,
@@ -236,19 +236,19 @@ impl std::ops::Mul<f32> for FreeMargins {
     }
 }
 
-/// Maximum fraction of the picture that is left free at a side.
+/// Maximum width of a free margin, as a fraction of the picture.
 const MAX_ASIDE: f32 = 0.42;
 /// Maximum ratio of the distances with and without messages over the stage.
 const MAX_FURTHER: f32 = 1.4;
 /// Number of shifts to each side that [`CameraView::beside`] tries.
 const SHIFTS: u32 = 28;
-/// Distance between a card and the centre of the nearest limb, as a fraction of the picture.
+/// Minimum distance between a card and the centre of the nearest limb, as a fraction of the picture.
 const CARD_MARGIN: f32 = 0.035;
-/// Halvings of the strip that is left free: to a hundredth of the picture.
+/// Number of halvings in the search for the width of a free margin: precise to a hundredth of the picture.
 const SEARCH_STEPS: u32 = 6;
-/// Bevy's default field of view, in radians.
+/// Vertical field of view of Bevy's default camera, in radians.
 const VERTICAL_VIEW_RAD: f32 = std::f32::consts::FRAC_PI_4;
-/// Ratio of the picture's width to its content.
+/// Ratio of the picture's size to that of its content.
 const MARGIN: f32 = 1.12;
 
 #[cfg(test)]
@@ -324,7 +324,7 @@ mod tests {
     #[test]
     fn no_snake_of_a_race_is_behind_the_leaderboard_or_messages() {
         let (target, aspect) = (Vec3::new(0.0, 7.0, 2.0), 1.6);
-        // Ten lanes, whose snakes have come between 0 and 21 m.
+        // Ten lanes, whose snakes are between 0 and 21 m.
         let snakes: Vec<Vec3> = (0..10)
             .flat_map(|lane| {
                 let (x, y) = (27.0 - 6.0 * lane as f32, 21.0 - (lane * 7 % 10) as f32 * 2.3);
@@ -372,7 +372,7 @@ mod tests {
                 .map(|at| view.share_of_picture(target + view.offset, *at, aspect))
                 .collect()
         };
-        // From the head of the snake to the right edge.
+        // The cover extends from the snake's head to the lower right corner.
         let head = places(&view)[4];
         let over_it = Rect::new(head.x - 0.1, head.y - 0.1, 1.0, 1.0);
         let aside = view.beside(target, &snake, aspect, &[over_it]);

@@ -1,4 +1,4 @@
-//! The texture with all characters.
+//! Texture atlas with all characters.
 
 use ab_glyph::{Font, FontRef, GlyphId, ScaleFont};
 use bevy::image::{ImageFilterMode, ImageSamplerDescriptor};
@@ -14,19 +14,19 @@ const CELL_PIXELS: usize = 64;
 pub const MARGIN: f32 = 8.0;
 /// Baseline within a cell, in pixels from the top.
 pub const BASELINE: f32 = 47.0;
-/// Cells per row, and rows: printable ASCII, and a fully covered cell in the last place.
+/// Cells per row of the atlas, and number of rows: printable ASCII, and a fully covered cell in the last place.
 const COLUMNS: usize = 16;
 const ROWS: usize = 6;
 const FIRST: usize = ' ' as usize;
 const LAST: usize = FIRST + COLUMNS * ROWS - 1;
-/// Font height in pixels: every character fits into its cell.
+/// Font height, in pixels. Every character fits into its cell.
 const FONT_PIXELS: f32 = 52.0;
-/// Extra boldness in pixels on all sides. The panels' font is too light for paint on the ground.
+/// Width added to all sides of a character's strokes, in pixels. The panels' font is too thin for numbers on the ground.
 const BOLDER: f32 = 1.7;
-/// Number of mipmaps. In the last one a cell has four pixels; with more, neighbours would blend.
+/// Number of mipmaps. In the last one a cell has four pixels; further ones would blend adjacent characters.
 const SIZES: u32 = 5;
 
-/// Metrics of the atlas.
+/// Character widths and digit height in the atlas.
 #[derive(Debug, Clone)]
 pub struct Atlas {
     /// Advance width of each character, in pixels.
@@ -35,7 +35,7 @@ pub struct Atlas {
 }
 
 impl Atlas {
-    /// Renders the atlas.
+    /// Renders the atlas, and measures its characters.
     pub fn draw() -> (Self, Image) {
         let (width, height) = (COLUMNS * CELL_PIXELS, ROWS * CELL_PIXELS);
         let mut all = Channel { width, values: vec![0.0; width * height] };
@@ -54,7 +54,7 @@ impl Atlas {
         put(&mut all, LAST - FIRST, &[1.0; CELL_PIXELS * CELL_PIXELS]);
         let sampler = ImageSamplerDescriptor {
             mipmap_filter: ImageFilterMode::Linear,
-            // Text on the ground is seen at a low angle, which needs anisotropic filtering.
+            // Text on the ground is seen at a flat angle, which needs anisotropic filtering.
             anisotropy_clamp: 4,
             ..ImageSamplerDescriptor::linear()
         };
@@ -63,28 +63,28 @@ impl Atlas {
         (atlas, all.into_image(SIZES, TextureFormat::Rgba8UnormSrgb, sampler, pixel))
     }
 
-    /// Advance width of a character, in pixels.
+    /// Returns advance width of a character, in pixels.
     pub fn advance(&self, letter: char) -> f32 {
         self.advances[index_of(letter)]
     }
 
-    /// Height of a digit, in pixels.
+    /// Returns height of a digit, in pixels.
     pub fn digit_height(&self) -> f32 {
         self.digit_height
     }
 
-    /// Rectangle of a character's cell, in texture coordinates.
+    /// Returns rectangle of a character's cell, in texture coordinates.
     pub fn cell(&self, letter: char) -> Rect {
         cell(index_of(letter))
     }
 
-    /// Rectangle of a fully covered area.
+    /// Returns an empty rectangle in the middle of the fully covered cell, in texture coordinates.
     pub fn solid(&self) -> Rect {
         Rect::from_center_size(cell(LAST - FIRST).center(), Vec2::ZERO)
     }
 }
 
-/// Cell of a character; an unknown one gets the blank cell.
+/// Returns the index of a character's cell. An unknown character gets the blank cell.
 fn index_of(letter: char) -> usize {
     let code = letter as usize;
     if (FIRST..LAST).contains(&code) { code - FIRST } else { 0 }
@@ -96,7 +96,7 @@ fn cell(index: usize) -> Rect {
     Rect::from_corners(corner / cells, (corner + Vec2::ONE) / cells)
 }
 
-/// Renders a character into its cell.
+/// Renders a character into a single cell. Returns the coverage of the pixels, row by row.
 fn letter_alone(font: &FontRef<'_>, letter: GlyphId) -> Vec<f32> {
     let mut thin = vec![0.0; CELL_PIXELS * CELL_PIXELS];
     let at = ab_glyph::point(MARGIN, BASELINE);
@@ -131,7 +131,7 @@ fn pixel_at(x: i32, y: i32) -> Option<usize> {
     (side.contains(&x) && side.contains(&y)).then(|| y as usize * CELL_PIXELS + x as usize)
 }
 
-/// Puts the coverage of a character into its cell.
+/// Copies the coverage of a character into its cell of the atlas.
 fn put(all: &mut Channel, index: usize, letter: &[f32]) {
     let (left, top) = (index % COLUMNS * CELL_PIXELS, index / COLUMNS * CELL_PIXELS);
     for (row, line) in letter.chunks(CELL_PIXELS).enumerate() {
