@@ -1,6 +1,6 @@
-//! Pictures of champions, rendered without a window, like the report's Figures 5 to 10.
+//! Renders pictures of champions without a window, like Figures 5 to 10 of the report.
 //!
-//! Each picture shows the final pose of a champion's rollout and, fainter, earlier poses.
+//! Each picture shows the final pose of a champion's rollout and, translucent, earlier poses.
 
 use bevy::prelude::*;
 
@@ -14,11 +14,11 @@ use crate::studio::ui::theme::Theme;
 use snakes_core::save::{LoadedChampion, Picture};
 use snakes_core::score::Evaluation;
 
-/// Number of faint earlier poses; the first is the initial pose.
+/// Number of translucent earlier poses; the first is the initial pose.
 const MOMENTS: u32 = 4;
 
-/// Draws the final pose of each champion's rollout and returns its results. `each` is called with the index of every
-/// finished picture.
+/// Draws the final pose of each champion's rollout, and returns the pictures and results. Calls `each` with the index
+/// of every finished picture.
 ///
 /// # Errors
 /// No graphics driver is available.
@@ -38,7 +38,7 @@ pub fn draw(
     })
 }
 
-/// Replaces the scene by a champion at the end of its rollout. Returns its result.
+/// Replaces the scene by a champion at the end of its rollout. Returns the champion's result.
 fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     let champion = &loaded.champion;
     studio.clear_stage();
@@ -71,7 +71,7 @@ fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     evaluation
 }
 
-/// The unit cube, and translucent materials in the snake's two colours.
+/// Returns the unit cube, and translucent materials in red and blue.
 fn faint_props(world: &mut World) -> (Handle<Mesh>, [Handle<StandardMaterial>; 2]) {
     const OPACITY: f32 = 0.22;
     let palette = Theme::Light.palette();

@@ -34,24 +34,24 @@ use crate::studio::ui::theme::Theme;
 use snakes_core::save::Picture;
 use snakes_lab::plot::NameTag;
 
-/// An app with the studio's scene, without a window and without a main loop.
+/// The studio's scene in an app without a window and without a main loop.
 pub(crate) struct Offscreen {
-    /// The app. The caller adds the content of the scene.
+    /// App that renders the scene. The caller adds the content.
     pub app: App,
     target: Handle<Image>,
-    /// Number of pictures that were asked for.
+    /// Number of pictures that were requested.
     shots: u64,
 }
 
-/// The pictures that the renderer returned, by their numbers.
+/// Pictures that the renderer returned, by their numbers; `None` for one without content.
 #[derive(Resource, Default)]
 struct FinishedPictures(Mutex<BTreeMap<u64, Option<Picture>>>);
 
-/// Frames until uploads have finished and a picture is complete.
+/// Number of frames after which uploads have finished and a picture is complete.
 const FRAMES: u32 = 4;
-/// Maximum number of frames to wait for what is drawn later.
+/// Maximum number of frames to wait for pipelines that are still compiling.
 const MAX_FRAMES: u32 = 200;
-/// Time between two looks at what the renderer has returned.
+/// Interval at which returned pictures are checked for.
 const GLANCE: Duration = Duration::from_millis(20);
 /// Maximum time to wait for a picture.
 const LONGEST_WAIT: Duration = Duration::from_secs(120);
@@ -89,7 +89,7 @@ impl Offscreen {
                         exit_condition: ExitCondition::DontExit,
                         ..default()
                     })
-                    // Wait until all pipelines are compiled.
+                    // Each frame waits until all pipelines are compiled.
                     .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
                     .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
                     .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
@@ -111,10 +111,10 @@ impl Offscreen {
         app.get_sub_app_mut(RenderApp).into_iter().for_each(run_systems_in_order);
         let texture = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(texture);
-        // Anti-alias on every machine, because there are only a few pictures.
+        // Pictures are always anti-aliased, because there are only a few of them.
         let eye = camera::camera_components(Msaa::Sample4, theme.palette());
-        // Indirect drawing lets the graphics card's threads decide the order of instances, on which pixels may depend
-        // where surfaces touch. The same moment has to give the same picture.
+        // With indirect drawing, the graphics card's threads determine the order of instances, which can affect pixels
+        // where surfaces touch. The same scene must always give the same picture.
         app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into()), NoIndirectDrawing));
         app.update();
         Self { app, target, shots: 0 }
@@ -134,7 +134,7 @@ impl Offscreen {
         earlier.into_iter().for_each(|lane| world.entity_mut(lane).despawn());
     }
 
-    /// Puts lanes side by side onto the stage.
+    /// Puts lanes onto the stage, side by side.
     pub fn put_on_stage(&mut self, lanes: Vec<Lane>) {
         for lane in lanes {
             let place = Transform::from_translation(lane.offset());
@@ -142,14 +142,14 @@ impl Offscreen {
         }
     }
 
-    /// Places the camera.
+    /// Sets the transform of the camera.
     pub fn place_camera(&mut self, place: Transform) {
         let world = self.app.world_mut();
         let mut cameras = world.query_filtered::<&mut Transform, With<Camera3d>>();
         cameras.iter_mut(world).for_each(|mut camera| *camera = place);
     }
 
-    /// Draws some frames and returns the last one.
+    /// Draws several frames and returns the last one.
     ///
     /// # Errors
     /// The renderer returned no picture.
@@ -159,8 +159,8 @@ impl Offscreen {
         self.await_shot(number)
     }
 
-    /// Draws some frames, until new parts of the scene are complete: shaders are read by other threads, which may be
-    /// late on a busy machine.
+    /// Draws frames until new parts of the scene are complete. Other threads load the shaders, which can take several
+    /// frames on a busy machine.
     pub fn settle(&mut self) {
         let mut complete = 0;
         for _ in 0..MAX_FRAMES {
@@ -172,14 +172,14 @@ impl Offscreen {
         }
     }
 
-    /// Whether a way to draw something is not ready yet.
+    /// Returns whether the renderer is still waiting for a pipeline.
     fn awaits_pipelines(&self) -> bool {
         let renderer = self.app.get_sub_app(RenderApp);
         let pipelines = renderer.and_then(|of| of.world().get_resource::<PipelineCache>());
         pipelines.is_some_and(|pipelines| pipelines.waiting_pipelines().next().is_some())
     }
 
-    /// Draws the scene as it is now, once, and asks for its picture, which is there some frames later. Returns the
+    /// Draws the scene once, as it is now, and requests its picture, which arrives some frames later. Returns the
     /// number of the picture; the first is 0.
     pub fn shoot(&mut self) -> u64 {
         let number = self.shots;
@@ -194,7 +194,7 @@ impl Offscreen {
         number
     }
 
-    /// The picture with this number, if it is there; only once.
+    /// Returns the picture with this number if it has arrived. Each picture can be taken only once.
     ///
     /// # Errors
     /// The renderer returned no picture.
@@ -204,7 +204,7 @@ impl Offscreen {
         taken.map(|picture| picture.ok_or_else(no_picture)).transpose()
     }
 
-    /// Waits for the picture with this number. Draws nothing meanwhile: a software driver would have to draw that, too.
+    /// Waits for the picture with this number. Draws no frames meanwhile, which would be slow with a software driver.
     ///
     /// # Errors
     /// The renderer returned no picture.
@@ -220,7 +220,7 @@ impl Offscreen {
             let world = self.app.world_mut();
             let waited = world.resource::<RenderDevice>().poll(PollType::wait_indefinitely());
             waited.map_err(|error| StudioError::NoPicture(error.to_string()))?;
-            // Bevy hands out finished pictures once in each frame, which would have to be drawn.
+            // Bevy would pass on finished pictures only once per frame, and the frame would have to be drawn.
             let captured = Arc::clone(&world.resource::<CapturedScreenshots>().0);
             let received = captured.lock().ok().and_then(|from| from.recv_timeout(GLANCE).ok());
             if let Some((entity, image)) = received {
@@ -230,7 +230,8 @@ impl Offscreen {
         }
     }
 
-    /// Tags for texts, each at its world point, without those behind the camera. Take the picture first.
+    /// Returns a tag for each text, at the projection of its point. Texts behind the camera are left out. The picture
+    /// must be taken first.
     pub fn tags_of(&mut self, texts: Vec<(Vec3, String)>) -> Vec<NameTag> {
         let world = self.app.world_mut();
         let mut cameras = world.query::<(&Camera, &GlobalTransform)>();
@@ -243,9 +244,9 @@ impl Offscreen {
     }
 }
 
-/// Runs the systems of all schedules one after the other. Where several threads run them, their order depends on how
-/// busy the machine is, and so does the order in which things are drawn, on which pixels depend where surfaces touch:
-/// the same moment has to give the same picture.
+/// Runs the systems of all schedules one after the other. With several threads, the order of the systems and thus of
+/// drawing would depend on the load of the machine, which can affect pixels where surfaces touch. The same scene must
+/// always give the same picture.
 fn run_systems_in_order(app: &mut SubApp) {
     let Some(mut schedules) = app.world_mut().get_resource_mut::<Schedules>() else { return };
     for (_, schedule) in schedules.iter_mut() {
@@ -253,8 +254,8 @@ fn run_systems_in_order(app: &mut SubApp) {
     }
 }
 
-/// Leaves out what Bevy says about pictures that were on their way when the work ended. A picture that is missing is an
-/// error of its own.
+/// Returns a log filter that hides Bevy's messages about pictures that had not arrived when the work ended. A missing
+/// picture is reported separately.
 fn log_filter() -> String {
     format!("{DEFAULT_FILTER},bevy_render::view::window::screenshot=off")
 }

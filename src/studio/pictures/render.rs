@@ -14,30 +14,30 @@ use crate::studio::ui::theme::Theme;
 use snakes_core::save::{LoadedChampion, Picture};
 use snakes_lab::plot::NameTag;
 
-/// The content and style of the picture.
+/// The content and style of a picture.
 #[derive(Debug, Clone)]
 pub struct RenderedScene {
-    /// The named champions, one per lane.
+    /// Champions with their names, one per lane.
     pub champions: Vec<(String, LoadedChampion)>,
-    /// Time in simulated seconds, or `None` for the end.
+    /// Time that the picture shows, in simulated seconds, or `None` for the end of the rollout.
     pub at_s: Option<f64>,
     /// Size of the picture, in pixels.
     pub size: (u32, u32),
     /// Camera mode: follow, side or top.
     pub camera: CameraMode,
-    /// Theme.
+    /// Theme of the scene.
     pub theme: Theme,
-    /// Overlays.
+    /// Overlays that are drawn over the scene.
     pub overlays: Vec<Overlay>,
 }
 
-/// Height of a tag's anchor above the head's centre, in metres.
+/// Height of a name tag's anchor point above the centre of the head, in metres.
 const OVER_HEAD_M: f32 = 1.4;
 
 /// Renders the scene. Returns the picture and, for several lanes, the name tags.
 ///
 /// # Errors
-/// No graphics driver is available, or a champion cannot be built.
+/// No graphics driver is available, or a champion cannot be simulated.
 pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioError> {
     let mut lanes = lanes_of(&scene.champions)?;
     for lane in &mut lanes {
@@ -57,10 +57,10 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     })
 }
 
-/// The lanes of named champions at their start.
+/// Builds a lane at its start for each champion.
 ///
 /// # Errors
-/// A champion cannot be built.
+/// A champion cannot be simulated.
 pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lane>, StudioError> {
     let saved = champions.iter().enumerate();
     let champions =
@@ -72,7 +72,7 @@ pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lan
     }
 }
 
-/// For several lanes the texts above their heads, each with the point at which it stands, in metres.
+/// Returns the text above the head of each of several snakes, with its point in the scene, in metres. A single snake has none.
 pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
     let text = |lane: &&Lane| {
         let head = lane.drawn_poses().next()?.translation + lane.offset();
@@ -82,7 +82,7 @@ pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
     if lanes.len() > 1 { lanes.iter().filter_map(text).collect() } else { Vec::new() }
 }
 
-/// Camera transform with all snakes and some of the stairs in view.
+/// Returns the transform of a camera with all snakes and some of the stairs in view.
 fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
     let points = in_view(lanes);
     let target = middle_of(&points);
@@ -91,7 +91,7 @@ fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
     view.looking_at(target)
 }
 
-/// The points that a picture shows: the snakes, some of their lanes, and the lanes' width.
+/// Returns the points that a picture must show: the snakes, some of their lanes, and the lanes' width.
 pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3> {
     /// Visible length of the lane ahead of and behind a snake, in metres.
     const AROUND_M: f32 = 3.0;
@@ -109,7 +109,7 @@ pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3
     points
 }
 
-/// The middle of the box around points.
+/// Returns the centre of the box around points.
 pub(super) fn middle_of(points: &[Vec3]) -> Vec3 {
     let (least, most) = points
         .iter()

@@ -16,15 +16,15 @@ use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use snakes_core::save::{Picture, store_picture};
 
-/// A second camera that renders the stage to an image.
+/// A second camera, which renders the stage to an image for a screenshot.
 #[derive(Component)]
 struct PendingScreenshot {
     picture: Handle<Image>,
-    /// Frames left until the picture is taken.
+    /// Number of frames until the picture is taken.
     frames: u32,
 }
 
-/// Pictures that were asked for and are not saved yet.
+/// Query of the pictures that were requested and are not saved yet.
 #[derive(SystemParam)]
 pub(crate) struct AwaitedPictures<'w, 's> {
     cameras: Query<'w, 's, (), With<PendingScreenshot>>,
@@ -32,13 +32,13 @@ pub(crate) struct AwaitedPictures<'w, 's> {
 }
 
 impl AwaitedPictures<'_, '_> {
-    /// Whether all pictures are saved.
+    /// Returns whether all requested pictures are saved.
     pub fn is_empty(&self) -> bool {
         self.cameras.is_empty() && self.pictures.is_empty()
     }
 }
 
-/// Frames until a new camera's picture is complete, because its pipelines are compiled first.
+/// Number of frames until a new camera's picture is complete. Its pipelines must be compiled first.
 const FRAMES: u32 = 4;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -46,7 +46,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (take, take_stage_pictures).chain().in_set(FrameSet::Draw));
 }
 
-/// Takes a screenshot of the window at once; for the stage, spawns a second camera.
+/// Takes a screenshot of the window at once. For one of the stage, spawns a second camera.
 fn take(
     mut requests: MessageReader<ScreenshotArea>,
     camera: Single<(&Camera, &Transform, &Msaa), With<StageCamera>>,
@@ -75,7 +75,7 @@ fn take(
     }
 }
 
-/// Takes the picture of the second camera and despawns it.
+/// Takes the pictures of second cameras that are ready, and despawns the cameras.
 fn take_stage_pictures(
     mut cameras: Query<(Entity, &mut PendingScreenshot)>,
     mut commands: Commands,
@@ -93,7 +93,7 @@ fn take_stage_pictures(
     }
 }
 
-/// Saves a picture and reports its path.
+/// Saves a picture, and shows its path to the user.
 fn keep(captured: On<ScreenshotCaptured>, engine: Res<RunContext>, mut notices: ResMut<Notices>) {
     let Some(picture) = picture_of(&captured.image) else {
         return notices.problem("The renderer returned no picture.".to_owned());
@@ -112,7 +112,7 @@ fn keep(captured: On<ScreenshotCaptured>, engine: Res<RunContext>, mut notices: 
     }
 }
 
-/// The image's colours without its alpha channel.
+/// Converts an image to a picture without the alpha channel; `None` if the image has no content.
 pub(crate) fn picture_of(image: &Image) -> Option<Picture> {
     let bgr = matches!(
         image.texture_descriptor.format,

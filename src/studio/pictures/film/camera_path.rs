@@ -1,4 +1,4 @@
-//! The way of a film's camera: it follows the snakes smoothly, because it knows where they will go.
+//! The path of a film's camera. It follows the snakes smoothly, because their future positions are known.
 
 use bevy::prelude::*;
 
@@ -6,13 +6,13 @@ use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::pictures::render::middle_of;
 use crate::studio::scene::camera::view::CameraView;
 
-/// Time before and after a frame from which its target is averaged, in seconds of the film.
+/// Time before and after a frame over which the camera's target is averaged, in seconds of the film.
 const TARGET_S: f32 = 0.8;
-/// Time before and after a frame from which the camera's distance is averaged, in seconds of the film.
+/// Time before and after a frame over which the camera's distance is averaged, in seconds of the film.
 const DISTANCE_S: f32 = 1.2;
 
-/// The camera's place in each frame, from the points that each has to show. A film of a single frame shows them as a
-/// single picture does.
+/// Computes the camera's transform for each frame, from the points that the frame must show. The camera of a film with
+/// a single frame is the same as that of a picture.
 pub fn camera_path(
     points: &[Vec<Vec3>],
     camera_mode: CameraMode,
@@ -28,7 +28,7 @@ pub fn camera_path(
         .zip(&targets)
         .map(|(points, target)| view.distance_to_see(*target, points.iter().copied(), aspect))
         .collect();
-    // First the greatest nearby, so that the average shows all points, too.
+    // The maximum over neighbouring frames ensures that the averaged distance still shows all points.
     let reach = frames_in(DISTANCE_S);
     let greatest_m: Vec<f32> = (0..needed_m.len())
         .map(|frame| around(&needed_m, frame, reach).1.iter().copied().fold(0.0, f32::max))
@@ -40,13 +40,13 @@ pub fn camera_path(
         .collect()
 }
 
-/// The values of a frame and of as many on each side, with the index of the first.
+/// Returns the values of a frame and of `reach` frames on each side, with the index of the first of these frames.
 fn around<T>(values: &[T], frame: usize, reach: usize) -> (usize, &[T]) {
     let begin = frame.saturating_sub(reach);
     (begin, &values[begin..(frame + reach + 1).min(values.len())])
 }
 
-/// The average around each value; those nearer count more.
+/// Averages the values around each value, weighted by nearness.
 fn smooth<T>(values: &[T], reach: usize) -> Vec<T>
 where
     T: Copy + std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>,
@@ -65,7 +65,7 @@ where
 mod tests {
     use super::*;
 
-    /// A snake's points that jump to and fro while they advance.
+    /// Returns the points of a snake that shakes while it advances.
     fn shaken(frame: usize) -> Vec<Vec3> {
         let y_m = frame as f32 * 0.1;
         let shaken_m = if frame.is_multiple_of(2) { 0.3 } else { -0.3 };

@@ -1,4 +1,4 @@
-//! The errors of films.
+//! Errors of making a film.
 
 use crate::studio::error::StudioError;
 use snakes_core::check::Invalid;
@@ -6,7 +6,7 @@ use snakes_core::save::SaveError;
 use snakes_lab::export::ExportError;
 use snakes_lab::plot::PlotError;
 
-/// A film could not be made. Nothing is left under its name then.
+/// Reason why a film could not be made. No file or folder with the film's name is left behind.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
     /// The frames could not be drawn.

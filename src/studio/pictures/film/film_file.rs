@@ -1,13 +1,13 @@
-//! A film that is being written, whatever its format.
+//! A film that is being written, in any format.
 
 use super::error::FilmError;
 use snakes_core::save::Picture;
 
-/// A film that is being written. Dropped before it is finished, it leaves nothing behind.
+/// A film that is being written. If it is dropped before it is finished, no file remains.
 pub trait FilmFile {
-    /// Adds the next frame.
+    /// Adds the next frame of the film.
     fn add(&mut self, frame: &Picture) -> Result<(), FilmError>;
 
-    /// Completes the film under its name.
+    /// Completes the film, and gives it its final name.
     fn finish(self: Box<Self>) -> Result<(), FilmError>;
 }

@@ -6,7 +6,7 @@ use super::error::FilmError;
 use super::film_file::FilmFile;
 use snakes_core::save::{Picture, UnfinishedFolder};
 
-/// A folder of numbered pictures that is being filled.
+/// A folder of numbered pictures that is being written.
 pub struct FrameFolder {
     folder: UnfinishedFolder,
     name: String,
@@ -14,17 +14,17 @@ pub struct FrameFolder {
     next: usize,
 }
 
-/// Least number of digits in the names of frames.
+/// Minimum number of digits in the names of frames.
 const LEAST_DIGITS: usize = 4;
 
-/// The folder of frames for the path of a .png file: `climb-frames` for `climb.png`.
+/// Returns the folder of frames for the path of a .png file: `climb-frames` for `climb.png`.
 pub fn frame_folder_of(path: &Path) -> PathBuf {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!("{name}-frames"))
 }
 
 impl FrameFolder {
-    /// Begins the folder of a film with this number of frames.
+    /// Creates the folder of a film with this number of frames.
     pub fn begin(path: &Path, frames: usize) -> Result<Self, FilmError> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let folder = UnfinishedFolder::create(&frame_folder_of(path))?;

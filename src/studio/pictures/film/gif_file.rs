@@ -1,5 +1,5 @@
-//! A film as GIF: one palette for the whole film, chosen from frames of all of it, so that no colour flickers; ordered
-//! dithering, whose pattern stands still; and only the pixels that change.
+//! A film as GIF. The whole film has one palette, chosen from frames throughout it, so that no colour flickers. The
+//! pattern of the ordered dithering is stationary, and only changed pixels are stored.
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
@@ -19,15 +19,15 @@ pub const GIF_FPS: RangeInclusive<u32> = 1..=50;
 
 /// Number of frames from which the palette is chosen.
 pub const SAMPLES: usize = 12;
-/// Number of colours; one more index is for pixels that do not change.
+/// Number of colours of the palette; one more index marks unchanged pixels.
 const COLORS: usize = 255;
 /// Index of pixels that do not change.
 const UNCHANGED: u8 = 255;
-/// Effort of the palette's choice: every this-many-th pixel teaches it.
+/// Sampling of the palette's choice: every this-many-th pixel is used.
 const SAMPLE_FACTOR: i32 = 7;
-/// Bits per channel of the table from colours to the palette's.
+/// Bits per channel of the lookup table from colours to the palette.
 const TABLE_BITS: u32 = 6;
-/// Amplitude of the dithering, in steps of a channel.
+/// Amplitude of the dithering, in steps of a colour channel.
 const DITHER: i32 = 5;
 
 /// Thresholds of ordered dithering (Bayer), from 0 to 63.
@@ -43,23 +43,23 @@ const BAYER: [[i32; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
-/// The colours of a film.
+/// The palette of a film.
 pub struct GifPalette {
-    /// Red, green and blue of each colour.
+    /// Red, green and blue of each colour, one after another.
     rgb: Vec<u8>,
-    /// The palette's nearest colour for the first bits of each channel.
+    /// Index of the palette's nearest colour, by the upper bits of red, green and blue.
     nearest: Vec<u8>,
 }
 
 impl GifPalette {
-    /// Chooses the colours of these frames.
+    /// Chooses the palette from these frames.
     pub fn of(samples: &[Picture]) -> Self {
         let pixels = samples.iter().flat_map(|frame| frame.rgb.as_chunks::<3>().0);
         let rgba: Vec<u8> = pixels.flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
         let network = NeuQuant::new(SAMPLE_FACTOR, COLORS, &rgba);
         let shift = 8 - TABLE_BITS;
         let levels = 1_u32 << TABLE_BITS;
-        // The middle of the colours that share the first bits.
+        // The centre of the colours that share these upper bits.
         let channel = |bits: u32| ((bits << shift) | (1 << (shift - 1))) as u8;
         let index = |cell: u32| {
             let [r, g, b] = [cell >> (2 * TABLE_BITS), cell >> TABLE_BITS, cell];
@@ -69,7 +69,7 @@ impl GifPalette {
         Self { rgb: network.color_map_rgb(), nearest: (0..levels.pow(3)).map(index).collect() }
     }
 
-    /// The palette's colours of a frame.
+    /// Returns the palette index of each pixel of a frame, with dithering.
     fn indices(&self, frame: &Picture) -> Vec<u8> {
         let rows = frame.rgb.chunks_exact(frame.width as usize * 3).zip(BAYER.iter().cycle());
         let row = |(row, thresholds): (&[u8], &[i32; 8])| -> Vec<u8> {
@@ -88,7 +88,7 @@ impl GifPalette {
     }
 }
 
-/// A GIF whose palette is not known yet.
+/// A GIF file that was begun, before its palette is known.
 pub struct BegunGif {
     file: UnfinishedFile,
     path: PathBuf,
@@ -101,16 +101,16 @@ pub struct GifFile {
     palette: GifPalette,
     encoder: Encoder<UnfinishedFile>,
     path: PathBuf,
-    /// Width of a frame, in pixels.
+    /// Width of the film, in pixels.
     width: usize,
     fps: u32,
-    /// The palette's colours of the last frame.
+    /// Palette indices of the last frame; empty before the first one.
     last: Vec<u8>,
     frames: u32,
 }
 
 impl BegunGif {
-    /// Begins the file.
+    /// Creates the file.
     pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
         within("--fps", fps, GIF_FPS)?;
         within("--size", size.0.max(size.1), 1..=u32::from(u16::MAX))?;
@@ -118,7 +118,7 @@ impl BegunGif {
         Ok(Self { file, path: path.to_owned(), size: [size.0 as u16, size.1 as u16], fps })
     }
 
-    /// Takes the colours of the film.
+    /// Sets the palette of the film, and writes the header.
     pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, FilmError> {
         let Self { file, path, size: [width, height], fps } = self;
         let encoder = Encoder::new(file, width, height, &palette.rgb);
@@ -135,7 +135,7 @@ impl FilmFile for GifFile {
         let shown = changed(&indices, &self.last);
         let (left, top, width, height, buffer) = cropped(&shown, self.width);
         let part = Frame {
-            // Rounded so that no error adds up.
+            // Rounded in a way that does not accumulate errors.
             delay: (hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps))
                 as u16,
             dispose: DisposalMethod::Keep,
@@ -160,12 +160,12 @@ impl FilmFile for GifFile {
     }
 }
 
-/// Time of the beginning of a frame, in hundredths of a second.
+/// Returns the time at which a frame begins, in hundredths of a second.
 fn hundredths(frame: u32, fps: u32) -> u32 {
     (u64::from(frame) * 100).saturating_add(u64::from(fps) / 2).wrapping_div(u64::from(fps)) as u32
 }
 
-/// The palette's colours of the pixels that are other than in the last frame.
+/// Returns the palette indices of a frame, with unchanged pixels marked by `UNCHANGED`.
 fn changed(indices: &[u8], last: &[u8]) -> Vec<u8> {
     if last.is_empty() {
         return indices.to_vec();
@@ -174,7 +174,8 @@ fn changed(indices: &[u8], last: &[u8]) -> Vec<u8> {
     pairs.map(|(index, last)| if index == last { UNCHANGED } else { *index }).collect()
 }
 
-/// The smallest part of a frame that has all changed pixels, at least one: left, top, width, height, pixels.
+/// Returns the smallest rectangle of a frame that contains all changed pixels, at least one pixel large: left, top,
+/// width, height, palette indices.
 fn cropped(shown: &[u8], width: usize) -> (u16, u16, u16, u16, Vec<u8>) {
     let has_changed = |row: &[u8]| row.iter().any(|index| *index != UNCHANGED);
     let rows = || shown.chunks_exact(width);

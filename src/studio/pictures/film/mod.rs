@@ -1,8 +1,8 @@
-//! Films of champions, rendered without a window at exact simulated moments, so that no clock decides what a frame
-//! shows: the same champions and wishes give the same frames on every machine, however slowly it draws.
+//! Films of champions, rendered without a window at exact simulated times. No clock influences a frame: the same
+//! champions and options give the same frames on every machine, however slowly it draws.
 //!
-//! [`plan`] says which moment each frame shows, [`camera_path`] from where, [`shooting`] draws the frames, and
-//! [`gif_file`], [`video`] and [`frame_folder`] write them.
+//! [`plan`] determines the time that each frame shows, and [`camera_path`] the camera. [`shooting`] draws the frames,
+//! and [`gif_file`], [`video`] and [`frame_folder`] write them.
 
 mod camera_path;
 mod error;
@@ -35,10 +35,10 @@ use video::Video;
 /// Maximum number of frames of a film: almost an hour at 30 frames per second.
 const MOST_FRAMES: usize = 100_000;
 
-/// Checks that a format has films of this size.
+/// Checks that films in this format can have this size, in pixels.
 ///
 /// # Errors
-/// It has not.
+/// The format does not support the size.
 pub(crate) fn check_film_size(format: ExportFormat, size: (u32, u32)) -> Result<(), Invalid> {
     if format == ExportFormat::Mp4 { video::check_size(size) } else { Ok(()) }
 }
@@ -46,8 +46,8 @@ pub(crate) fn check_film_size(format: ExportFormat, size: (u32, u32)) -> Result<
 /// Draws a film and writes it.
 ///
 /// # Errors
-/// A champion cannot be built, no graphics driver or no ffmpeg is available, the file cannot be written, or the user
-/// cancelled. Then nothing is left under its name.
+/// A champion cannot be simulated, no graphics driver or no ffmpeg is available, the file cannot be written, or the
+/// user cancelled. Then no file or folder with the film's name is left behind.
 pub fn film(
     order: &FilmOrder,
     format: ExportFormat,
@@ -57,7 +57,7 @@ pub fn film(
     let plan = planned(order)?;
     within("number of frames", plan.len(), 1..=MOST_FRAMES)?;
     let (size, fps) = (order.size, order.fps);
-    // A file that cannot be written is refused before the first frame is drawn.
+    // The file is created first, so that a file that cannot be written is reported before the first frame is drawn.
     let mut file: Option<Box<dyn FilmFile>> = match format {
         ExportFormat::Mp4 => Some(Box::new(Video::begin(path, size, fps)?)),
         ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.len())?)),
@@ -80,7 +80,7 @@ pub fn film(
         shooting.play(&every, |index, frame| {
             progress.reach(index as f64 / all as f64)?;
             let added = file.add(&frame);
-            // A program that the interrupt key has ended, too, is no error.
+            // If the interrupt key has cancelled the film, it may also have ended ffmpeg; the failure of ffmpeg is then not reported.
             progress.reach((index + 1) as f64 / all as f64)?;
             added
         })

@@ -8,23 +8,23 @@ use snakes_core::save::LoadedChampion;
 /// The content and style of a film.
 #[derive(Debug, Clone)]
 pub struct FilmOrder {
-    /// Its parts, one after the other.
+    /// Parts of the film, one after the other.
     pub parts: Vec<FilmPart>,
-    /// First moment of each part, in simulated seconds.
+    /// Simulated time at which each part begins, in seconds.
     pub start_s: f64,
-    /// Last moment of each part, in simulated seconds, or `None` for the end.
+    /// Simulated time at which each part ends, in seconds, or `None` for the end of the rollout.
     pub end_s: Option<f64>,
-    /// Simulated seconds per second of the film.
+    /// Playback speed, in simulated seconds per second of the film.
     pub speed: f64,
     /// Frames per second.
     pub fps: u32,
-    /// Size in pixels.
+    /// Width and height, in pixels.
     pub size: (u32, u32),
     /// Camera mode: follow, side or top.
     pub camera: CameraMode,
-    /// Theme.
+    /// Theme of the scene.
     pub theme: Theme,
-    /// Overlays.
+    /// Overlays that are drawn over the scene.
     pub overlays: Vec<Overlay>,
     /// Whether names, results and the time are written onto the frames.
     pub has_captions: bool,
@@ -33,8 +33,8 @@ pub struct FilmOrder {
 /// A part of a film: champions side by side, from their start.
 #[derive(Debug, Clone)]
 pub struct FilmPart {
-    /// Its title and the smaller line below that, which stand over its beginning.
+    /// Title of the part and the smaller line below the title, shown at the beginning of the part.
     pub title: Option<(String, String)>,
-    /// The named champions, one per lane.
+    /// Champions with their names, one per lane.
     pub champions: Vec<(String, LoadedChampion)>,
 }

@@ -1,4 +1,4 @@
-//! Which moment each frame of a film shows, from where, and under which title.
+//! Plans the frames of a film: the simulated time, the camera and the title of each.
 
 use bevy::prelude::*;
 
@@ -16,26 +16,26 @@ use snakes_lab::plot::FilmTitle;
 const HOLD_S: f64 = 1.2;
 /// Time for which a title is shown, in seconds of the film.
 const TITLE_S: f64 = 2.8;
-/// Time in which it fades at the end of that, in seconds of the film.
+/// Time in which a title fades out at the end of its display, in seconds of the film.
 const FADE_S: f64 = 0.5;
 
-/// A frame of a film.
+/// A planned frame of a film.
 #[derive(Debug, Clone)]
 pub struct FilmFrame {
-    /// Index of its part.
+    /// Index of the frame's part of the film.
     pub part: usize,
-    /// The moment that it shows, in simulated seconds.
+    /// Time that the frame shows, in simulated seconds.
     pub time_s: f64,
-    /// Place of the camera.
+    /// Transform of the camera.
     pub camera: Transform,
-    /// The title over it.
+    /// Title over the frame, if any.
     pub title: Option<FilmTitle>,
 }
 
-/// Simulates all parts once, and plans all frames, in their order.
+/// Simulates all parts once, and plans all frames in their order.
 ///
 /// # Errors
-/// A champion cannot be built, or the film has no moment.
+/// A champion cannot be simulated, or the start of the film is after its end.
 pub fn planned(order: &FilmOrder) -> Result<Vec<FilmFrame>, FilmError> {
     let mut frames = Vec::new();
     for (index, part) in order.parts.iter().enumerate() {
@@ -58,7 +58,7 @@ fn frames_of(
     let held = if part.title.is_some() { libm::round(HOLD_S * fps) as usize } else { 0 };
     let times_s = (0..held + count + held).map(|frame| {
         let played = frame.saturating_sub(held).min(count);
-        // Held at its end, a part shows its very end.
+        // While a part stands still at its end, it shows exactly its last time.
         let is_last = played == count;
         let time_s = order.start_s + played as f64 * order.speed / fps;
         if is_last { until_s } else { time_s }
@@ -86,7 +86,7 @@ fn frames_of(
     Ok(planned.collect())
 }
 
-/// The lanes of a part at their start, with all that is known about their future.
+/// Builds the lanes of a part at their start, with finished lookaheads.
 pub fn lanes_of(part: &FilmPart) -> Result<Vec<Lane>, StudioError> {
     let mut lanes = render::lanes_of(&part.champions)?;
     lanes.iter_mut().for_each(Lane::finish_lookahead);

@@ -1,4 +1,4 @@
-//! Draws the frames of a film, one update of the scene for each: while the renderer returns a frame, the next one is
+//! Draws the frames of a film, one update of the scene per frame. While the renderer returns a frame, the next one is
 //! drawn.
 
 use std::collections::VecDeque;
@@ -16,15 +16,15 @@ use snakes_core::save::Picture;
 use snakes_lab::plot;
 use snakes_lab::plot::{FilmBand, FilmTitle, NameTag};
 
-/// Maximum number of frames that are drawn and not returned yet.
+/// Maximum number of frames that are drawn but not yet returned by the renderer.
 const IN_FLIGHT: usize = 3;
 
-/// A scene in which the frames of a film are drawn.
+/// The scene in which the frames of a film are drawn.
 pub struct Shooting<'s> {
     order: &'s FilmOrder,
     plan: &'s [FilmFrame],
     studio: &'s mut Offscreen,
-    /// Index of the part that is on the stage.
+    /// Index of the part on the stage; `None` before the first frame.
     part: Option<usize>,
     /// Simulated time of the stage, in seconds.
     time_s: f64,
@@ -39,7 +39,7 @@ struct PendingFrame {
     title: Option<FilmTitle>,
 }
 
-/// Runs `work`, which plays frames of the plan.
+/// Sets up the scene and runs `work`, which draws frames of the plan.
 pub fn shoot(
     order: &FilmOrder,
     plan: &[FilmFrame],
@@ -55,7 +55,7 @@ pub fn shoot(
 }
 
 impl Shooting<'_> {
-    /// Draws these frames, in rising order, and gives each to `each` with its index.
+    /// Draws the frames with these indices, in ascending order, and passes each to `each` with its index.
     pub fn play(
         &mut self,
         indices: &[usize],
@@ -84,7 +84,7 @@ impl Shooting<'_> {
         Ok(())
     }
 
-    /// Draws a frame, and keeps the texts that belong onto it.
+    /// Draws a frame. Returns it as pending, with the texts to write onto it.
     fn draw(&mut self, index: usize) -> Result<PendingFrame, FilmError> {
         let planned = &self.plan[index];
         let is_new = self.part != Some(planned.part) || planned.time_s < self.time_s;
@@ -114,7 +114,7 @@ impl Shooting<'_> {
         Ok(())
     }
 
-    /// The band, and the texts over heads, of the moment on the stage.
+    /// Returns the caption band for the time on the stage, and the texts above the heads.
     fn texts(&mut self) -> (Option<FilmBand>, Vec<(Vec3, String)>) {
         let world = self.studio.app.world_mut();
         let mut lanes = world.query::<&Lane>();
@@ -125,7 +125,7 @@ impl Shooting<'_> {
     }
 }
 
-/// The texts of the band: about one champion how far it has come; of several, their order.
+/// Returns the texts of the caption band: the progress of one champion, or the order of several.
 fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
     let first = lanes.first()?;
     let clock = format!("{time_s:.1} s");
@@ -144,7 +144,7 @@ fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
     Some(FilmBand { name, detail: places.take(3).collect::<Vec<_>>().join("   "), clock })
 }
 
-/// A frame with its texts.
+/// Writes the texts of a frame onto its picture.
 fn written_on(mut picture: Picture, frame: &PendingFrame) -> Result<Picture, FilmError> {
     plot::tags(&mut picture, &frame.tags)?;
     if let Some(band) = &frame.band {
@@ -166,7 +166,7 @@ mod tests {
     use crate::studio::ui::theme::Theme;
     use snakes_core::save::{load_champion, shipped_champion};
 
-    /// Whether there is no Vulkan driver. The test is skipped then, unless it is required.
+    /// Returns whether there is no Vulkan driver. The test is then skipped, unless it is required.
     fn lacks_a_driver() -> bool {
         let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
         let has_files =
@@ -242,7 +242,7 @@ mod tests {
         let all: Vec<usize> = (0..plan.len()).collect();
         let together = frames(&all);
         assert_eq!(together.iter().map(|(index, _)| *index).collect::<Vec<_>>(), all);
-        // One in the middle of the first part, its last one, and one under the title of the second part.
+        // A frame in the middle of the first part, its last frame, and a frame under the title of the second part.
         for index in [2, 4, 7] {
             let alone = frames(&[index]);
             let pixels = alone[0].1.rgb.iter().zip(&together[index].1.rgb);

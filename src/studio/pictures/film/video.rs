@@ -1,4 +1,4 @@
-//! A film as MP4: frames go through a pipe to ffmpeg, which compresses them as H.264.
+//! A film as MP4. The frames go through a pipe to ffmpeg, which compresses them as H.264.
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -11,14 +11,14 @@ use snakes_core::save::{Picture, UnfinishedFile};
 use snakes_lab::export::ExportError;
 use snakes_lab::run::BackgroundTask;
 
-/// The program that writes the film, found in PATH.
+/// Name of the program that writes the film, which must be in PATH.
 const FFMPEG: &str = "ffmpeg";
-/// Quality of H.264: 0 is lossless, 23 the encoder's default. At 16 flat areas and letters show no blocks.
+/// Quality of H.264: 0 is lossless, 23 is the encoder's default. At 16, flat areas and letters show no artefacts.
 const QUALITY: &str = "16";
 
-/// A film that ffmpeg is writing. Dropped before it is finished, it ends ffmpeg and leaves nothing behind.
+/// A film that ffmpeg is writing. If it is dropped before it is finished, ffmpeg is ended and no file remains.
 pub struct Video {
-    /// Ends first when dropped, so that ffmpeg no longer writes when the file is removed.
+    /// Process that writes the film. It is dropped before the file, so that ffmpeg has stopped writing when the file is removed.
     ffmpeg: RunningFfmpeg,
     file: UnfinishedFile,
     path: PathBuf,
@@ -33,14 +33,14 @@ struct RunningFfmpeg {
 
 impl Drop for RunningFfmpeg {
     fn drop(&mut self) {
-        // It has ended already, unless the film was cancelled.
+        // ffmpeg has ended already, unless the film was cancelled.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
 }
 
 impl Video {
-    /// Starts ffmpeg.
+    /// Creates the file and starts ffmpeg.
     pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
         check_size(size)?;
         let file = UnfinishedFile::create(path)?;
@@ -54,7 +54,7 @@ impl Video {
         Ok(Self { ffmpeg, file, path: path.to_owned() })
     }
 
-    /// The reason why ffmpeg has ended early.
+    /// Returns the reason why ffmpeg has ended early.
     fn failure(&mut self, error: io::Error) -> FilmError {
         let said = self.ffmpeg.last_words().unwrap_or_else(|| error.to_string());
         ExportError::unwritable(&self.path)(io::Error::other(said)).into()
@@ -74,7 +74,7 @@ impl FilmFile for Video {
         let flushed = frames.map_or(Ok(()), |mut frames| frames.flush());
         let ended = flushed.and_then(|()| self.ffmpeg.process.wait());
         let status = ended.map_err(|error| self.failure(error))?;
-        // A disk that is full when the last bytes are written makes some versions say so, and yet end with success.
+        // If the disk is full when the last bytes are written, some versions of ffmpeg report an error and yet exit with success.
         let failed = self.ffmpeg.last_words();
         if let Some(reason) = failed.or_else(|| (!status.success()).then(|| status.to_string())) {
             return Err(ExportError::unwritable(&self.path)(io::Error::other(reason)).into());
@@ -93,7 +93,7 @@ impl RunningFfmpeg {
             .args(["-f", "rawvideo", "-pixel_format", "rgb24"])
             .args(["-video_size", &format!("{width}x{height}"), "-framerate", &fps.to_string()])
             .args(["-i", "pipe:0", "-an"])
-            // The colours of high definition, said so that no player guesses.
+            // The colour space of high definition, stated explicitly so that players do not have to guess it.
             .args([
                 "-vf",
                 "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd,format=yuv420p",
@@ -101,13 +101,13 @@ impl RunningFfmpeg {
             .args(["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"])
             .args(["-color_range", "tv"])
             .args(["-c:v", "libx264", "-preset", "medium", "-crf", QUALITY])
-            // Starts to play before it is loaded; the same frames give the same bytes.
+            // The film can play before it is completely loaded, and the same frames give the same bytes.
             .args(["-movflags", "+faststart", "-fflags", "+bitexact", "-f", "mp4", "-y"])
             .arg(path)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
-        // The interrupt key ends the film in good order, and that ends ffmpeg.
+        // ffmpeg gets its own process group, so that the interrupt key does not end it before the film is cancelled.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut process = command.spawn()?;
@@ -119,7 +119,7 @@ impl RunningFfmpeg {
         Ok(Self { process, frames: Some(frames), said })
     }
 
-    /// Waits for the end of ffmpeg, and returns the first line of its errors, if it had any.
+    /// Waits for the end of ffmpeg. Returns the first line of its error messages, if any.
     fn last_words(&mut self) -> Option<String> {
         self.frames = None;
         let _ = self.process.wait();
@@ -131,7 +131,7 @@ impl RunningFfmpeg {
     }
 }
 
-/// Checks that the size suits the colours of H.264, of which four pixels share one.
+/// Checks that the size in pixels suits H.264, in which each block of 2 by 2 pixels shares a colour.
 pub fn check_size((width, height): (u32, u32)) -> Result<(), Invalid> {
     let is_even = width.is_multiple_of(2) && height.is_multiple_of(2);
     let allowed = "an even width and an even height for a .mp4 film";
