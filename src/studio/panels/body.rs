@@ -17,32 +17,32 @@ use snakes_core::genome::{BodyChange, Segment};
 use budgets::budgets;
 use drawing::drawing;
 
-/// The panel with its choice.
+/// The body panel, with the selected block.
 #[derive(Debug, Default)]
 pub(super) struct BodyPanel {
-    /// The block whose numbers are shown; the head is 0.
+    /// Block whose numbers the panel shows; the head is 0.
     block: usize,
-    /// The limb that was last selected on the stage.
+    /// Limb that was last selected on the stage, if any.
     limb: Option<usize>,
 }
 
-/// A number of a block: what it is, its label, its unit, the range of its slider, and its hint.
+/// A number of a block: its kind, its label, its unit, the range of its slider, and its tooltip.
 type Size = (BlockSize, &'static str, &'static str, std::ops::RangeInclusive<f32>, &'static str);
 
-/// The numbers of every block.
+/// Numbers that every block has.
 const SIZES: [Size; 4] = [
     (BlockSize::Length, "Length", " m", 0.4..=4.0, "Size along the snake"),
     (BlockSize::Width, "Width", " m", 0.4..=2.0, "Size across the snake"),
     (BlockSize::Height, "Height", " m", 0.4..=2.0, "Size from bottom to top"),
     (BlockSize::Density, "Density", " kg/m³", 1.0..=20.0, "Mass per volume"),
 ];
-/// The numbers of a joint, which the head does not have.
+/// Numbers of the joint in front of a block. The head has none.
 const OF_JOINT: [Size; 3] = [
     (BlockSize::BendLimit, "Bend limit", " rad", 0.2..=1.8, "How far it bends, up or down"),
     (BlockSize::TwistLimit, "Twist limit", " rad", 0.0..=1.5, "How far it twists, to either side"),
     (BlockSize::Strength, "Strength", "", 0.25..=1.0, "Share of the torque that its blocks allow"),
 ];
-/// The changes of structure: the change, its label, its hint.
+/// Changes of the body's structure, each with its label and its tooltip.
 const CHANGES: [(BodyChange, &str, &str); 5] = [
     (BodyChange::Split, "Split", "Two halves in its place. The new joint is held straight"),
     (BodyChange::Duplicate, "Duplicate", "A copy behind it, which moves in the same rhythm"),
@@ -52,7 +52,7 @@ const CHANGES: [(BodyChange, &str, &str); 5] = [
 ];
 
 impl BodyPanel {
-    /// Draws the panel and collects the user's commands. `limb` is the limb that is selected on the stage.
+    /// Draws the panel and collects the user's commands. `limb` is the selected limb on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -80,7 +80,7 @@ impl BodyPanel {
         end(ui, &edited, commands);
     }
 
-    /// The panel before an edit: the body on the stage, and the button that begins.
+    /// Draws the panel before the body is edited: the body on the stage, and the button that begins to edit it.
     fn invitation(&mut self, ui: &mut egui::Ui, lane: Option<&Lane>, commands: &mut Vec<Command>) {
         title(ui, "Body");
         let Some(lane) = lane else {
@@ -107,12 +107,12 @@ impl BodyPanel {
         }
     }
 
-    /// The title, and the buttons of steps.
+    /// Draws the title, and the buttons for undo, redo and closing.
     fn head(&self, ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
         let name = format!("Body of {}", edited.original.name());
         title_and(ui, &name, |ui| {
             let [can_undo, can_redo] = edited.steps.map(|can| can && edited.tuning.is_none());
-            // From right to left.
+            // The buttons are added from right to left.
             for (label, hint, is_on, command) in [
                 (
                     "Close",
@@ -129,7 +129,7 @@ impl BodyPanel {
         });
     }
 
-    /// The numbers of the selected block, and the changes of structure at it.
+    /// Draws the numbers of the selected block, and the changes of structure at the block.
     fn block(&self, ui: &mut egui::Ui, segments: &[Segment], commands: &mut Vec<Command>) {
         let block = self.block;
         let Some(segment) = segments.get(block) else { return };
@@ -169,7 +169,7 @@ impl BodyPanel {
     }
 }
 
-/// The row that says whether a block is soft, and how soft.
+/// Draws the row that shows whether a block is soft, and its Young's modulus.
 fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut Vec<Command>) {
     const HINT: &str = "A soft block bends and springs back";
     const MODULUS_HINT: &str =
@@ -197,7 +197,7 @@ fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut V
     ui.end_row();
 }
 
-/// The buttons that use the body.
+/// Draws the buttons that adapt the gait to the edited body, and that start the next run from it.
 fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
     ui.add_space(theme::GAP / 2.0);
     if let Some([done, all]) = edited.tuning {

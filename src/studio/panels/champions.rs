@@ -1,4 +1,4 @@
-//! The best snake of every generation, newest first. A click replays it.
+//! Best snake of every generation, the newest first. A click replays a snake.
 
 mod climbs;
 mod columns;
@@ -21,37 +21,37 @@ use climbs::{Climb, Climbs, LandingTime};
 use columns::{ChampionRowStyle, cells, heads, rows_width};
 use summary::ReportSummary;
 
-/// List of champions.
+/// The champions panel: the list, and its options.
 #[derive(Debug, Default)]
 pub(super) struct ChampionsPanel {
-    /// Cached summary of the reports, with the number of reports and the hash of the latest as its key.
+    /// Cached summary of the reports. The number of reports and the hash of the latest are its key.
     summary: Option<((usize, u64), ReportSummary)>,
-    /// Whether only generations that improved on all before are listed.
+    /// Whether only generations are listed that were better than all earlier ones.
     lists_better_only: bool,
     climbs: Climbs,
 }
 
-/// Contents of the panel.
+/// State that the champions panel shows.
 pub(super) struct ChampionsView<'v> {
-    /// The champions with which the studio was opened.
+    /// Champions with which the studio was opened.
     pub opening: &'v [NamedChampion],
-    /// The reports of the run's generations.
+    /// Reports of the run's finished generations.
     pub reports: &'v [GenerationReport],
-    /// The champions of the list that are on the stage.
+    /// Champions of the list that are on the stage.
     pub shown: &'v [ShownLane],
-    /// Number of the best snakes of a generation, or of the latest one, that can race.
+    /// Returns how many of the best snakes of a generation can race; `None` is the latest generation.
     pub leaders: &'v dyn Fn(Option<u32>) -> usize,
-    /// Whether the stage shows each better generation.
+    /// Whether the stage shows each better generation automatically.
     pub follows: bool,
 }
 
 impl ChampionsView<'_> {
-    /// Whether the run keeps only the snakes that beat those of all generations before.
+    /// Returns whether the run keeps only the snakes that beat those of all earlier generations.
     fn has_better_only(&self) -> bool {
         self.reports.first().is_some_and(|report| report.stairs.is_some())
     }
 
-    /// The lane of a champion of the list, if that is on the stage.
+    /// Returns the lane of a champion of the list, if the champion is on the stage.
     fn lane_of(&self, champion: ShownChampion) -> Option<&ShownLane> {
         self.shown.iter().find(|shown| shown.champion == champion)
     }
@@ -83,7 +83,7 @@ impl ChampionsPanel {
         self.list(ui, view, &summary, commands);
     }
 
-    /// Draws the rows: the champions with which the studio was opened, then the newest generation first.
+    /// Draws the rows: first the champions with which the studio was opened, then the generations, the newest first.
     fn list(
         &mut self,
         ui: &mut egui::Ui,
@@ -151,13 +151,13 @@ impl ChampionsPanel {
     }
 }
 
-/// Label and hint of the check box for following evolution.
+/// Label and tooltip of the check box for following evolution.
 pub(super) const FOLLOW: (&str, &str) =
     ("Follow evolution", "Show each better generation as soon as it is found");
-/// The command of that check box.
+/// Command of the check box for following evolution.
 pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
 
-/// Draws the buttons that show several snakes.
+/// Draws the buttons that show several snakes at once.
 fn buttons(
     ui: &mut egui::Ui,
     view: &ChampionsView,
@@ -200,23 +200,23 @@ fn buttons(
     }
 }
 
-/// Row of a champion.
+/// A row of the champions list.
 struct ChampionRow<'r> {
-    /// How it is on the stage, if it is.
+    /// Lane of the champion, if the champion is on the stage.
     shown: Option<&'r ShownLane>,
     name: &'r str,
     champion: &'r Champion,
     climb: Option<&'r Climb>,
-    /// Whether the time of its landing can be known: another engine would reach the top at another time.
+    /// Whether the champion's time of landing can be known. Another engine version would reach the top at another time.
     has_time: bool,
     pick: Pick,
-    /// Its generation, if the best ten of that can race.
+    /// Generation of the champion, if its ten best snakes can race.
     race: Option<u32>,
 }
 
 impl ChampionRow<'_> {
-    /// Draws the row. A click shows the champion alone; Shift or Control adds it to the stage. The context menu starts the
-    /// next run from it, or races the best ten of its generation.
+    /// Draws the row. A click shows the champion alone; a click with Shift or Control adds the champion to the stage.
+    /// The context menu starts the next run from the champion, or races the ten best snakes of its generation.
     fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Self { shown, name, champion, climb, pick, .. } = *self;
         let time = match self.has_time {

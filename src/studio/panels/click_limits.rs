@@ -1,15 +1,15 @@
-//! Limits of clicks, independent of the frame rate.
+//! Time limits of clicks.
 
 use bevy_egui::egui;
 
 use crate::studio::scene::camera::mouse::DOUBLE_CLICK_S;
 
-/// Makes clicks independent of the frame rate: egui sees a press and its release only at the next frame.
+/// Sets time limits of clicks that do not depend on the frame rate. egui processes a press and its release only in the next frame.
 pub(crate) fn set_click_limits(context: &egui::Context) {
     let frame_s = context.input(|input| input.unstable_dt);
     context.options_mut(|options| {
         options.input_options.max_double_click_delay = f64::from(DOUBLE_CLICK_S + frame_s);
-        // A press without movement is a click however long it lasts, as in native toolkits.
+        // A press without movement is a click whatever its duration, as in native toolkits.
         options.input_options.max_click_duration = f64::INFINITY;
     });
 }

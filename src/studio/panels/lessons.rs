@@ -1,4 +1,4 @@
-//! Lessons: the list, and the lesson in progress.
+//! The lessons panel: the list of lessons, or the lesson in progress.
 
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
@@ -92,7 +92,7 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
     worksheet(ui, view.index, commands);
 }
 
-/// Question, guess and result of the selected scene.
+/// Draws the question, the guess and the result of the selected scene.
 fn prediction(
     ui: &mut egui::Ui,
     scene: &LessonScene,
@@ -146,11 +146,11 @@ fn prediction(
     }
 }
 
-/// The answers to guess, and a way to go on without a guess.
+/// Draws the answers to choose from, and a button to continue without a guess.
 fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (index, answer) in scene.answers().into_iter().enumerate() {
-            // Other panels may have controls of the same name.
+            // The full name distinguishes the button from controls of other panels with the same label.
             let name = format!("Guess: {answer}");
             let response = named(ui.button(answer), egui::WidgetType::Button, &name);
             if response.on_hover_text("Guess this, and begin the experiment").clicked() {
@@ -163,7 +163,7 @@ fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Comm
     CommandButton::small("Watch without a guess", hint, watch).show(ui, commands);
 }
 
-/// The worksheet to print.
+/// Draws the section about the worksheet to print.
 fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     heading(ui, "Worksheet to print");
     ui.horizontal_wrapped(|ui| {
@@ -181,7 +181,7 @@ fn heading(ui: &mut egui::Ui, text: &str) {
     ui.label(title_text(text));
 }
 
-/// The next task of a reader who compares playbacks.
+/// Returns the next task of a reader who compares playbacks.
 fn next_play(plays: &Plays) -> &'static str {
     match plays.finished() {
         [] => "Play it to its end. The result appears after two speeds.",
@@ -191,7 +191,7 @@ fn next_play(plays: &Plays) -> &'static str {
     }
 }
 
-/// Table of the finished playbacks, with all digits of their ends.
+/// Draws a table of the finished playbacks, with all digits of the results.
 fn plays(ui: &mut egui::Ui, plays: &Plays) {
     table(ui, "plays", &["Speed", "Ends at", "Hash of the motion"], |ui| {
         for play in plays.finished() {
@@ -208,7 +208,7 @@ fn hash(ui: &mut egui::Ui, hash: u64) {
     ui.add(egui::Label::new(text.size(theme::SMALL_SIZE)).wrap());
 }
 
-/// Name of a lane or run, with the colour of its lane in the race.
+/// Draws the name of a lane or run, with the colour of its lane in the race.
 fn lane_name(ui: &mut egui::Ui, lane: usize, name: &str) {
     ui.horizontal(|ui| {
         lane_dot(ui, lane, theme::GAP);
@@ -216,12 +216,12 @@ fn lane_name(ui: &mut egui::Ui, lane: usize, name: &str) {
     });
 }
 
-/// Table of the final results of all lanes.
+/// Draws a table of the final results of all lanes.
 fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     table(ui, "lanes", &["", "Ends at", "Fitness"], |ui| {
         for (lane, (name, evaluation)) in lanes.iter().enumerate() {
             match lanes {
-                // A snake alone has no colour.
+                // A single snake has no lane colour.
                 [_] => drop(ui.label(name)),
                 _ => lane_name(ui, lane, name),
             }
@@ -240,7 +240,7 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
     });
 }
 
-/// Chart of all runs, and a table of their results once these may be seen.
+/// Draws a chart of all runs and, when the results may be shown, a table of them.
 fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: bool) {
     let runs = &progress.runs;
     let fitness = runs.iter().find_map(Found::best).map(|best| best.trial.fitness);
@@ -254,7 +254,7 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
     };
     let lines: Vec<Vec<[f64; 2]>> = runs.iter().map(best).collect();
     let along = |of: usize| lines.iter().flatten().map(move |point| point[of]);
-    // A metre of a distance, a tenth of a share.
+    // Minimum range of the vertical axis: a metre for a distance, a tenth for a share.
     let least = if unit.is_empty() { 0.1 } else { 1.0 };
     if along(0).next().is_some() {
         let x = Axis::around("Generation", "", along(0), 1.0);

@@ -1,7 +1,7 @@
-//! Panels around the stage, and controls on its edges: player and torques below, camera buttons above, leaderboard
-//! beside it.
+//! Panels around the stage, and controls on its edges: the player and the torques below, the camera bar above, the
+//! leaderboard beside it.
 //!
-//! A panel is a struct with a `ui` method. It reads the state and sends commands, but changes nothing itself.
+//! A panel is a struct with a `ui` method, which reads the state and sends commands but does not change the state.
 
 mod body;
 mod champions;
@@ -81,7 +81,7 @@ use world::surface_readout::ReadLanes;
 pub(super) use super::commands::panel::PanelKind;
 pub(super) use help::tour::highlighted_panel;
 
-/// The panels with their state between frames.
+/// All panels, with their state between frames.
 #[derive(Resource)]
 struct Panels {
     evolution: EvolutionPanel,
@@ -97,7 +97,7 @@ struct Panels {
     timeline: TimelinePanel,
     palette: CommandPalette,
     tour: Tour,
-    /// Rectangle of each panel in this frame, in points.
+    /// Rectangles of the panels in this frame, in points.
     panel_rects: Vec<(PanelKind, egui::Rect)>,
     is_styled: bool,
     letters: theme::GlyphWarmUp,
@@ -208,7 +208,7 @@ fn draw(
         commands: &mut commands,
     };
     if is_first && !is_settled {
-        // In the first frame the saved layout would be measured at the wrong scale.
+        // Nothing is drawn until the scale has taken effect, because the saved layout would otherwise be measured at the wrong scale.
     } else if is_presenting {
         viewer.presented_stage(&mut root);
         if workspace.is_black() {
@@ -231,7 +231,7 @@ fn draw(
             .style(style)
             .hidable_tab_bars(true)
             .show_leaf_close_all_buttons(false)
-            // Close buttons would leave no room for the names. A right-click on a tab closes its panel.
+            // Close buttons would leave too little room for the names. A right-click on a tab closes its panel.
             .show_close_buttons(false)
             .show_secondary_button_hint(false)
             .show_inside(&mut root, &mut viewer);
@@ -275,34 +275,34 @@ fn draw(
     Ok(())
 }
 
-/// Covers the whole screen, so that the audience looks at the presenter.
+/// Covers the whole window in black, so that the audience looks at the presenter.
 fn black_screen(context: &egui::Context) {
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("black screen"));
     context.layer_painter(layer).rect_filled(context.content_rect(), 0.0, egui::Color32::BLACK);
 }
 
-/// The frame of the bars above and below the stage, with this margin above and below their contents, in points.
+/// Returns the frame of the bars above and below the stage. `margin` is the space above and below their contents, in points.
 fn bar_frame(palette: &theme::Palette, margin: i8) -> egui::Frame {
     let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, margin);
     egui::Frame::new().fill(palette.panel).inner_margin(margin)
 }
 
-/// Draws the panels for the dock area.
+/// Draws the tabs of the dock area.
 struct Viewer<'v, 'w, 's> {
-    /// Panels whose tabs have small names, and the sizes of these.
+    /// Panels whose tab names are drawn smaller, and the sizes of the names in points.
     small_tabs: Vec<(PanelKind, f32)>,
     panels: &'v mut Panels,
     data: &'v PanelData<'w, 's>,
     lanes: &'v [&'v Lane],
-    /// The lane whose numbers are shown.
+    /// Lane whose numbers the panels show.
     focused: Option<&'v Lane>,
-    /// Rectangle of the stage, once it is drawn.
+    /// Rectangle of the stage in points; `None` until it is drawn in this frame.
     stage: Option<egui::Rect>,
     commands: &'v mut Vec<Command>,
 }
 
 impl Viewer<'_, '_, '_> {
-    /// Draws the player at the bottom and reserves the rest for the stage.
+    /// Draws the player at the bottom, and reserves the rest for the stage.
     fn stage(&mut self, ui: &mut egui::Ui) {
         if let Some(lane) = self.focused {
             let frame = bar_frame(theme::of(ui), theme::GAP as i8);
@@ -317,7 +317,7 @@ impl Viewer<'_, '_, '_> {
         self.reserve_stage(ui);
     }
 
-    /// Draws the caption of the presenting mode at the bottom and reserves the rest for the stage.
+    /// Draws the caption of the presenting mode at the bottom, and reserves the rest for the stage.
     fn presented_stage(&mut self, ui: &mut egui::Ui) {
         let caption = PresentedCaption::of(self.lanes, &self.data.on_stage, &self.data.run);
         caption_band(ui, &caption);
@@ -326,7 +326,7 @@ impl Viewer<'_, '_, '_> {
 
     fn reserve_stage(&mut self, ui: &mut egui::Ui) {
         let stage = ui.available_rect_before_wrap();
-        // The stage is not an egui widget, but accessibility tools and tests need its name and rectangle.
+        // The stage is not an egui widget, but accessibility tools and tests need its name and its rectangle.
         let place = ui.interact(stage, ui.id().with("the stage"), egui::Sense::hover());
         named(place, egui::WidgetType::Other, "The stage");
         self.stage = Some(stage);

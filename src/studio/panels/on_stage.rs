@@ -33,8 +33,8 @@ pub(crate) struct OnStage<'w, 's> {
 }
 
 impl OnStage<'_, '_> {
-    /// The rectangles that enclose the limbs of a lane in the window, from the head, in points; `None` for a limb out of
-    /// the camera's sight.
+    /// Returns a rectangle around each limb of a lane in the window, from the head, in points; `None` for a limb that
+    /// the camera does not see.
     pub fn limbs_in_window(&self, context: &egui::Context, lane: &Lane) -> Vec<Option<egui::Rect>> {
         let Ok((camera, place)) = self.camera.single() else { return Vec::new() };
         let place = GlobalTransform::from(*place);
@@ -63,7 +63,7 @@ impl OnStage<'_, '_> {
         (0..lane.body().limbs()).map(limb).collect()
     }
 
-    /// Whether the setting that a command toggles is on; `None` for other commands.
+    /// Returns whether the setting that a command toggles is on, or `None` for other commands.
     pub fn is_on(&self, command: &Command, theme: Theme) -> Option<bool> {
         match command {
             Command::Player(PlayerCommand::ToggleLoop) => Some(self.playback.loops()),

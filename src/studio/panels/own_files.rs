@@ -1,4 +1,4 @@
-//! Files of a kind that is built in and that users make, too, presets and stairs: their list, and the name of a new one.
+//! Presets and stairs, which are built in or made by the user: a list of them, and a field for the name of a new one.
 
 use bevy_egui::egui;
 
@@ -7,15 +7,15 @@ use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, OwnKind};
 
-/// A button that opens a field for a name.
+/// A button that opens a field for the name of a new file.
 #[derive(Debug, Default)]
 pub(super) struct OwnName {
-    /// The name while it is typed.
+    /// Name that is being typed; `None` while the field is closed.
     prompt: Option<TextPrompt>,
 }
 
 impl OwnName {
-    /// Draws the button.
+    /// Draws the button that opens and closes the field.
     pub fn button(
         &mut self,
         ui: &mut egui::Ui,
@@ -28,7 +28,7 @@ impl OwnName {
         }
     }
 
-    /// Draws the field if it is open. Returns the name once the user saves.
+    /// Draws the field if it is open. Returns the name when the user saves.
     pub fn field<T: OwnKind>(
         &mut self,
         ui: &mut egui::Ui,
@@ -78,8 +78,8 @@ impl OwnName {
     }
 }
 
-/// Draws the list of all files of a kind: the built-in ones, then the user's own, with the reason why one cannot be used. Returns
-/// the one that was clicked.
+/// Draws the list of all files of a kind: first the built-in ones, then the user's own, with the reason if one cannot
+/// be used. Returns the file that was clicked.
 pub(super) fn known_files<'k, T: OwnKind>(
     ui: &mut egui::Ui,
     known: &'k KnownFiles<T>,

@@ -1,4 +1,4 @@
-//! The way back from the stairs of an exam, for the panels that name them.
+//! A button to leave the stairs of an exam, for the panels that name these stairs.
 
 use bevy_egui::egui;
 
@@ -6,7 +6,7 @@ use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::buttons::CommandButton;
 
-/// Draws a button that shows a champion on its own stairs again, if it is on those of its exam.
+/// Draws a button that shows a champion on its own stairs again, if the champion is on stairs of its exam.
 pub(super) fn own_stairs_button(
     ui: &mut egui::Ui,
     staged: &StagedChampion,

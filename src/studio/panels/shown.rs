@@ -1,4 +1,4 @@
-//! Entries of the champion list that are on the stage, with the colours of their lanes.
+//! Champions of the champions list that are on the stage, with the colours of their lanes.
 
 use bevy_egui::egui::Color32;
 
@@ -7,22 +7,22 @@ use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::ui::theme::Palette;
 use snakes_core::evolve::{IndividualId, Origin};
 
-/// Entry of the champion list that is on the stage.
+/// An entry of the champions list that is on the stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ShownChampion {
-    /// Champion that the studio opened with; the first is 0.
+    /// A champion with which the studio was opened; the first is 0.
     Opening(usize),
-    /// Individual of the current run.
+    /// An individual of the current run.
     Found {
-        /// Generation that found it; the first is 1.
+        /// Generation that found the individual; the first is 1.
         generation: u32,
-        /// Index in that generation.
+        /// Index of the individual in its generation.
         individual: u32,
     },
 }
 
 impl ShownChampion {
-    /// List entry of a staged champion, if it has one; `run` is the number of the current run.
+    /// Returns the list entry of a staged champion, if it has one. `run` is the number of the current run.
     pub(crate) fn of(staged: &StagedChampion, run: u32) -> Option<Self> {
         match staged.source() {
             ChampionSource::Opened(index) => Some(Self::Opening(index)),
@@ -37,7 +37,7 @@ impl ShownChampion {
         }
     }
 
-    /// Its place in the current run, if it is of that.
+    /// Returns the place of the champion in the current run, if it is from there.
     pub(crate) fn place(self) -> Option<IndividualId> {
         match self {
             Self::Found { generation, individual } => Some(IndividualId { generation, individual }),
@@ -46,17 +46,17 @@ impl ShownChampion {
     }
 }
 
-/// A champion of the list that is on the stage.
+/// A champion of the list that is on the stage, with its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ShownLane {
-    /// The champion.
+    /// Champion of the list that is on the stage.
     pub champion: ShownChampion,
-    /// Its lane, if several lanes are side by side and have colours; the first is 0.
+    /// Lane of the champion, if several lanes side by side have colours; the first is 0.
     pub lane: Option<usize>,
 }
 
 impl ShownLane {
-    /// The champions of the list that are on the stage, without ghosts; `run` is the number of the current run.
+    /// Returns the champions of the list that are on the stage, except ghosts. `run` is the number of the current run.
     pub(crate) fn all(lanes: &[&Lane], run: u32) -> Vec<Self> {
         let racers = || lanes.iter().filter(|lane| !lane.is_ghost());
         let are_many = racers().nth(1).is_some();
@@ -67,7 +67,7 @@ impl ShownLane {
         shown.collect()
     }
 
-    /// The colour of its lane, as in the leaderboard; `None` for a snake alone.
+    /// Returns the colour of the champion's lane, as in the leaderboard; `None` for a single snake.
     pub(crate) fn color(self, palette: &Palette) -> Option<Color32> {
         self.lane.map(|lane| palette.lane_color(lane))
     }

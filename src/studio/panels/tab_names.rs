@@ -1,5 +1,5 @@
-//! Sizes of the names on tabs. In a narrow panel they are smaller, so that each stays in reach: tabs beyond the end of
-//! their bar can only be scrolled to.
+//! Font sizes of the names on tabs. In a narrow panel the names are smaller, so that all tabs are visible. Tabs beyond
+//! the end of their bar can only be reached by scrolling.
 
 use bevy_egui::egui;
 
@@ -7,16 +7,17 @@ use super::PanelKind;
 use crate::studio::ui::theme;
 use crate::studio::workspace::layout::Layout;
 
-/// Space around the name of a tab, in points, as the dock draws it.
+/// Total horizontal padding of a tab's name, in points, as the dock area draws it.
 const AROUND: f32 = 16.0;
 
-/// Width of the button that folds the panels of a tab bar, in points, as the dock draws it.
+/// Width of the button that folds the panels of a tab bar, in points, as the dock area draws it.
 const FOLD_BUTTON: f32 = 24.0;
 
-/// Sizes of small names, in points: the largest for which the bar has room, or else the last.
+/// Font sizes of small names, in points. The largest that fits into the bar is used, or else the last.
 const SMALL_SIZES: [f32; 2] = [theme::SMALL_SIZE, 10.0];
 
-/// The panels whose tabs have small names, because their bar is too narrow for those of the usual size, and the sizes.
+/// Returns the panels whose tabs have small names because their bar is too narrow for the usual size, and the font
+/// sizes of the names, in points.
 pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<(PanelKind, f32)> {
     let style = context.global_style();
     let font = egui::TextStyle::Button.resolve(&style);
@@ -35,7 +36,7 @@ pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<(Panel
     sized.collect()
 }
 
-/// Width of a tab bar with these panels, in points: the button that folds it, and the tabs.
+/// Returns the width of a tab bar with these panels, in points: the button that folds it, and the tabs.
 fn bar_width(context: &egui::Context, kinds: &[PanelKind], font: &egui::FontId) -> f32 {
     let name_width = |kind: &PanelKind| {
         let name = kind.name().to_owned();
@@ -47,7 +48,7 @@ fn bar_width(context: &egui::Context, kinds: &[PanelKind], font: &egui::FontId) 
     FOLD_BUTTON + kinds.iter().map(name_width).sum::<f32>()
 }
 
-/// The name of a panel on its tab.
+/// Returns the name of a panel for its tab.
 pub(super) fn tab_name(kind: PanelKind, small: &[(PanelKind, f32)]) -> egui::WidgetText {
     match small.iter().find(|(of, _)| *of == kind) {
         Some((_, size)) => egui::RichText::new(kind.name()).size(*size).into(),

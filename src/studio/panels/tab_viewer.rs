@@ -1,4 +1,4 @@
-//! The panels as tabs of the dock.
+//! Shows the panels as tabs of the dock area.
 
 use bevy_egui::egui;
 use egui_dock::{TabStyle, TabViewer};
@@ -19,7 +19,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, kind: &mut PanelKind) {
-        // The tour points only at panels in the main window, because floating windows move.
+        // Only rectangles in the main window are recorded for the tour, because floating windows can move.
         self.panels.panel_rects.push((*kind, ui.clip_rect()));
         if *kind == PanelKind::Stage {
             self.stage(ui);
@@ -48,7 +48,7 @@ impl TabViewer for Viewer<'_, '_, '_> {
     }
 
     fn scroll_bars(&self, _kind: &PanelKind) -> [bool; 2] {
-        // Each panel has its own scroll area.
+        // Each panel has a separate scroll area.
         [false, false]
     }
 

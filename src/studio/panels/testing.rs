@@ -1,4 +1,4 @@
-//! Tools for tests of panels: panels without a window, champions, reports.
+//! Helper functions for tests of panels: panels without a window, champions, reports.
 
 use bevy_egui::egui;
 use egui_kittest::Harness;
@@ -13,10 +13,10 @@ use snakes_core::rng::{Purpose, stream};
 use snakes_core::save::{load_preset, shipped_champion};
 use snakes_lab::run::{Experiment, GenerationReport, LocalPool, RunControl};
 
-/// A panel, and the commands that it sent.
+/// A panel without a window, and the commands that it sent.
 pub(super) type Sent<'a> = Harness<'a, Vec<Command>>;
 
-/// A panel of this size, in points, after its first frames.
+/// Creates a panel of this size, in points, and runs its first frames.
 pub(super) fn panel<'a>(
     size: [f32; 2],
     mut draw: impl FnMut(&mut egui::Ui, &mut Vec<Command>) + 'a,
@@ -27,19 +27,19 @@ pub(super) fn panel<'a>(
     panel
 }
 
-/// Clicks on what has this label. Returns all commands that the panel has sent.
+/// Clicks on the element with this label. Returns all commands that the panel has sent.
 pub(super) fn clicked(panel: &mut Sent<'_>, label: &str) -> Vec<Command> {
     panel.get_by_label(label).click();
     panel.run();
     panel.state().clone()
 }
 
-/// Whether a panel shows a label that contains this text.
+/// Returns whether a panel shows a label that contains this text.
 pub(super) fn shows<S>(panel: &Harness<'_, S>, text: &str) -> bool {
     panel.query_all_by_label_contains(text).next().is_some()
 }
 
-/// Gives a field the focus and types into it.
+/// Focuses the field with this label, and types into it.
 pub(super) fn type_into<S>(panel: &mut Harness<'_, S>, label: &str, text: &str) {
     panel.get_by_label(label).focus();
     panel.run();
@@ -53,22 +53,22 @@ pub(super) fn press<S>(panel: &mut Harness<'_, S>, key: egui::Key) {
     panel.run();
 }
 
-/// The command that sets a field of the next run.
+/// Returns the command that sets a field of the next run.
 pub(super) fn set(field: &str, text: &str) -> Command {
     Command::Plan(PlanCommand::SetField { field: field.to_owned(), text: text.to_owned() })
 }
 
-/// The built-in climber, under another name.
+/// Returns the built-in climber under another name.
 pub(super) fn climber(number: usize, name: &str) -> StagedChampion {
     StagedChampion::from_file(&shipped_champion().expect("well formed"), number, name)
 }
 
-/// A lane of the built-in climber, under another name; the first is 0.
+/// Returns a lane of the built-in climber under another name; the first lane is 0.
 pub(super) fn climber_lane(number: usize, name: &str) -> Lane {
     Lane::new(climber(number, name), number)
 }
 
-/// A random snake with a controller, in a world with other settings than those of the preset `climb`.
+/// Creates a random snake with a controller, in a world with changes from that of the preset `climb`.
 pub(super) fn random_snake(
     kind: ControllerKind,
     fields: &[(&str, &str)],
@@ -86,7 +86,7 @@ pub(super) fn random_snake(
     StagedChampion::from_file(&loaded, 0, "a snake")
 }
 
-/// The report of the first generation of a run of four snakes and half a second.
+/// Returns the report of the first generation of a run of four snakes for half a second.
 pub(super) fn report_of(seed: u64) -> GenerationReport {
     let mut settings = Settings::default();
     settings.evolution.population = 4;

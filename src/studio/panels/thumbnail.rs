@@ -1,4 +1,4 @@
-//! Thumbnail of a champion: stairs, path of the middle limb and final pose. It is drawn from shapes, without textures.
+//! Thumbnail of a champion: stairs, path of the middle limb and final pose, drawn from shapes without textures.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Pos2, Rect, Shape, Stroke};
@@ -7,12 +7,12 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_core::save::library::Thumbnail;
 
-/// Maximum vertical stretch, because the stairs are long and low.
+/// Maximum vertical stretch of the drawing, because stairs are long and low.
 const MAX_STRETCH: f32 = 2.0;
 /// Margin around the drawing, in metres.
 const MARGIN_M: f32 = 1.5;
 
-/// Draws a thumbnail.
+/// Draws the thumbnail of a champion or run.
 pub fn thumbnail(painter: &egui::Painter, rect: Rect, of: &Thumbnail, palette: &Palette) {
     painter.rect_filled(rect, 4.0, palette.field);
     let painter = painter.with_clip_rect(rect.intersect(painter.clip_rect()));
@@ -29,14 +29,14 @@ pub fn thumbnail(painter: &egui::Painter, rect: Rect, of: &Thumbnail, palette: &
         let color = if limb % 2 == 0 { palette.red_limb } else { palette.blue_limb };
         let color = theme::flat(color);
         let points = corners.map(|at| view.at(at)).to_vec();
-        // The stroke keeps a limb visible that is seen edge-on.
+        // The stroke keeps a limb visible when it is seen edge-on.
         painter.add(Shape::convex_polygon(points, color, Stroke::new(0.5, color)));
     }
     let ground = [rect.left(), rect.right()].map(|x| egui::pos2(x, view.at([0.0, 0.0]).y));
     painter.line_segment(ground, Stroke::new(1.0, palette.text_weak));
 }
 
-/// Mapping from metres to points.
+/// Conversion from metres to points in a thumbnail.
 struct ThumbnailView {
     rect: Rect,
     least_y_m: f32,
@@ -46,7 +46,7 @@ struct ThumbnailView {
 impl ThumbnailView {
     fn new(rect: Rect, of: &Thumbnail) -> Self {
         let limbs = of.parts_m.iter().flat_map(|(_, corners)| corners);
-        // Only the start of the landing is shown, because the landing may be long.
+        // Only the start of the landing is shown, because the landing can be long.
         let shown_stairs = of.stairs_m.len().saturating_sub(2);
         let stairs = of.stairs_m.iter().take(shown_stairs.max(1));
         let seen: Vec<&[f32; 2]> = stairs.chain(&of.way_m).chain(limbs).collect();
@@ -77,7 +77,7 @@ pub fn sparkline(painter: &egui::Painter, rect: Rect, best: &[Option<f32>], pale
     }
     let area = rect.shrink(theme::GAP / 2.0);
     let last = best.len().saturating_sub(1).max(1) as f32;
-    // Draws at most one point per pixel of the width.
+    // At most one point is drawn per pixel of the width.
     let every = best.len().div_ceil(area.width().max(1.0) as usize).max(1);
     let points = best.iter().enumerate().step_by(every).filter_map(|(index, of)| {
         let share = ((*of)? - least) / (most - least).max(f32::MIN_POSITIVE);
@@ -107,7 +107,7 @@ mod tests {
         {
             assert!(rect.contains(view.at(*at)), "{at:?}");
         }
-        // An empty thumbnail is drawn without an error.
+        // An empty thumbnail causes no error.
         let empty = ThumbnailView::new(rect, &Thumbnail::default());
         assert!(empty.at([0.0, 0.0]).x.is_finite());
     }

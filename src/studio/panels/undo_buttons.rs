@@ -6,7 +6,7 @@ use crate::studio::commands::Command;
 use crate::studio::state::undo::{UndoDirection, UndoHistory};
 use crate::studio::ui::icons::{Icon, small_icon_button};
 
-/// Draws the undo and redo buttons and collects the user's commands.
+/// Draws the undo and redo buttons, and collects the user's commands.
 pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &mut Vec<Command>) {
     for (way, icon, name, command) in [
         (UndoDirection::Forth, Icon::Redo, "Redo", Command::Redo),

@@ -6,13 +6,13 @@ use crate::studio::state::body_editor::EditedBody;
 use crate::studio::ui::theme;
 use snakes_core::genome::{BodySpace, MOST_SEGMENTS};
 
-/// Share beyond a budget that rounding makes.
+/// Tolerance for rounding errors, as a share of the budget.
 const TOLERANCE: f64 = 1.0e-3;
 
-/// A use of a budget: the name, what is used and what there is, the unit with digits after the point, the hint.
+/// A budget: its name, the used and the available amount, the unit and its number of decimals, and the tooltip.
 type Budget = (&'static str, [f64; 2], (&'static str, usize), &'static str);
 
-/// Draws the budgets as bars, red where a body exceeds them.
+/// Draws the budgets as bars, which are red if the body exceeds the budget.
 pub(super) fn budgets(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
     ui.add_space(theme::GAP / 2.0);
     let agent = &edited.original.trial().agent;

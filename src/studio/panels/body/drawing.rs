@@ -1,4 +1,4 @@
-//! A body as a drawing to scale, from above and from the side.
+//! A drawing of a body to scale, from above and from the side.
 
 use bevy_egui::egui;
 
@@ -8,12 +8,12 @@ use crate::studio::ui::theme;
 use snakes_core::world::BodyPlan;
 use snakes_lab::plot::Role;
 
-/// Largest height of both views together, in points.
+/// Maximum height of both views together, in points.
 const HEIGHT: f32 = 130.0;
 /// Space between the views and around them, in points.
 const SPACE: f32 = 8.0;
 
-/// Draws blocks, the head on the left. Returns the block that was clicked.
+/// Draws the blocks of a body, with the head on the left. Returns the block that was clicked.
 pub(super) fn drawing(
     ui: &mut egui::Ui,
     body: &BodyPlan,
@@ -51,7 +51,7 @@ pub(super) fn drawing(
             let is_soft = body.parts_of(block).len() > 1;
             let frame = egui::Stroke::new(1.0, palette.field);
             if is_soft {
-                // Soft blocks are round.
+                // Soft blocks have round corners.
                 let corner = hull.height().min(hull.width()) / 2.0 * 0.8;
                 painter.rect_filled(hull.shrink(0.5), corner, color);
             } else {

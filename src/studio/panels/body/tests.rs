@@ -13,7 +13,7 @@ struct Edit {
     commands: Vec<Command>,
 }
 
-/// The panel while the body of the built-in champion is edited.
+/// Creates the panel while the body of the built-in champion is edited.
 fn editing(width: f32) -> Harness<'static, Edit> {
     let staged = climber(0, "climber");
     let mut editor = BodyEditor::default();
@@ -35,7 +35,7 @@ fn a_click_selects_a_block_and_its_buttons_change_it() {
     assert!(harness.query_by_label("Head").is_some());
     assert!(harness.query_by_label("Bend limit").is_none(), "the head has no joint");
     let blocks = harness.get_by_label("Drawing of the blocks").rect();
-    // The fourth of five equal blocks.
+    // The position of the fourth of five equal blocks.
     let at = egui::pos2(blocks.left() + blocks.width() * 0.7, blocks.center().y - 20.0);
     harness.drag_at(at);
     harness.run();

@@ -1,5 +1,5 @@
-//! The climbs of the champions in the list: when each first reached the top of the stairs, and a small picture. Records
-//! lack both, so they are simulated in the background: one champion at a time, and only those whose rows are seen.
+//! Climbs of the champions in the list: the time at which each first reached the top of the stairs, and a small picture. Records contain
+//! neither, so the climbs are simulated in the background, one champion at a time, and only for visible rows.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,31 +9,31 @@ use snakes_core::save::LoadedChampion;
 use snakes_core::save::library::Thumbnail;
 use snakes_lab::run::Lookahead;
 
-/// Climbs that are known or being computed.
+/// Climbs that are known, and the one that is being computed.
 #[derive(Default)]
 pub(super) struct Climbs {
-    /// By the hash of the trace: champions that survive unchanged share it.
+    /// Climbs by the hash of the trace, which champions that survive unchanged share.
     known: BTreeMap<u64, Climb>,
     under_way: Option<(Champion, Lookahead)>,
 }
 
-/// A champion's climb.
+/// Climb of a champion.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Climb {
-    /// Simulated time of the first arrival at the top, in seconds.
+    /// Simulated time of the first arrival at the top, in seconds; `None` if the champion did not arrive, or if its time is unknown.
     landed_s: Option<f64>,
-    /// The path and the end, from the side.
+    /// Picture of the path and the final pose, from the side.
     pub picture: Thumbnail,
 }
 
-/// Time of a landing.
+/// Time of a champion's landing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum LandingTime {
-    /// The time of landing, in simulated seconds.
+    /// The champion has landed at this simulated time, in seconds.
     Known(f64),
-    /// It does not end on the landing.
+    /// The champion does not end on the landing, or the time cannot be known.
     None,
-    /// Not computed yet.
+    /// The time has not been computed yet.
     Pending,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Debug for Climbs {
 }
 
 impl LandingTime {
-    /// The time of a champion whose climb is known or not.
+    /// Returns the time of landing of a champion. `climb` is the champion's climb, if it is known.
     pub fn of(champion: &Champion, climb: Option<&Climb>) -> Self {
         match climb {
             _ if !champion.evaluation.is_on_landing(&champion.trial.stairs) => Self::None,
@@ -55,7 +55,7 @@ impl LandingTime {
 }
 
 impl Climbs {
-    /// The climb of a champion. Computes it, unless another is being computed.
+    /// Returns the climb of a champion, if it is known. Otherwise begins to compute it, unless another is being computed.
     pub fn of(&mut self, champion: &Champion) -> Option<&Climb> {
         let key = champion.evaluation.trace_hash;
         if self.under_way.is_none() && !self.known.contains_key(&key) {
@@ -65,8 +65,8 @@ impl Climbs {
         self.known.get(&key)
     }
 
-    /// The climb of a saved champion. One of another engine is drawn from its recording, because this engine would move
-    /// it otherwise; it has no time.
+    /// Returns the climb of a saved champion. For a champion of another engine version the picture is drawn from its
+    /// recording, because this engine would move it differently, and there is no time.
     pub fn of_save(&mut self, saved: &LoadedChampion) -> Option<&Climb> {
         if saved.is_of_this_engine() {
             return self.of(&saved.champion);
@@ -77,7 +77,7 @@ impl Climbs {
         Some(self.known.entry(key).or_insert_with(climb))
     }
 
-    /// Takes over a climb that was computed.
+    /// Processes the result of a finished computation.
     pub fn poll(&mut self) {
         let Some((champion, lookahead)) = &mut self.under_way else { return };
         lookahead.poll();

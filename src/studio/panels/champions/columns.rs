@@ -1,4 +1,4 @@
-//! Columns of the champion list: fitness, time and energy at the right of each row, as far as the width goes.
+//! Columns of the champions list: fitness, time and energy on the right of each row, as many as the width allows.
 
 use bevy_egui::egui;
 
@@ -10,11 +10,11 @@ use crate::studio::ui::theme;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::Thumbnail;
 
-/// Widths of the columns fitness, time and energy, in points.
+/// Widths of the columns for fitness, time and energy, in points.
 const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
-/// Width that stays for pictures and names, in points.
+/// Minimum width for the picture and the name, in points.
 const NAME_WIDTH: f32 = 170.0;
-/// Names of the columns and their hover texts.
+/// Headings of the columns and their tooltips.
 const HEADS: [(&str, &str); 3] = [
     ("Fitness", "What the run rewards: see Fitness in the Run panel"),
     (
@@ -24,13 +24,13 @@ const HEADS: [(&str, &str); 3] = [
     ("Energy", "Energy that the joints used in the whole trial"),
 ];
 
-/// Number of columns for which a list of this width has room; fitness always has.
+/// Returns how many columns fit into a list of this width, in points; at least the fitness.
 pub(super) fn count(width: f32) -> usize {
     let fits = |count: &usize| NAME_WIDTH + WIDTHS[..*count].iter().sum::<f32>() <= width;
     (1..=WIDTHS.len()).rev().find(fits).unwrap_or(1)
 }
 
-/// Texts of a champion's columns.
+/// Returns the texts of a champion's columns.
 pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
     let energy =
         champion.evaluation.effort.map(|effort| format!("{:.1} kJ", effort.energy_j / 1000.0));
@@ -42,13 +42,13 @@ pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
     [champion.score(), time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 
-/// Width of the rows of a list over the available width: the scroll bar has room beside them, so that the columns do
-/// not move when it appears.
+/// Returns the width of the rows of a list, in points. Room beside the rows is reserved for the scroll bar, so that the
+/// columns do not move when it appears.
 pub(super) fn rows_width(ui: &egui::Ui) -> f32 {
     ui.available_width() - ui.spacing().scroll.allocated_width()
 }
 
-/// Draws the names of the columns above rows of this width.
+/// Draws the headings of the columns above rows of this width, in points.
 pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     let size = egui::vec2(width, theme::SMALL_SIZE + 4.0);
     let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -61,18 +61,18 @@ pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     }
 }
 
-/// How a row is drawn.
+/// Look of a row of the champions list.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ChampionRowStyle<'r> {
-    /// Whether its champion is on the stage.
+    /// Whether the row's champion is on the stage.
     pub is_shown: bool,
-    /// The colour of its lane, if it is one of several.
+    /// Colour of the champion's lane, if there are several lanes.
     pub lane_color: Option<egui::Color32>,
-    /// Its climb, once that is known.
+    /// Picture of the champion's climb; `None` until it is known.
     pub picture: Option<&'r Thumbnail>,
 }
 
-/// Draws a clickable row over the whole width: name at the left, columns at the right.
+/// Draws a clickable row of full width: the name on the left, the columns on the right.
 pub(super) fn row(
     ui: &mut egui::Ui,
     ChampionRowStyle { is_shown, lane_color, picture }: ChampionRowStyle<'_>,
@@ -122,7 +122,7 @@ pub(super) fn row(
     response
 }
 
-/// Rectangles of the columns in a row, from left to right.
+/// Returns the rectangles of the columns in a row, from left to right.
 fn places(row: egui::Rect, count: usize) -> Vec<egui::Rect> {
     let mut right = row.right() - theme::GAP;
     let mut places: Vec<egui::Rect> = WIDTHS[..count]

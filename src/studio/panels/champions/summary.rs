@@ -1,28 +1,28 @@
-//! Which generations of a run have champions, and which of these are better than all before.
+//! Summary of a run's generations: which have champions, and which of these are better than all earlier ones.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
 use snakes_lab::run::GenerationReport;
 
-/// Summary that is computed once for each new report instead of in every frame.
+/// Summary of a run, which is computed once for each new report instead of in every frame.
 #[derive(Debug, Clone)]
 pub(super) struct ReportSummary {
     /// Number of generations that have a champion.
     pub champions: usize,
-    /// Generation of the best champion of the run.
+    /// Generation of the best champion of the run; `None` without any champion.
     pub best: Option<u32>,
-    /// Indices of the reports whose champions are better than all before.
+    /// Indices of the reports whose champions are better than all earlier ones.
     pub better: Arc<[usize]>,
 }
 
 impl ReportSummary {
-    /// The summary of a run.
+    /// Computes the summary of a run.
     pub fn of(reports: &[GenerationReport]) -> Self {
         let champions = reports
             .iter()
             .filter_map(|report| Some((report.champion.as_ref()?, report.champion_rank()?)));
-        // The earliest of equally good champions wins.
+        // Among equally good champions, the earliest counts as the best.
         let best = champions.clone().rev().max_by(|(_, a), (_, b)| {
             let pairs = a.iter().zip(b);
             pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(b)))

@@ -1,4 +1,4 @@
-//! The list of champions, and its buttons.
+//! Tests of the champions list and its buttons.
 
 use super::*;
 use crate::studio::panels::testing::{Sent, clicked, report_of, shows};
@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::StairsCount;
 use snakes_core::save::shipped_champion;
 
-/// The panel of these champions, of which two can race in each generation.
+/// Creates the panel with these champions. Two snakes can race in each generation.
 fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> Sent<'a> {
     let mut panel = ChampionsPanel::default();
     let builder = Harness::builder().with_size(egui::vec2(360.0, 400.0));
@@ -24,7 +24,7 @@ fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> S
     harness
 }
 
-/// The report of a generation whose best snake has this fitness.
+/// Creates the report of a generation whose best snake has this fitness.
 fn report(generation: u32, fitness: f32) -> GenerationReport {
     let mut report = report_of(1);
     report.record.generation = generation;
@@ -34,7 +34,7 @@ fn report(generation: u32, fitness: f32) -> GenerationReport {
     report
 }
 
-/// The generations of the first five that are listed.
+/// Returns which of the first five generations are listed.
 fn listed(panel: &Sent<'_>) -> Vec<u32> {
     (1..=5).filter(|generation| shows(panel, &format!("Generation {generation}"))).collect()
 }

@@ -1,4 +1,4 @@
-//! Ancestors of the best snake, drawn over all other snakes of the run. A click replays one.
+//! Chart of the best snake's ancestors, over all other snakes of the run. A click replays an ancestor.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,14 +10,14 @@ use snakes_core::evolve::{IndividualId, Parents, Settings};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::{Ancestor, Ancestry, FitnessSpread};
 
-/// Maximum number of other snakes, limited by drawing time.
+/// Maximum number of other snakes that are drawn, because drawing takes time.
 const MAX_OTHERS: usize = 3000;
-/// Number of latest ancestors whose second parent is connected to its child. More lines would hide the main one.
+/// Number of latest ancestors for which the second parent is also connected to the child. More connections would hide the main line.
 const MAX_BRANCHES: usize = 150;
-/// Minimum number of snakes drawn per generation.
+/// Minimum number of snakes that are drawn per generation.
 const MIN_PER_GENERATION: usize = 3;
 
-/// Chart of a line of ancestry.
+/// Creates the chart of a line of ancestry.
 pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let place = |ancestor: &Ancestor| {
@@ -31,10 +31,10 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
         Series::new("second parents", Role::Second, Shape::Points(seconds)),
         best(ancestry, line.clone()),
     ];
-    // Empty series need no legend entry.
+    // Empty series would need an entry in the legend.
     series.retain(|series| !series.shape.is_empty());
     if line.len() > 1 {
-        // Connects second parents to their children.
+        // The branches connect second parents to their children.
         let others: BTreeMap<IndividualId, &Arc<Ancestor>> =
             ancestry.others.iter().map(|other| (other.place, other)).collect();
         let branches = ancestry.line.iter().take(MAX_BRANCHES).filter_map(|child| {
@@ -72,7 +72,7 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     ChartView::new(figure, vec![hits])
 }
 
-/// The best snake with its ancestors, if it has any.
+/// Returns the series of the best snake and its ancestors, or of the best snake alone, with the reason why it has none.
 fn best(ancestry: &Ancestry, line: Vec<[f64; 2]>) -> Series {
     match ancestry.line.as_slice() {
         [alone] => {
@@ -89,7 +89,7 @@ fn best(ancestry: &Ancestry, line: Vec<[f64; 2]>) -> Series {
     }
 }
 
-/// Sample of all fitness values that is small enough to draw.
+/// Samples the fitness values of all snakes, few enough to draw.
 fn others(ancestry: &Ancestry) -> Vec<[f64; 2]> {
     let generations = ancestry.spreads.len().max(1);
     let each = (MAX_OTHERS / generations).max(MIN_PER_GENERATION);
@@ -104,7 +104,7 @@ fn others(ancestry: &Ancestry) -> Vec<[f64; 2]> {
     ancestry.spreads.iter().flat_map(of).collect()
 }
 
-/// Origin of a snake, in words.
+/// Describes the origin of a snake.
 fn origin(parents: Parents) -> String {
     let name = |place: IndividualId| {
         format!("snake {} of generation {}", place.individual + 1, place.generation)
@@ -120,7 +120,7 @@ fn origin(parents: Parents) -> String {
     }
 }
 
-/// Note about the start of the line.
+/// Describes where the line of ancestry starts.
 fn note_on_start(ancestry: &Ancestry) -> String {
     let Some(first) = ancestry.line.last() else { return String::new() };
     let generation = first.place.generation;
@@ -144,7 +144,7 @@ mod tests {
     use snakes_core::evolve::{RunPlan, StrategyKind};
     use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
-    /// Chart after three generations of a strategy, and the generation of the best snake.
+    /// Creates the chart after three generations of a strategy. Also returns the generation of the best snake.
     fn shown(strategy: StrategyKind) -> (ChartView, u32) {
         let mut settings = Settings::default();
         settings.evolution.strategy = strategy;

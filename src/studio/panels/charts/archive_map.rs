@@ -1,4 +1,4 @@
-//! Map of the MAP-Elites archive: a cell per kind of behaviour, coloured by fitness. A click replays the elite.
+//! Map of the MAP-Elites archive: a cell for each kind of behaviour, coloured by fitness. A click replays the cell's elite.
 
 use super::archive_pictures::ArchivePictures;
 use super::view::{ChartHit, ChartView, HitShape};
@@ -7,7 +7,7 @@ use crate::studio::ui::plot_axes::number;
 use snakes_core::evolve::{Archive, ArchiveAxis, AxisScale, Elite, IndividualId, Settings};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, extent, with_unit};
 
-/// Map of an archive. It is empty if the archive has no elites.
+/// Creates the map of an archive, which is empty if the archive has no elites.
 pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let fitness = archive.elites().map(|(_, elite)| f64::from(elite.fitness));
@@ -42,7 +42,7 @@ pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
         ChartHit::new(HitShape::Area(area(cell)), move || format!("{kind}Empty"))
     };
     let empty = (0..archive.cells()).filter(|cell| archive.elite(*cell).is_none());
-    // The pictures are in the order of the elites.
+    // The elites come first, in the order of their pictures.
     let hits = archive.elites().map(of_elite).chain(empty.map(of_empty)).collect();
     let note = format!(
         "Coverage {:.0} % ({} of {} cells). QD score {}: fitness above {}{unit}, summed over all cells.",
@@ -72,7 +72,7 @@ pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
     ChartView { pictures, ..ChartView::new(figure, vec![hits]) }
 }
 
-/// The axis of a map, on which all cells are equally wide.
+/// Returns an axis of the map on which all cells have the same width.
 fn axis(of: ArchiveAxis) -> Axis {
     let ([from, _], [_, to]) = (of.edges(0), of.edges(of.cells - 1));
     match of.scale {
@@ -82,7 +82,7 @@ fn axis(of: ArchiveAxis) -> Axis {
     }
 }
 
-/// The kind of behaviour of a cell, a line for each axis.
+/// Describes the kind of behaviour of a cell, in one line for each axis.
 fn kind_in_words(archive: &Archive, cell: u32) -> String {
     let span = |axis: ArchiveAxis, place: u32| {
         let [from, to] = axis.ends(place).map(number);
@@ -93,7 +93,7 @@ fn kind_in_words(archive: &Archive, cell: u32) -> String {
     span(archive.x, column) + &span(archive.y, row)
 }
 
-/// A row of the table: the ends of the cell, and fitness, generation and number of its elite.
+/// Returns a row of the exported table: the ends of a cell, and the fitness, generation and number of its elite.
 fn record(archive: &Archive, (cell, elite): (u32, &Elite)) -> Vec<String> {
     let [column, row] = archive.place(cell);
     let ends = [archive.x.ends(column), archive.y.ends(row)];
@@ -114,7 +114,7 @@ mod tests {
     use egui_kittest::kittest::Queryable;
     use snakes_core::evolve::Descriptor;
 
-    /// Commands sent by a click in the middle of a hit target, and whether the hover text calls its cell empty.
+    /// Clicks in the middle of a hit target. Returns the commands that were sent, and whether the hover text calls the cell empty.
     fn clicked(view: &ChartView, hit: &ChartHit) -> (Vec<Command>, bool) {
         let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(

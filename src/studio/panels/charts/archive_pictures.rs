@@ -1,4 +1,4 @@
-//! Pictures of the bodies in an archive, one in each cell and a large one at the pointer.
+//! Pictures of the bodies in an archive: a small one in each cell, and a large one beside the pointer.
 
 use bevy_egui::egui;
 
@@ -9,23 +9,23 @@ use snakes_core::score::AgentSettings;
 use snakes_core::world::BodyPlan;
 use snakes_lab::plot::Role;
 
-/// Smallest width of a cell with a picture, in points: in a smaller one it would be a smudge.
+/// Minimum width of a cell with a picture, in points. In a narrower cell the picture would be unrecognizable.
 const LEAST_WIDTH: f32 = 16.0;
-/// Share of a cell's width that a body takes.
+/// Maximum share of a cell's width that its picture takes.
 const FILLED: f32 = 0.9;
-/// Size of the large picture at most, in points.
+/// Maximum size of the large picture, in points.
 const LARGE: egui::Vec2 = egui::vec2(200.0, 60.0);
 
-/// A body from the side.
+/// A body, seen from the side.
 #[derive(Debug, Clone)]
 struct SideView {
     length_m: f32,
     height_m: f32,
-    /// The outline of each limb: see [`Outlines::seen`].
+    /// Outline of each limb: see [`Outlines::seen`].
     limbs_m: Vec<Vec<[f32; 2]>>,
 }
 
-/// The bodies of an archive's elites, in the order of their cells. Empty if all elites have the same body.
+/// Bodies of an archive's elites, in the order of their cells. Empty if all elites have the same body.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ArchivePictures {
     bodies: Vec<SideView>,
@@ -33,7 +33,7 @@ pub(super) struct ArchivePictures {
 }
 
 impl ArchivePictures {
-    /// The pictures of elites, if they have bodies of their own.
+    /// Creates the pictures of the elites, if the elites have different bodies.
     pub fn of(archive: &Archive, agent: &AgentSettings) -> Self {
         let body = |genes: &EliteGenes| match genes {
             EliteGenes::Point(_) => None,
@@ -46,8 +46,8 @@ impl ArchivePictures {
         Self { bodies, longest_m }
     }
 
-    /// Draws the body of the cell with this index from the side, the head on the right, as large as the cell allows: its
-    /// row tells the length. `ground` is the cell's colour.
+    /// Draws the body of the cell with this index from the side, with the head on the right, as large as the cell
+    /// allows. The length is given by the cell's row. `ground` is the colour of the cell.
     pub fn draw(
         &self,
         painter: &egui::Painter,
@@ -66,7 +66,7 @@ impl ArchivePictures {
         body.draw(painter, rect.center(), scale, shades);
     }
 
-    /// Draws the body of the cell with this index large, in its colours.
+    /// Draws a large picture of the body in the cell with this index, in red and blue.
     pub fn large(&self, ui: &mut egui::Ui, index: usize) {
         let Some(body) = self.bodies.get(index) else { return };
         let scale = (LARGE.x / self.longest_m.max(f32::MIN_POSITIVE))
@@ -86,7 +86,7 @@ impl SideView {
         Self { length_m, height_m, limbs_m: outlines.seen(2) }
     }
 
-    /// Draws the limbs in two colours in turn, the head on the right, where the stairs are.
+    /// Draws the limbs alternately in two colours, with the head on the right, where the stairs are.
     fn draw(
         &self,
         painter: &egui::Painter,

@@ -1,4 +1,4 @@
-//! The snakes of each generation in bands, such as species, and two numbers of the best of them.
+//! Chart of the snakes of each generation in bands, such as species, and of two numbers of the best snake.
 
 use std::collections::BTreeMap;
 
@@ -9,48 +9,48 @@ use snakes_core::evolve::{IndividualId, Settings, SpeciesCount};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::GenerationReport;
 
-/// Maximum number of generations that are drawn. Layers keep their height over a part of each, which takes two points.
+/// Maximum number of generations that are drawn. In each, a layer is level over a short width, which takes two points.
 const MAX_DRAWN: usize = 600;
-/// Half of the width over which a layer keeps its height, in generations.
+/// Half of the width over which a layer is level, in generations.
 const LEVEL: f64 = 0.25;
 
-/// The texts of the bands, and the numbers of the best snake of each generation.
+/// Texts of a chart of bands, and the numbers of the best snake.
 pub(super) struct Bands {
-    /// Title of the figure.
+    /// Title of the whole figure.
     pub title: &'static str,
-    /// Name of the stack.
+    /// Name of the stack of bands.
     pub name: &'static str,
-    /// The first sentence of the note.
+    /// First sentence of the note below the figure.
     pub note: &'static str,
-    /// A band by its number, such as "Species 4".
+    /// Returns the name of the band with this number, such as "Species 4".
     pub band: fn(u32) -> String,
-    /// A number of bands, such as "3 species".
+    /// Describes a number of bands, such as "3 species".
     pub count: fn(usize) -> String,
-    /// Name of the snakes beyond the bands of the log.
+    /// Name of the snakes that belong to none of the recorded bands.
     pub rest: &'static str,
-    /// Head of the table's column of bands.
+    /// Heading of the column for the bands in the table.
     pub column: &'static str,
-    /// The numbers of the best snake.
+    /// Two numbers of the best snake, shown in a second chart.
     pub best: BestNumbers,
 }
 
-/// Two numbers of the best snake of each generation.
+/// Texts and values of two numbers of the best snake of each generation.
 pub(super) struct BestNumbers {
-    /// Name of the chart.
+    /// Name of the chart of the two numbers.
     pub name: &'static str,
-    /// Name of its vertical axis.
+    /// Name of the chart's vertical axis.
     pub axis: &'static str,
-    /// Names of the numbers.
+    /// Names of the two numbers.
     pub names: [&'static str; 2],
-    /// Heads of the table's columns.
+    /// Headings of the two columns in the table.
     pub columns: [&'static str; 2],
-    /// The two numbers; none for a generation without a best snake.
+    /// Returns the two numbers of a generation; `None` without a best snake.
     pub of: fn(&GenerationReport) -> Option<[f64; 2]>,
-    /// The two numbers in words, a line for each.
+    /// Describes the two numbers, in one line for each.
     pub words: fn([f64; 2]) -> String,
 }
 
-/// Chart of the finished generations. It is empty if their bands are not known.
+/// Creates the chart of the finished generations. It is empty if no generation has recorded bands.
 pub(super) fn view(
     bands: &'static Bands,
     settings: &Settings,
@@ -62,7 +62,7 @@ pub(super) fn view(
         return ChartView::new(Figure::of_several(bands.title, Vec::new()), Vec::new());
     };
     let every = known.len().div_ceil(MAX_DRAWN).max(1);
-    // The latest one is always drawn.
+    // The steps are chosen so that the latest generation is always drawn.
     let skipped = (known.len() - 1) % every;
     let drawn: Vec<&GenerationReport> =
         known.iter().skip(skipped).step_by(every).copied().collect();
@@ -89,7 +89,7 @@ pub(super) fn view(
     ChartView::new(figure, vec![hits, points])
 }
 
-/// The first and the last generation of each band.
+/// First and last generation of each band, by the band's number.
 type Lives = BTreeMap<u32, [u32; 2]>;
 
 fn lives(reports: &[&GenerationReport]) -> Lives {
@@ -102,7 +102,7 @@ fn lives(reports: &[&GenerationReport]) -> Lives {
     lives
 }
 
-/// Number of snakes in bands before this one, and in it. The lower its number, the lower a band lies.
+/// Returns the number of snakes in the bands below this one, and in this band. Bands are stacked by their numbers.
 fn place(species: &[SpeciesCount], id: u32) -> [u32; 2] {
     let before = species.partition_point(|count| count.id < id);
     let low = species[..before].iter().map(|count| count.size).sum();
@@ -110,12 +110,13 @@ fn place(species: &[SpeciesCount], id: u32) -> [u32; 2] {
     [low, size]
 }
 
-/// A layer for each band. It begins and ends with a point, in the generation before and in that after.
+/// Creates a layer for each band. It begins in the generation before the band's first one and ends in that after the
+/// last one, with height zero.
 fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Series> {
     let layer = |(&id, &[first, last]): (&u32, &[u32; 2])| {
         let from = drawn.partition_point(|report| report.generation < first);
         let to = drawn.partition_point(|report| report.generation <= last);
-        // Between two drawn generations.
+        // The band exists only between two drawn generations.
         if from == to {
             return None;
         }
@@ -128,7 +129,7 @@ fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Seri
         Some(Series::new("", Role::Species(id), Shape::Layer(ends.collect())))
     };
     let species = lives.iter().filter_map(layer);
-    // The log has only the largest species of a generation.
+    // The log contains only the largest bands of a generation.
     let rest = drawn.iter().flat_map(|report| {
         let low = report.species.iter().map(|count| count.size).sum::<u32>();
         let x = f64::from(report.generation);
@@ -140,7 +141,7 @@ fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Seri
     species.chain(has_rest.then_some(rest)).collect()
 }
 
-/// Hover texts of the bands of a generation, which is drawn `width` generations wide.
+/// Returns the hover targets of the bands in a generation, which is drawn `width` generations wide.
 fn hits(
     bands: &'static Bands,
     report: &GenerationReport,
@@ -172,7 +173,7 @@ fn hits(
     report.species.iter().map(hit).collect()
 }
 
-/// The number of bands of a generation: a record has only the largest of many.
+/// Describes the number of bands in a generation. If only the largest are recorded, there are more.
 fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
     let recorded: u32 = report.species.iter().map(|species| species.size).sum();
     let count = (bands.count)(report.species.len());
@@ -182,7 +183,7 @@ fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
     }
 }
 
-/// Two numbers of the best snake of each generation.
+/// Creates the chart of two numbers of the best snake of each generation.
 fn best_numbers(
     best: &'static BestNumbers,
     reports: &[&GenerationReport],
@@ -216,7 +217,7 @@ fn best_numbers(
     (Chart::new(x, y, series).named(best.name), hits)
 }
 
-/// Rows of the table about a generation, one for each band.
+/// Returns the rows of the table for a generation, one for each band.
 fn records(bands: &Bands, report: &GenerationReport) -> Vec<Vec<String>> {
     let numbers = (bands.best.of)(report);
     let [first, second] =
@@ -240,7 +241,7 @@ mod tests {
         SpeciesCount { id, size, best: Some(1.5) }
     }
 
-    /// A run of 6 snakes with these species: the first number is the generation of the first report.
+    /// Creates the chart of a run of 6 snakes with these species. `first` is the number of the first generation.
     fn view_of(first: u32, generations: &[&[SpeciesCount]]) -> ChartView {
         let run = species_run();
         let of = |(generation, species): (u32, &&[SpeciesCount])| {
@@ -253,7 +254,7 @@ mod tests {
         view(&SPECIES, run.settings(), &reports)
     }
 
-    /// The points of the layer of a species.
+    /// Returns the points of a species' layer.
     fn layer(view: &ChartView, id: u32) -> Vec<[f64; 3]> {
         let mut series = view.figure.charts[0].series.iter();
         match series.find(|series| series.role == Role::Species(id)).map(|of| &of.shape) {
@@ -308,7 +309,7 @@ mod tests {
         }
         let [network] = &view.figure.charts[1..] else { panic!("two charts") };
         let Shape::Line(links) = &network.series[0].shape else { panic!("a line") };
-        // In the first generation each of 21 inputs is linked to each of 4 outputs.
+        // In the first generation, each of 21 inputs is linked to each of 4 outputs.
         assert_eq!(links[0], [1.0, 84.0]);
         let words = view.hits[1][0].words();
         assert_eq!(words, "Best network of generation 1\n84 links\n0 hidden nodes");

@@ -1,9 +1,9 @@
-//! Numbers of blocks of evolving bodies, and the growth of the best body.
+//! Chart of the numbers of blocks in evolving bodies, and of the size of the best body.
 
 use super::bands::{Bands, BestNumbers};
 use snakes_lab::run::GenerationReport;
 
-/// Numbers of blocks by generation.
+/// Texts of the chart of the numbers of blocks by generation.
 pub(super) static BLOCKS: Bands = Bands {
     title: "Blocks by generation",
     name: "Blocks",
@@ -25,7 +25,7 @@ pub(super) static BLOCKS: Bands = Bands {
     },
 };
 
-/// Number of blocks and length in metres of the best snake.
+/// Returns the number of blocks of the best snake, and its length in metres.
 fn body_size(report: &GenerationReport) -> Option<[f64; 2]> {
     let champion = report.champion.as_ref()?;
     let body = champion.body();

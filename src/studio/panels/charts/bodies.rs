@@ -1,4 +1,4 @@
-//! The ancestry of the best body as a row of pictures, one at every change of its structure.
+//! Chart of the best body's ancestry: a row of pictures, one for every change of the structure.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -11,25 +11,26 @@ use snakes_core::world::BodyPlan;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::{Ancestor, Ancestry, GenerationReport};
 
-/// Maximum number of bodies that are drawn; the earliest are left out.
+/// Maximum number of bodies that are drawn; earlier ones are left out.
 const MAX_BODIES: usize = 24;
-/// Width of a block of one metre in the chart, in columns, unless a body would then be wider than [`WIDEST`].
+/// Width of a metre in the chart, in columns. It is less if a body would otherwise be wider than [`WIDEST`].
 const METRE: f64 = 0.4;
-/// Width of the widest body in the chart, in columns.
+/// Maximum width of a body in the chart, in columns.
 const WIDEST: f64 = 0.9;
 
-/// The first individual with a structure.
+/// A new structure of a body: the first individual with the structure.
 struct Structure {
     place: IndividualId,
     genome: Arc<Genome>,
     fitness: Option<f32>,
-    /// Fitness of its parent, or of the record before.
+    /// Fitness of the individual's parent, or of the previous record.
     before: Option<f32>,
-    /// The change of structure in words.
+    /// Change of the structure, in words.
     change: String,
 }
 
-/// Chart of the structures in the line of the best snake, or, where snakes have no known parents, of the best snakes so far.
+/// Creates the chart of the structures in the best snake's line of descent. If parents are unknown, shows the
+/// structures of the best snakes so far.
 pub(super) fn view(
     settings: &Settings,
     reports: &[GenerationReport],
@@ -37,7 +38,7 @@ pub(super) fn view(
 ) -> ChartView {
     let ancestry = ancestry.filter(|of| of.line.len() > 1);
     let mut structures = ancestry.map(of_line).unwrap_or_default();
-    // Genomes that an earlier session found are unknown, but those of champions.
+    // Of generations that were finished before the program started, only the champions' genomes are known.
     let is_line = !structures.is_empty();
     if !is_line {
         structures = of_records(reports);
@@ -96,12 +97,12 @@ pub(super) fn view(
     ChartView::new(figure, vec![hits])
 }
 
-/// The limbs of a body from above, the head at the top: left, right, lower and upper end of each, in metres. The middle of the
-/// body is at 0, and its rear end too.
+/// Returns the limbs of a body from above, with the head at the top: the left, right, lower and upper end of each, in
+/// metres. The middle of the body is at 0 across, and its rear end at 0 along.
 fn seen_from_above(body: &BodyPlan) -> Vec<[f64; 4]> {
     let length_m = f64::from(body.length_m());
     if body.is_branching() {
-        // The boxes around its parts.
+        // A branching body is drawn as the boxes around its parts.
         let boxes_m = body.rest_boxes_m();
         let ends = boxes_m.iter().fold([f32::MAX, f32::MIN], |[least, most], [from, to]| {
             [least.min(from.x), most.max(to.x)]
@@ -140,7 +141,7 @@ fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> Str
     )
 }
 
-/// The structures in a line of descent, the oldest first, as far as genomes are known.
+/// Returns the structures in a line of descent, the oldest first, as far as genomes are known.
 fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
     let known = |ancestor: &Arc<Ancestor>| Some((Arc::clone(ancestor), ancestor.genome.clone()?));
     let line: Vec<(Arc<Ancestor>, Arc<Genome>)> =
@@ -168,7 +169,7 @@ fn of_line(ancestry: &Ancestry) -> Vec<Structure> {
     structures
 }
 
-/// The change between a parent and a child of another structure.
+/// Describes the change between a parent and a child with different structures.
 fn in_words(parent: &Genome, child: &Genome) -> String {
     match BodyChange::between(parent, child) {
         Some(change) => change.words().to_owned(),
@@ -184,7 +185,7 @@ fn in_words(parent: &Genome, child: &Genome) -> String {
     }
 }
 
-/// The records of a run whose structure differs from that of the record before.
+/// Returns the champions that were better than all earlier ones and whose structure differs from that of the previous one.
 fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
     let (mut structures, mut best): (Vec<Structure>, Option<f32>) = (Vec::new(), None);
     for report in reports {
@@ -211,7 +212,7 @@ fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
     structures
 }
 
-/// Row of the table about a structure.
+/// Returns the row of the table for a structure.
 fn record(settings: &Settings, structure: &Structure) -> Vec<String> {
     let body = settings.trial.agent.body_plan(&structure.genome);
     let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
@@ -242,7 +243,7 @@ mod tests {
         settings
     }
 
-    /// A line of descent: each child changes its parent's body as the list says, or one of its genes.
+    /// Creates a line of descent. Each child changes its parent's body as the list says; for `None`, it changes a gene.
     fn line(changes: &[Option<BodyChange>]) -> Ancestry {
         let plan = RunPlan::new("test", 1, settings());
         let (space, shape) = (&plan.settings.genome, plan.settings.trial.genome_shape());

@@ -1,8 +1,8 @@
-//! The kinds of charts: their names, and what is said while one is empty.
+//! The kinds of charts: their names, and their texts while they are empty.
 
 use snakes_core::evolve::StrategyKind;
 
-/// Kind of chart.
+/// A kind of chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum ChartKind {
     #[default]
@@ -22,7 +22,7 @@ pub(super) enum ChartKind {
 }
 
 impl ChartKind {
-    /// In the order of their buttons.
+    /// All kinds of charts, in the order of their buttons.
     pub const ALL: [Self; 13] = [
         Self::Fitness,
         Self::Spread,
@@ -39,19 +39,19 @@ impl ChartKind {
         Self::Methods,
     ];
 
-    /// Whether a run of this strategy has such a chart, empty or not.
+    /// Returns whether runs of this strategy have a chart of this kind, even an empty one.
     pub fn is_offered(self, strategy: StrategyKind) -> bool {
         match self {
             Self::Species => strategy.info().has_species,
             Self::Blocks | Self::Bodies => strategy.info().varies_bodies,
             Self::Stairs => strategy.info().evolves_stairs,
-            // Distances on different stairs cannot be compared, and no snake has recorded parents.
+            // Where stairs evolve, distances on different stairs cannot be compared, and parents are not recorded.
             Self::Front | Self::Ancestors | Self::Parents => !strategy.info().evolves_stairs,
             _ => true,
         }
     }
 
-    /// Name on its button, and hover text.
+    /// Returns the label of the button and its tooltip.
     pub fn labels(self) -> (&'static str, &'static str) {
         match self {
             Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
@@ -78,12 +78,12 @@ impl ChartKind {
         }
     }
 
-    /// Prefix of exported file names.
+    /// Returns the first part of exported files' names.
     pub fn file_name(self) -> String {
         self.labels().0.to_lowercase()
     }
 
-    /// Text shown while there is no data.
+    /// Returns the text that is shown while there is no data.
     pub fn empty_text(self) -> &'static str {
         match self {
             Self::Fitness => {

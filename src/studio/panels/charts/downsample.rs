@@ -4,29 +4,29 @@ use egui_plot::PlotPoint;
 
 use snakes_lab::plot::{Chart, Shape};
 
-/// Maximum number of points of a drawn line: more than one per pixel of the screen's width.
+/// Maximum number of points of a drawn line: about one per pixel of the screen's width.
 pub(super) const MAX_POINTS: usize = 1500;
 
-/// Series prepared for drawing.
+/// A series of a chart, prepared for drawing.
 #[derive(Debug, Clone)]
 pub(super) enum DrawnSeries {
-    /// Points, joined or not.
+    /// Points, connected or not.
     Points(Vec<PlotPoint>),
-    /// Positions of a band with its lower and upper ends.
+    /// Positions along the horizontal axis of a band, with its lower and upper ends.
     Band([Vec<f64>; 3]),
-    /// Positions of a layer with its lower and upper ends, and the points of its upper edge.
+    /// Positions along the horizontal axis of a layer with its lower and upper ends, and the points of its upper edge.
     Layer([Vec<f64>; 3], Vec<PlotPoint>),
-    /// Drawn directly from its data, which is small.
+    /// The series is small, and is drawn directly from its data.
     AsItIs,
 }
 
-/// Prepares all series of a chart, in order.
+/// Prepares all series of a chart for drawing, in their order.
 pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
     let of_shape = |shape: &Shape| match shape {
         Shape::Line(points) | Shape::Dashed(points) => DrawnSeries::Points(line(points)),
         Shape::Points(points) => DrawnSeries::Points(points.iter().map(|&at| at.into()).collect()),
         Shape::Band(ends) => DrawnSeries::Band(band(ends)),
-        // Layers are thinned out together, before they are stacked, so that they fit onto each other.
+        // Layers are downsampled together before they are stacked, so that they fit onto each other.
         Shape::Layer(ends) => {
             let of = |index: usize| ends.iter().map(|end| end[index]).collect();
             let upper = ends.iter().map(|&[x, _, high]| [x, high].into());
@@ -39,12 +39,12 @@ pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
     chart.series.iter().map(|series| of_shape(&series.shape)).collect()
 }
 
-/// Number of neighbouring points that are merged, if each group is drawn with `each` points.
+/// Returns how many neighbouring points form a group, if each group is drawn with `each` points.
 fn bucket(count: usize, each: usize) -> usize {
     if count <= MAX_POINTS { 1 } else { count.div_ceil(MAX_POINTS / each) }
 }
 
-/// Keeps the minimum and the maximum of each group, in order, so that no peak is lost.
+/// Keeps the minimum and the maximum of each group, in their order, so that no peak is lost.
 fn line(points: &[[f64; 2]]) -> Vec<PlotPoint> {
     let size = bucket(points.len(), 2);
     if size == 1 {
@@ -58,7 +58,7 @@ fn line(points: &[[f64; 2]]) -> Vec<PlotPoint> {
         [first, second.filter(|second| first != Some(second))]
     });
     let mut drawn: Vec<PlotPoint> = extremes.flatten().map(|&at| at.into()).collect();
-    // The first and the last point are kept.
+    // The first and the last point are always kept.
     if let (Some(&first), Some(&last)) = (points.first(), points.last()) {
         if drawn.first().is_some_and(|at| at.x > first[0]) {
             drawn.insert(0, first.into());
@@ -70,12 +70,12 @@ fn line(points: &[[f64; 2]]) -> Vec<PlotPoint> {
     drawn
 }
 
-/// Keeps the lowest and the highest end of each group.
+/// Keeps the lowest lower end and the highest upper end of each group.
 fn band(ends: &[[f64; 3]]) -> [Vec<f64>; 3] {
     let mut drawn = [Vec::new(), Vec::new(), Vec::new()];
     let count = ends.chunks(bucket(ends.len(), 1)).len();
     for (index, neighbours) in ends.chunks(bucket(ends.len(), 1)).enumerate() {
-        // The last position is kept.
+        // The last position is always kept.
         let place = if index + 1 == count { neighbours.last() } else { neighbours.first() };
         let Some(place) = place else { continue };
         let low = neighbours.iter().map(|end| end[1]).fold(place[1], f64::min);

@@ -18,16 +18,16 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_lab::plot::{Chart, Role, Series, Shape, beside_line};
 
-/// Maximum distance between a click and a point, in screen points.
+/// Maximum distance between a click and a point of the chart, in egui points.
 const CLICK_DISTANCE: f32 = 16.0;
-/// Space around the name of a mark on its plate, in points.
+/// Padding of the plate behind the name of a mark, in egui points.
 const MARK_PADDING: egui::Vec2 = egui::vec2(4.0, 1.0);
-/// Length of the head of an arrow, in points.
+/// Length of an arrow's head, in egui points.
 const ARROW_TIP: f32 = 7.0;
 /// Maximum number of points on a line that are marked individually.
 const MAX_MARKED_POINTS: usize = 30;
 
-/// Draws a view over the available width and height. `shown` are the individuals on the stage.
+/// Draws a chart view in the available width and this height, in points. `shown` are the individuals on the stage.
 pub(super) fn draw(
     ui: &mut egui::Ui,
     id: &str,
@@ -71,12 +71,12 @@ pub(super) fn draw(
     }
 }
 
-/// One chart of a figure.
+/// One chart of a figure, for drawing.
 struct ChartPart<'a> {
     view: &'a ChartView,
     chart: &'a Chart,
     hits: &'a [ChartHit],
-    /// Series prepared for drawing.
+    /// Series of the chart, prepared for drawing.
     drawn: &'a [DrawnSeries],
 }
 
@@ -96,7 +96,7 @@ impl ChartPart<'_> {
         let titles = 2.0 * (above.rect.height() + ui.spacing().item_spacing.y);
         let left = (height - titles).max(theme::MIN_CHART_HEIGHT);
         let palette = theme::of(ui);
-        // This module draws the hover text itself.
+        // The hover text is drawn below instead of by the plot.
         let plot = fixed_plot(id, left, [&chart.x, &chart.y]).label_formatter(|_| None);
         let plot = plot.show_axes([!has_names, true]).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
@@ -156,15 +156,15 @@ impl ChartPart<'_> {
             ""
         };
         response.on_hover_ui_at_pointer(|ui| {
-            // As egui does for texts: a tooltip does not shrink with its content.
+            // egui gives texts the same width. A tooltip does not become narrower with its content.
             ui.set_max_width(ui.spacing().tooltip_width);
             view.pictures.large(ui, index);
             ui.label(hit.words() + replay);
         });
     }
 
-    /// Paints cells and the bodies in them on a ground of empty cells. Polygons of the plot would show seams between
-    /// neighbours.
+    /// Paints cells, and the bodies in them, on a background of empty cells. Polygons of the plot would leave visible
+    /// seams between neighbouring cells.
     fn cells(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
         for series in &self.chart.series {
             let Shape::Cells(cells) = &series.shape else { continue };
@@ -180,7 +180,7 @@ impl ChartPart<'_> {
         }
     }
 
-    /// Writes the names of the marks on plates beside their lines, where they cover least of the series.
+    /// Writes the names of the marks on plates beside their lines, at the places where they cover the least of the series.
     fn mark_labels(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
         if self.chart.marks.is_empty() {
             return;
@@ -203,18 +203,18 @@ impl ChartPart<'_> {
     }
 }
 
-/// Points of a series on the screen.
+/// Returns the points of a series on the screen.
 fn pixels(drawn: &DrawnSeries, transform: &PlotTransform) -> Vec<[f32; 2]> {
     match drawn {
         DrawnSeries::Points(points) => {
             points.iter().map(|point| transform.position_from_point(point).into()).collect()
         }
-        // Labels may cover areas, which stay visible around their plates.
+        // Labels may cover areas, which remain visible around the labels' plates.
         DrawnSeries::Band(_) | DrawnSeries::Layer(..) | DrawnSeries::AsItIs => Vec::new(),
     }
 }
 
-/// Adds a series to a plot. It borrows the points, because there may be many in every frame.
+/// Adds a series to a plot. The points are borrowed, because copying many of them in every frame would be slow.
 fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, palette: &Palette) {
     let color = palette.role(series.role);
     let borrowed = || match drawn {
@@ -252,7 +252,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let DrawnSeries::Layer([along, low, high], _) = drawn else { return };
             let layer = FilledArea::new(&series.name, along, low, high);
             plot.add(layer.fill_color(color).allow_hover(false));
-            // Keeps layers of similar colours apart.
+            // The edge keeps neighbouring layers of similar colours apart.
             let edge = Line::new(&series.name, borrowed()).color(palette.field);
             plot.line(edge.width(1.0).allow_hover(false));
         }
@@ -272,18 +272,18 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             for [left, right, bottom, top] in boxes {
                 let corners =
                     vec![[*left, *bottom], [*right, *bottom], [*right, *top], [*left, *top]];
-                // Keeps neighbours of the same colour apart.
+                // The edge keeps neighbouring blocks of the same colour apart.
                 let edge = Stroke::new(1.0, palette.field);
                 let block = Polygon::new("", corners).fill_color(color).stroke(edge);
                 plot.polygon(block.allow_hover(false));
             }
         }
-        // Painted over the plot.
+        // Cells are painted over the plot.
         Shape::Cells(_) => {}
     }
 }
 
-/// A hit target on the screen. A point is an area without extent.
+/// Returns the rectangle of a hit target on the screen. A point is a rectangle without extent.
 fn on_screen(transform: &PlotTransform, target: HitShape) -> egui::Rect {
     let place = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));
     match target {
@@ -294,14 +294,14 @@ fn on_screen(transform: &PlotTransform, target: HitShape) -> egui::Rect {
     }
 }
 
-/// Index of the hit target under the pointer.
+/// Returns the index of the hit target under the pointer.
 fn nearest(hits: &[ChartHit], transform: &PlotTransform, at: Pos2) -> Option<usize> {
     let distance = |hit: &ChartHit| {
         let area = on_screen(transform, hit.target);
         let way = at - area.center();
         match hit.target {
             HitShape::Point(_) => (way.length() <= CLICK_DISTANCE).then_some(way.length()),
-            // The small vertical term picks the nearest point of a column.
+            // The small vertical term selects the nearest point of a column.
             HitShape::Column(_) => {
                 (way.x.abs() <= CLICK_DISTANCE).then_some(way.x.abs() + way.y.abs() * 1.0e-3)
             }
@@ -312,7 +312,7 @@ fn nearest(hits: &[ChartHit], transform: &PlotTransform, at: Pos2) -> Option<usi
     near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
 }
 
-/// Marks an individual that is on the stage beside others by the dot of its lane, as in the leaderboard.
+/// Marks an individual that is on the stage beside others by a dot in the colour of its lane.
 fn lane_mark(
     painter: &egui::Painter,
     transform: &PlotTransform,
@@ -324,11 +324,11 @@ fn lane_mark(
         ring(painter, transform, target, color);
     }
     let at = on_screen(transform, target).center();
-    // The edge keeps the dot apart from curves of a similar colour.
+    // The edge keeps the dot distinct from curves of a similar colour.
     painter.circle(at, theme::LANE_DOT / 2.0, color, Stroke::new(1.5, palette.panel));
 }
 
-/// Draws a ring around the hovered target, or around the individual on the stage.
+/// Draws a ring around the hovered target, or around an individual on the stage.
 fn ring(painter: &egui::Painter, transform: &PlotTransform, target: HitShape, color: Color32) {
     let (area, stroke) = (on_screen(transform, target), Stroke::new(2.0, color));
     match target {
@@ -341,7 +341,7 @@ fn ring(painter: &egui::Painter, transform: &PlotTransform, target: HitShape, co
     }
 }
 
-/// Test helper: screen position of a chart position, if `area` is the chart's rectangle.
+/// Returns the screen position of a chart position, for tests. `area` is the rectangle of the chart.
 #[cfg(test)]
 pub(super) fn screen_position(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
     let share = |value: f64, range: &std::ops::RangeInclusive<f64>| {

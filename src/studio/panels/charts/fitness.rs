@@ -1,4 +1,4 @@
-//! Fitness by generation: best, mean, median and the middle 50 %.
+//! Chart of the fitness by generation: best, mean, median and the middle 50 %.
 
 use std::ops::RangeInclusive;
 
@@ -9,14 +9,14 @@ use snakes_core::score::Fitness;
 use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use snakes_lab::run::GenerationReport;
 
-/// Minimum length of the axis: the six generations of the original experiment.
+/// Minimum end of the axis of generations: the six generations of the original experiment.
 const MIN_GENERATIONS: f64 = 6.0;
-/// Distance below the landing from which the landing is shown, in metres.
+/// Maximum distance below the landing at which the landing is marked, in metres.
 const LANDING_SHOWN_BELOW_M: f64 = 6.0;
 /// Space above the highest value, as a share of the range of values.
 const HEADROOM: f64 = 0.12;
 
-/// Chart of the finished generations.
+/// Creates the fitness chart of the finished generations.
 pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let known: Vec<(f64, &Statistics)> = reports
@@ -51,7 +51,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
     ChartView::new(Figure::of("Fitness by generation", chart), vec![hits])
 }
 
-/// Hover text and click target of a generation.
+/// Returns the hover text and the click target of a generation.
 fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     let statistics = report.statistics?;
     let Statistics { mean, best, median, std, worst, .. } = statistics;
@@ -77,19 +77,19 @@ fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     ))
 }
 
-/// Range of the axis of generations, of which so many are finished.
+/// Returns the range of the axis of generations, given the number of finished generations.
 pub(super) fn generations(finished: usize) -> RangeInclusive<f64> {
     let last = (finished as f64).max(MIN_GENERATIONS);
     let aside = (last - 1.0) * 0.04;
     1.0 - aside..=last + aside
 }
 
-/// Axis ranges and marks of the chart.
+/// Ranges of the axes and marks of the fitness chart.
 #[derive(Debug, Clone, PartialEq)]
 struct ChartBounds {
     x: RangeInclusive<f64>,
     y: RangeInclusive<f64>,
-    /// Named positions on the stairs.
+    /// Names of positions on the stairs, and the positions in metres.
     marks: Vec<(&'static str, f64)>,
 }
 
@@ -98,7 +98,7 @@ impl ChartBounds {
         let trial = &settings.trial;
         let [mut min, mut max] = extent(values).unwrap_or([f64::MAX, f64::MIN]);
         let mut marks = Vec::new();
-        // Only a distance can be compared with positions on the stairs.
+        // Only a distance can be compared to positions on the stairs.
         if trial.fitness.is_along_y() {
             let first_riser_m = f64::from(trial.stairs.first_riser_y_m);
             let landing_m = f64::from(trial.stairs.landing_y_m());
@@ -112,13 +112,13 @@ impl ChartBounds {
             (min, max) = (0.0, 1.0);
         }
         let margin = ((max - min) * 0.06).max(0.5);
-        // A best line that has reached the top of the stairs would else run along the frame.
+        // Otherwise the line of a best snake at the top of the stairs would coincide with the frame.
         let headroom = ((max - min) * HEADROOM).max(1.0);
         Self { x: generations(finished), y: min - margin..=max + headroom, marks }
     }
 }
 
-/// Title of the fitness axis.
+/// Returns the title of the fitness axis.
 pub(super) fn axis_title(fitness: Fitness) -> &'static str {
     match fitness {
         Fitness::Centre => "Distance of the middle block",

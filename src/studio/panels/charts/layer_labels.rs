@@ -7,7 +7,7 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_lab::plot::{Chart, Role};
 
-/// Space around a number, in points.
+/// Space around the number of a species, in points.
 const PADDING: f32 = 2.0;
 
 /// Writes the number of each species where its layer is thickest, if there is room.

@@ -15,31 +15,31 @@ use snakes_lab::plot::Figure;
 use snakes_lab::statistics::Quartiles;
 use snakes_lab::study::{controllers, curves, short_title};
 
-/// An open study, with the selected controller.
+/// Panel of a study: its learning curves for the selected controller, and its table.
 #[derive(Debug)]
 pub(crate) struct CurvesPanel {
     study: StudyRuns,
     controllers: Vec<ControllerKind>,
-    /// Controller whose curves are shown.
+    /// Controller whose learning curves are shown.
     controller: ControllerKind,
     view: ChartView,
 }
 
 impl CurvesPanel {
-    /// Panel for the runs of a study.
+    /// Creates the panel for the runs of a study.
     pub fn new(study: &StudyRuns) -> Self {
         let controllers = controllers(&study.arms);
-        // Waves and gaits learn more than free signals, so the last controller is shown first.
+        // Waves and gaits learn more than free signals, so the last controller is selected first.
         let controller = controllers.last().copied().unwrap_or_default();
         Self { view: view(study, controller), study: study.clone(), controllers, controller }
     }
 
-    /// Figure of the shown curves.
+    /// Returns the figure of the shown learning curves.
     pub fn figure(&self) -> &Arc<Figure> {
         &self.view.figure
     }
 
-    /// Draws the panel with curves `height` points high.
+    /// Draws the panel. The chart of the curves is `height` points high.
     pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
         if self.study.arms.is_empty() {
             return explain(ui, "This study has no finished runs.");
@@ -53,7 +53,7 @@ impl CurvesPanel {
                 }
             }
         });
-        // The chart has nothing to click.
+        // There is nothing to click in the chart.
         draw::draw(ui, "curves", &self.view, height, &[], &mut Vec::new());
         self.table(ui);
     }
@@ -96,7 +96,7 @@ impl CurvesPanel {
     }
 }
 
-/// The curves of a controller, with a summary of the study.
+/// Creates the chart of a controller's learning curves, with a summary of the study.
 fn view(study: &StudyRuns, controller: ControllerKind) -> ChartView {
     let protocols = || study.arms.iter().map(|arm| &arm.protocol);
     let mut presets: Vec<&str> = protocols().map(|of| of.preset.as_str()).collect();
@@ -113,7 +113,7 @@ fn view(study: &StudyRuns, controller: ControllerKind) -> ChartView {
     ChartView { is_of_run: false, ..ChartView::new(figure, Vec::new()) }
 }
 
-/// A value of all runs that have it.
+/// Returns a named value of all runs of an arm that have it.
 fn values(arm: &StudiedArm, name: &str) -> Vec<f64> {
     arm.runs.iter().filter_map(|run| run.number(name)).collect()
 }
@@ -175,7 +175,7 @@ mod tests {
         for text in ["Genetic algorithm", "2 of 3", "140", "never", "0 of 1", "24.5 m"] {
             assert!(harness.query_all_by_label(text).next().is_some(), "{text}");
         }
-        // The legend and the table name it.
+        // The controller is named in the legend and in the table.
         let is_shown =
             |harness: &Harness<'_>, name| harness.query_all_by_label(name).next().is_some();
         assert!(!is_shown(&harness, "Halving"));

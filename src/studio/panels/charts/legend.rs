@@ -1,4 +1,4 @@
-//! Legend of a chart: a sample and a name for each series, and what a click does.
+//! Legend of a chart: a sample and a name for each series, and a hint on what a click does.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Sense, Stroke};
@@ -7,7 +7,7 @@ use super::view::ChartView;
 use crate::studio::ui::theme;
 use snakes_lab::plot::{Series, Shape};
 
-/// Draws the legend, which wraps between names. Marks are labelled in the chart.
+/// Draws the legend, which wraps between names. Marks are not in it, because they are labelled in the chart.
 pub(super) fn legend(ui: &mut egui::Ui, view: &ChartView) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme::GAP, theme::GAP / 2.0);
@@ -18,13 +18,13 @@ pub(super) fn legend(ui: &mut egui::Ui, view: &ChartView) {
         if !hint.is_empty() {
             let weak = theme::of(ui).text_weak;
             let text = egui::RichText::new(hint).small().italics().color(weak);
-            // It moves to the next line as a whole.
+            // The hint moves to the next line as a whole.
             ui.add(egui::Label::new(text).extend());
         }
     });
 }
 
-/// Says what a click does; empty if there is nothing to point at.
+/// Returns a hint on what a click does; empty if the chart has no hit targets.
 fn hint(view: &ChartView) -> &'static str {
     let mut hits = view.hits.iter().flatten().peekable();
     let shapes = || view.figure.charts.iter().flat_map(|chart| &chart.series).map(|of| &of.shape);

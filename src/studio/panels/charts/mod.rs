@@ -44,7 +44,7 @@ use species::SPECIES;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
 
-/// The panel with the selected chart.
+/// The charts panel, with the selected chart.
 pub(super) struct ChartsPanel {
     kind: ChartKind,
     known: Option<(ChartKind, Version, Option<ChartView>)>,
@@ -54,10 +54,10 @@ pub(super) struct ChartsPanel {
 }
 
 impl ChartsPanel {
-    /// Panel with an optional study of methods.
+    /// Creates the panel, with an optional study of methods.
     pub fn new(comparison: Option<&StudyRuns>) -> Self {
         Self {
-            // A comparison that was given at start is shown first.
+            // A study with which the program was started is shown first.
             kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },
             known: None,
             torques: TorqueComparison::default(),
@@ -66,7 +66,7 @@ impl ChartsPanel {
         }
     }
 
-    /// Draws the panel and collects the user's commands. `selected` is the selected snake of the stage.
+    /// Draws the panel and collects the user's commands. `selected` is the selected snake on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -133,7 +133,7 @@ impl ChartsPanel {
     ) {
         let view = self.torques.update(run, selected);
         let view = view.and_then(|()| self.torques.view().ok_or(ChartKind::Torques.empty_text()));
-        // No individual is highlighted, because the chart shows only the selected one.
+        // No individual is highlighted, because the chart shows only the selected snake.
         view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
     }
 
@@ -172,14 +172,14 @@ fn view_or_reason(
     }
 }
 
-/// Fitness chart of the Run panel.
+/// The fitness chart of the Run panel, cached.
 #[derive(Default)]
 pub(super) struct FitnessChart {
     known: Option<(Version, ChartView)>,
 }
 
 impl FitnessChart {
-    /// Draws the chart `height` points high and collects the user's commands.
+    /// Draws the chart `height` points high, and collects the user's commands.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -198,7 +198,7 @@ impl FitnessChart {
     }
 }
 
-/// Data of a chart, if there is any.
+/// Computes the view of a chart, if there is data for it.
 fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     let settings = run.settings();
     let exploration = run.exploration();
@@ -224,7 +224,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     }
 }
 
-/// The reason why the chart of a run is empty.
+/// Returns the reason why a chart of the run is empty.
 fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
     match kind {
         ChartKind::Front if run.exploration().is_some() => {
@@ -237,7 +237,7 @@ fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
     }
 }
 
-/// Draws the title of a chart, and its export buttons. The flag says whether it is about the current run.
+/// Draws the title of a chart and its export buttons. `is_of_run` tells whether the chart is about the current run.
 fn header(
     ui: &mut egui::Ui,
     figure: &Arc<Figure>,

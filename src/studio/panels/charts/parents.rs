@@ -1,5 +1,5 @@
-//! Gene values of the parents of the next generation: one line per parent over all genes, each value relative to its
-//! allowed range.
+//! Chart of the gene values of the parents of the next generation: one line per parent over all genes. Each value is
+//! relative to its allowed range.
 
 use std::sync::Arc;
 
@@ -12,19 +12,19 @@ use snakes_core::schema::DisplayUnit;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
 use snakes_lab::run::Ancestor;
 
-/// Maximum number of lines that can be distinguished.
+/// Maximum number of parents' lines that can be distinguished.
 const MAX_PARENTS: usize = 40;
-/// The brightest colours of the ramp, after green, are too light for lines on a light panel.
+/// Maximum share of the colour ramp that is used. The brighter colours are too light for lines on a light panel.
 const MAX_BRIGHTNESS: f32 = 0.85;
 
-/// Chart of the parents with their numbers of children. None if no genes are known.
+/// Creates the chart of the parents, with their numbers of children. Returns `None` if no genes are known.
 pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Option<ChartView> {
     let unit = settings.trial.fitness.unit();
     let mut known: Vec<_> = parents
         .iter()
         .filter_map(|(parent, children)| Some((parent, parent.genome.as_ref()?, *children)))
         .collect();
-    // The best parents are drawn on top, and are kept if there are too many.
+    // The best parents are drawn on top. They are kept if there are too many parents.
     let fitness = |parent: &Ancestor| parent.fitness.unwrap_or(f32::MIN);
     known.sort_by(|a, b| fitness(a.0).total_cmp(&fitness(b.0)));
     let surplus = known.len().saturating_sub(MAX_PARENTS);
@@ -77,7 +77,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     let aside = (last * 0.03).max(0.3);
     let x = Axis { names, ..Axis::new("Gene", "", -aside..=last + aside) };
     let y = Axis::new("Value within its range (0 lowest, 1 highest)", "", -0.05..=1.05);
-    // Exported files contain the values instead of their relative positions.
+    // Exported files contain the values rather than their relative positions.
     let heads: Vec<String> =
         [x.name.clone()].into_iter().chain(series.iter().map(|of| of.name.clone())).collect();
     let records: Vec<Vec<String>> = (x.names.iter().enumerate())
@@ -104,7 +104,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
     Some(ChartView::new(figure.with_note(note).with_numbers(heads, records), vec![hits]))
 }
 
-/// A feature in the unit in which panels show it: angles in degrees.
+/// Converts a feature to the unit in which panels show it: angles to degrees.
 fn in_unit_of_panels(mut feature: Feature) -> Feature {
     if let Some(display) = DisplayUnit::of_unit(feature.unit) {
         feature.value = display.shown(feature.value) as f32;

@@ -1,4 +1,4 @@
-//! Pareto front of distance and energy. A click replays a member.
+//! Chart of the Pareto front of distance and energy. A click replays a member.
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
@@ -7,7 +7,7 @@ use snakes_core::evolve::{Front, FrontMember, IndividualId, Settings};
 use snakes_core::score::Trial;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 
-/// Chart of a front. It is empty if the front has no members.
+/// Creates the chart of a front, which is empty if the front has no members.
 pub(super) fn view(settings: &Settings, front: &Front) -> ChartView {
     let points: Vec<[f64; 2]> = front.members().map(place).collect();
     let along = |axis: usize| points.iter().map(move |point| point[axis]);
@@ -28,13 +28,13 @@ pub(super) fn view(settings: &Settings, front: &Front) -> ChartView {
     ChartView::new(figure, vec![front.members().map(hit).collect()])
 }
 
-/// Chart position of a member, in metres and kJ.
+/// Returns the chart position of a member: distance in metres and energy in kJ.
 fn place(member: &FrontMember) -> [f64; 2] {
     let energy_j = member.evaluation.effort.map_or(0.0, |effort| f64::from(effort.energy_j));
     [f64::from(member.evaluation.centre_y_m), energy_j / 1000.0]
 }
 
-/// Hover text of a member.
+/// Returns the hover text of a member.
 fn hover_text(member: &FrontMember, trial: &Trial) -> String {
     let [y_m, energy_kj] = place(member);
     format!(
@@ -57,7 +57,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// Commands sent by a click at a chart position, moved by `off` points.
+    /// Clicks at a chart position, moved by `off` points. Returns the commands that were sent.
     fn sent(view: &ChartView, at: [f64; 2], off: egui::Vec2) -> Vec<Command> {
         let size = egui::vec2(theme::PANEL_WIDTH, 400.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
@@ -83,7 +83,7 @@ mod tests {
         let FrontMember { generation, individual, .. } = *best;
         let show = Command::Stage(StageCommand::Show(Pick::Front { generation, individual }));
         assert_eq!(sent(&view, place(best), egui::vec2(3.0, 3.0)), [show]);
-        // Far below the point there is no member.
+        // There is no member far below the point.
         assert_eq!(sent(&view, place(best), egui::vec2(0.0, 60.0)), []);
         let table = view.figure.table();
         assert_eq!(table.len(), 1 + front.members().len());

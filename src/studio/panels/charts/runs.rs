@@ -1,4 +1,4 @@
-//! Comparison of the current run with other saved runs.
+//! Chart that compares the current run with other saved runs.
 
 use std::sync::Arc;
 
@@ -16,15 +16,15 @@ use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 /// Colours of the other runs, in the order of their selection.
 const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
 
-/// Curves of a run.
+/// Learning curves of a run.
 struct Curves {
     name: Arc<str>,
     role: Role,
-    /// Generation, best and median fitness.
+    /// Generation, best and median fitness of each finished generation.
     points: Vec<[f64; 3]>,
 }
 
-/// Chart of the current run and the selected ones.
+/// Creates the chart of the current run and of the selected other runs.
 pub(super) fn view(run: &CurrentRun) -> ChartView {
     let fitness = run.settings().trial.fitness;
     let unit = fitness.unit();
@@ -42,7 +42,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
         let points = other.records.iter().filter_map(point);
         let mut name = title(&other.plan);
         if curves.iter().any(|known| *known.name == *name) {
-            // The folder distinguishes runs with equal preset and seed.
+            // The name of the folder distinguishes runs with the same preset and seed.
             name = format!("{name}, {}", compared.folder.file_name().unwrap_or_default().display());
         }
         curves.push(Curves { name: name.into(), role, points: points.collect() });
@@ -86,7 +86,7 @@ fn title(plan: &RunPlan) -> String {
     format!("{}, seed {}, {}", plan.preset, plan.seed, plan.settings.evolution.strategy)
 }
 
-/// Draws the list of runs to select, and errors of those that cannot be read.
+/// Draws the list of runs to select, and the errors of runs that cannot be read.
 pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let others = run.others();
     for compared in others.compared() {

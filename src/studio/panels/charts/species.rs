@@ -1,10 +1,10 @@
-//! Species of networks, and the growth of the best one.
+//! Chart of the species of networks, and of the size of the best snake's network.
 
 use super::bands::{Bands, BestNumbers};
 use snakes_core::genome::ControllerGenes;
 use snakes_lab::run::GenerationReport;
 
-/// Species by generation.
+/// Texts of the chart of species by generation.
 pub(super) static SPECIES: Bands = Bands {
     title: "Species by generation",
     name: "Species",
@@ -26,7 +26,7 @@ pub(super) static SPECIES: Bands = Bands {
     },
 };
 
-/// Number of links that are on, and of hidden nodes, of the network of the best snake.
+/// Returns the numbers of enabled links and of hidden nodes in the best snake's network.
 fn network_size(report: &GenerationReport) -> Option<[f64; 2]> {
     let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
         return None;

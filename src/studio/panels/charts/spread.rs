@@ -12,22 +12,22 @@ use snakes_core::world::Disqualification;
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::Generation;
 
-/// Minimum and maximum number of bars.
+/// Minimum and maximum of the desired number of bars.
 const BAR_COUNTS: RangeInclusive<f64> = 6.0..=30.0;
 
-/// Bar of the histogram.
+/// A bar of the histogram.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bin {
-    /// Lower end.
+    /// Lower end of the bar, in units of fitness.
     from: f64,
-    /// Upper end; exclusive except in the last bin.
+    /// Upper end of the bar, in units of fitness; exclusive except in the last bar.
     to: f64,
     count: u32,
-    /// Index and fitness of the best snake.
+    /// Index and fitness of the best snake in the bar.
     best: (u32, f32),
 }
 
-/// Histogram of a generation.
+/// Creates the histogram of a generation.
 pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let bins = bins(&generation.evaluations);
@@ -59,7 +59,7 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     ChartView::new(Figure::of(&title, chart).with_note(note), vec![hits])
 }
 
-/// Sorts healthy snakes into bins of equal, round width. Empty bins are left out.
+/// Sorts healthy snakes into bins of equal, round width. Leaves out empty bins.
 fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
     let healthy: Vec<(u32, f32)> = (0..)
         .zip(evaluations)
@@ -69,7 +69,7 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
     let min = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
     let max = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
     let wanted = (healthy.len() as f64).sqrt().clamp(*BAR_COUNTS.start(), *BAR_COUNTS.end());
-    // `step` divides a range into about six parts.
+    // `step` divides its range into about six parts.
     let width = step((f64::from(max) - f64::from(min)).max(1.0e-3) * 6.0 / wanted);
     let place = |fitness: f32| libm::floor(f64::from(fitness) / width);
     let mut bins: Vec<Bin> = Vec::new();
@@ -80,7 +80,7 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
         match bins.last_mut() {
             Some(bin) if bin.from == from => {
                 bin.count += 1;
-                // The first of equally fit snakes counts as the best.
+                // Among equally fit snakes, the first counts as the best.
                 if fitness > bin.best.1 {
                     bin.best = (individual, fitness);
                 }
@@ -91,7 +91,7 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
     bins
 }
 
-/// Numbers of disqualified snakes by reason.
+/// Describes how many snakes were disqualified for each reason.
 fn disqualified(evaluations: &[Evaluation]) -> String {
     use Disqualification as D;
     let all =

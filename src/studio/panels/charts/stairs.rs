@@ -1,5 +1,5 @@
-//! The tree of stairs that evolve: each staircase at the round in which it came and at its rise, with the transfers of snakes
-//! between them as arrows. A click replays the snake of a staircase. Below it, how many new challenges were solved.
+//! Chart of the tree of evolving stairs. Each staircase is placed at the round in which it was created and at its rise; arrows show
+//! transfers of snakes. A click replays the snake of a staircase. A second chart shows how many new challenges were solved.
 
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
@@ -9,10 +9,10 @@ use snakes_core::evolve::{
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::GenerationReport;
 
-/// Maximum number of the latest transfers that are drawn; more would hide the tree.
+/// Maximum number of drawn transfers, the latest ones. More arrows would hide the tree.
 const MOST_ARROWS: usize = 60;
 
-/// Charts of a tree of a run with this strategy.
+/// Creates the charts of the tree of stairs of a run with this strategy.
 pub(super) fn view(
     strategy: StrategyKind,
     reports: &[GenerationReport],
@@ -59,7 +59,8 @@ fn place(node: &StairsNode) -> [f64; 2] {
     [node.born.into(), node.stairs.rise_m.into()]
 }
 
-/// The stairs of a tree by their state: solved or not, or, where all are, whether they are still in their queue.
+/// Returns the stairs of a tree in series by their state: solved or unsolved or, if all are solved, whether they are
+/// still in their queue.
 fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
     let node = |index: u32| tree.nodes.get(index as usize);
     let descents =
@@ -88,12 +89,12 @@ fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
         state("removed from the queue", Role::Others, &|node| node.archived.is_some());
         state("in the queue", Role::First, &|node| node.archived.is_none());
     }
-    // Empty series need no legend entry.
+    // Empty series would need an entry in the legend.
     series.retain(|series| !series.shape.is_empty());
     series
 }
 
-/// A number at the end of each round.
+/// Returns a number at the end of each round, as points of a chart.
 fn by_round(reports: &[GenerationReport], number: impl Fn(&StairsCount) -> u32) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for count in reports.iter().filter_map(|report| report.stairs) {
@@ -121,7 +122,7 @@ fn hit(index: u32, node: &StairsNode) -> ChartHit {
     }
 }
 
-/// A staircase in words.
+/// Describes a staircase.
 fn words(index: u32, node: &StairsNode) -> String {
     let state = match (node.solved, node.archived) {
         (Some(solved), _) => format!("solved in round {solved}"),
@@ -140,7 +141,7 @@ fn words(index: u32, node: &StairsNode) -> String {
     )
 }
 
-/// Heads of the columns of the table.
+/// Headings of the columns of the table.
 const HEADS: [&str; 9] = [
     "stairs",
     "shape",
@@ -153,7 +154,7 @@ const HEADS: [&str; 9] = [
     "trials",
 ];
 
-/// Row of the table about the stairs with a number.
+/// Returns the row of the table for the stairs with this number.
 fn record((number, node): (u32, &StairsNode)) -> Vec<String> {
     let text = |number: Option<u32>| number.map_or(String::new(), |number| number.to_string());
     vec![

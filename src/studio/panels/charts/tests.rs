@@ -13,7 +13,7 @@ use crate::studio::state::current_run::{
 };
 use snakes_core::evolve::{IndividualId, Settings};
 
-/// Result of `act` and the commands sent, in a panel of this width.
+/// Calls `act` in a panel of this width, in points. Returns its result and the commands that were sent.
 fn with<T>(
     run: &CurrentRun,
     kind: ChartKind,
@@ -28,7 +28,7 @@ fn with<T>(
         Vec::new(),
     );
     harness.run();
-    // Opening a chart may request the list of runs.
+    // Opening a chart may request the list of runs, which is removed.
     harness.state_mut().clear();
     let seen = act(&mut harness);
     harness.run();
@@ -52,7 +52,7 @@ fn a_chart_is_selected_by_its_name() {
     assert_eq!(sent, [Command::Run(RunCommand::ListRuns)], "other runs are looked for once");
 }
 
-/// The charts that a run has.
+/// Returns the kinds of charts that a run has.
 fn offered(run: &CurrentRun) -> Vec<ChartKind> {
     let strategy = run.settings().evolution.strategy;
     ChartKind::ALL.into_iter().filter(|kind| kind.is_offered(strategy)).collect()
@@ -109,7 +109,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
         );
         for (run, kind) in charts {
             let ((), sent) = with(run, kind, width, |harness| {
-                // The torques of waves are computed on another thread.
+                // Another thread computes the torques of waves.
                 for _ in 0..3000 {
                     if harness.query_by_label("CSV").is_some() {
                         break;
@@ -197,7 +197,7 @@ fn a_clicked_snake_is_found_with_the_fitness_of_its_hover_text() {
     assert!(run.individual(IndividualId { generation: 99, individual: 0 }).is_none());
 }
 
-/// Reports of a long run, copied from the last report of a short one.
+/// Creates the reports of a long run, copied from the last report of a short one.
 fn long_reports(generations: u32) -> Vec<snakes_lab::run::GenerationReport> {
     let run = explored_run();
     let last = run.reports().last().expect("explored");

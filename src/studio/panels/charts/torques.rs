@@ -1,4 +1,4 @@
-//! Torques of the selected snake on the stage and of its parent, for every joint, as in Figure 4 of the original
+//! Charts of the joint torques of the selected snake on the stage and of its parent, as in Figure 4 of the original
 //! report.
 
 use std::sync::Arc;
@@ -12,28 +12,28 @@ use snakes_core::score::{KeyframeHistory, Rollout, Trial};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::Lookahead;
 
-/// Maximum number of points that can be distinguished on a line.
+/// Maximum number of points on a line that can be distinguished.
 const MAX_POINTS: usize = 600;
 
-/// Torques about both axes of a joint: times in seconds and torques in N·m.
+/// Torques about both axes of a joint, as points of time in seconds and torque in N·m.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct TorqueLines {
     bend: Vec<[f64; 2]>,
     twist: Vec<[f64; 2]>,
 }
 
-/// Snake whose torques are shown or being computed.
+/// A snake whose torques are shown or being computed.
 struct Subject {
     name: String,
     genome: Arc<Genome>,
     trial: Trial,
-    /// The simulation that computes the torques; none if the genes are the torques.
+    /// Simulation that computes the torques; `None` if the genes contain the torques.
     lookahead: Option<Lookahead>,
     lines: Option<Vec<TorqueLines>>,
     is_of_run: bool,
 }
 
-/// A child and its parent, with their torques.
+/// The selected snake as child, and its parent, with their torques.
 #[derive(Default)]
 pub(super) struct TorqueComparison {
     child: Option<Subject>,
@@ -44,13 +44,13 @@ pub(super) struct TorqueComparison {
 }
 
 impl TorqueComparison {
-    /// Takes the selected snake of the stage and its parent. An error says what is missing.
+    /// Sets the child to the selected snake of the stage, and finds its parent. The error is a message about what is missing.
     pub fn update(
         &mut self,
         run: &CurrentRun,
         selected: Option<&StagedChampion>,
     ) -> Result<(), &'static str> {
-        // The search runs once per change instead of in every frame.
+        // The search is repeated only after a change instead of in every frame.
         let version = run.version();
         let (of_version, of_selected) = match &self.updated_for {
             Some((known, staged)) => (*known == version, staged.as_ref() == selected),
@@ -75,7 +75,7 @@ impl TorqueComparison {
         }
     }
 
-    /// Replaces the parent if it is another one, or is not kept any more.
+    /// Replaces the parent if it is another individual, or is not kept any more.
     fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
         let found = child.and_then(|child| Some((child, parent(run, child)?)));
         let is_it = |known: &Subject, (name, genome): &(String, Arc<Genome>)| {
@@ -95,7 +95,7 @@ impl TorqueComparison {
         }
     }
 
-    /// Charts, once the torques are known.
+    /// Returns the charts; `None` until the torques are known.
     pub fn view(&mut self) -> Option<&ChartView> {
         if self.view.is_none() {
             let subjects = [self.child.as_mut(), self.parent.as_mut()];
@@ -107,19 +107,19 @@ impl TorqueComparison {
     }
 }
 
-/// Place of a snake of the current run.
+/// Returns the place of a snake in the current run; `None` if it is from elsewhere.
 fn place_in(run: &CurrentRun, staged: &StagedChampion) -> Option<IndividualId> {
     let origin = &staged.champion().origin;
     let place = IndividualId { generation: origin.generation, individual: origin.individual };
     (staged.source() == ChampionSource::Run(run.number())).then_some(place)
 }
 
-/// Name and genome of the nearest ancestor with other genes. An elite that survives unchanged is recorded as its own
-/// parent.
+/// Returns the name and the genome of the nearest ancestor with different genes. An elite that survives unchanged is
+/// recorded as its own parent.
 fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)> {
     let mut place = place_in(run, of)?;
     loop {
-        // Parents belong to earlier generations, so the loop ends.
+        // Parents are from earlier generations, so the loop ends.
         place = run.parents_of(place)?.ids().next()?;
         let genome = run.genome_of(place)?;
         if *genome != of.champion().genome {
@@ -130,13 +130,13 @@ fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)
     }
 }
 
-/// Name of a snake of a run.
+/// Returns the name of a snake of a run.
 fn name_of(generation: u32, individual: u32) -> String {
     format!("snake {} of generation {generation}", individual + 1)
 }
 
 impl Subject {
-    /// A snake on the stage, in the world in which it is shown; `run` is the number of the current run.
+    /// Creates the subject for a snake on the stage, in the world in which it is shown. `run` is the number of the current run.
     fn staged(staged: &StagedChampion, run: u32) -> Self {
         let origin = &staged.champion().origin;
         let name = match staged.source() {
@@ -153,7 +153,7 @@ impl Subject {
         Self { is_of_run, ..Self::new(name, genome, staged.trial(), |_| staged.rollout()) }
     }
 
-    /// A snake whose torques are its genes or those of a rollout.
+    /// Creates the subject for a snake. The torques are those in its genes, or else those of a rollout.
     fn new(
         name: String,
         genome: Arc<Genome>,
@@ -167,7 +167,7 @@ impl Subject {
         Self { name, genome, trial: trial.clone(), lookahead, lines, is_of_run: true }
     }
 
-    /// Whether the torques are known.
+    /// Returns whether the torques are known, after processing the results of the simulation.
     fn has_torques(&mut self) -> bool {
         if let Some(lookahead) = &mut self.lookahead {
             lookahead.poll();
@@ -176,14 +176,14 @@ impl Subject {
             }
             let trial = &self.trial;
             self.lines = lookahead.history().map(|history| history_torques(history, trial));
-            // A lookahead holds whole simulations.
+            // The lookahead holds whole simulations, so it is dropped.
             self.lookahead = None;
         }
         true
     }
 }
 
-/// Torques that genes command, each held until the next.
+/// Returns the torques in the genes, each held until the next.
 fn command_torques(commands: &JointCommands, duration_s: f64) -> Vec<TorqueLines> {
     let held = |points: &[(f64, f64)]| {
         let next = points.iter().skip(1).map(|(time_s, _)| *time_s).chain([duration_s]);
@@ -197,7 +197,7 @@ fn command_torques(commands: &JointCommands, duration_s: f64) -> Vec<TorqueLines
     commands.joints.iter().map(of_joint).collect()
 }
 
-/// Torques that acted in a rollout.
+/// Returns the torques that acted in a rollout.
 fn history_torques(history: &KeyframeHistory, trial: &Trial) -> Vec<TorqueLines> {
     let count = history.torques().len();
     let every = count.div_ceil(MAX_POINTS).max(1);
@@ -215,13 +215,13 @@ fn history_torques(history: &KeyframeHistory, trial: &Trial) -> Vec<TorqueLines>
     joints
 }
 
-/// Figure with one chart per joint: solid lines for the child, dashed lines for the parent.
+/// Creates the figure with one chart per joint: solid lines for the child, dashed lines for the parent.
 fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
     let trial = &child.trial;
     let lines = |subject: &Subject| subject.lines.clone().unwrap_or_default();
     let (of_child, of_parent) = (lines(child), parent.map(lines).unwrap_or_default());
     let all = of_child.iter().chain(&of_parent).flat_map(|of| of.bend.iter().chain(&of.twist));
-    // All charts share a range, so that joints can be compared.
+    // All charts have the same range, so that joints can be compared.
     let y = Axis::around("Torque", "N·m", all.map(|point| point[1]).chain([-1.0, 1.0]), 2.0);
     let chart = |(index, lines): (usize, &TorqueLines)| {
         let mut series = Vec::new();
@@ -250,12 +250,12 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
     ChartView { is_of_run: child.is_of_run, ..view }
 }
 
-/// Hover texts of a joint's torques over time.
+/// Returns the hover targets of a joint's torques over time.
 fn hits(child: &TorqueLines, parent: Option<&TorqueLines>) -> Vec<ChartHit> {
     let moments = child.bend.iter().zip(&child.twist).enumerate();
     let hit = |(index, (bend, twist)): (usize, (&[f64; 2], &[f64; 2]))| {
         let before = parent.and_then(|of| of.bend.get(index).zip(of.twist.get(index)));
-        // The parent's torques are omitted if its rollout was sampled at other times.
+        // The parent's torques are left out if its rollout was sampled at other times.
         let before = before.filter(|(before, _)| before[0] == bend[0]);
         let before = before.map(|(bend, twist)| [bend[1], twist[1]]);
         let [time_s, bend_nm, twist_nm] = [bend[0], bend[1], twist[1]];

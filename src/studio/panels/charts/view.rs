@@ -1,4 +1,4 @@
-//! Chart prepared for drawing: its data and its hit targets.
+//! A chart prepared for drawing: its data and its hit targets.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,23 +9,23 @@ use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::IndividualId;
 use snakes_lab::plot::Figure;
 
-/// Chart that is computed once and cached until its data changes.
+/// A chart or figure that is computed once and cached until its data changes.
 #[derive(Debug, Clone)]
 pub(super) struct ChartView {
-    /// Data, also used for export.
+    /// Data of the figure, which is also exported.
     pub figure: Arc<Figure>,
     /// Series of each chart, prepared for drawing.
     pub drawn: Vec<Vec<DrawnSeries>>,
     /// Hit targets of each chart.
     pub hits: Vec<Vec<ChartHit>>,
-    /// Pictures of the bodies in its cells, in their order. The first hit targets belong to the same cells.
+    /// Pictures of the bodies in the cells of the chart, in their order. The first hit targets belong to the same cells.
     pub pictures: ArchivePictures,
-    /// Whether it is about the current run.
+    /// Whether the figure is about the current run.
     pub is_of_run: bool,
 }
 
 impl ChartView {
-    /// View of one or several charts of the current run.
+    /// Creates the view of one or several charts of the current run.
     pub fn new(figure: Figure, hits: Vec<Vec<ChartHit>>) -> Self {
         let drawn = figure.charts.iter().map(drawn).collect();
         let pictures = ArchivePictures::default();
@@ -33,19 +33,19 @@ impl ChartView {
     }
 }
 
-/// Part of a chart that has a hover text.
+/// A part of a chart that has a hover text.
 #[derive(Debug, Clone)]
 pub(super) struct ChartHit {
-    /// Position and shape.
+    /// Position and shape of the hit target.
     pub target: HitShape,
     words: HoverText,
-    /// Individual that a click replays.
+    /// Individual that a click on the hit target replays, if any.
     pub pick: Option<Pick>,
-    /// Place of that individual, if it belongs to the current run.
+    /// Place of the individual, if it belongs to the current run.
     pub place: Option<IndividualId>,
 }
 
-/// Hover text that is computed on demand, because a chart may have ten thousand targets.
+/// A hover text that is computed on demand, because a chart may have ten thousand hit targets.
 #[derive(Clone)]
 struct HoverText(Arc<dyn Fn() -> String + Send + Sync>);
 
@@ -55,24 +55,24 @@ impl fmt::Debug for HoverText {
     }
 }
 
-/// Position and shape of a hit target.
+/// Position and shape of a hit target, in chart coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum HitShape {
-    /// Point.
+    /// A point, with a small area around it.
     Point([f64; 2]),
-    /// Point with everything above and below it.
+    /// A point, with everything above and below it.
     Column([f64; 2]),
-    /// Rectangle: left, right, bottom, top.
+    /// A rectangle: left, right, bottom, top.
     Area([f64; 4]),
 }
 
 impl ChartHit {
-    /// Hit target with a hover text.
+    /// Creates a hit target with a hover text.
     pub fn new(target: HitShape, words: impl Fn() -> String + Send + Sync + 'static) -> Self {
         Self { target, words: HoverText(Arc::new(words)), pick: None, place: None }
     }
 
-    /// Hit target that replays an individual.
+    /// Creates a hit target with a hover text. A click on it replays an individual.
     pub fn of(
         target: HitShape,
         words: impl Fn() -> String + Send + Sync + 'static,
@@ -82,7 +82,7 @@ impl ChartHit {
         Self { pick: Some(pick), place: Some(place), ..Self::new(target, words) }
     }
 
-    /// Hover text.
+    /// Returns the hover text.
     pub fn words(&self) -> String {
         (self.words.0)()
     }

@@ -1,4 +1,4 @@
-//! Command palette: searches commands, presets, lessons and settings by name.
+//! The command palette, which searches commands, presets, lessons and settings by name.
 
 use bevy_egui::egui;
 
@@ -11,7 +11,7 @@ use crate::studio::ui::theme;
 use snakes_core::save::shipped_presets;
 use snakes_core::schema::ListedSetting;
 
-/// The palette with its search text.
+/// The command palette, with its search text.
 #[derive(Debug, Default)]
 pub(crate) struct CommandPalette {
     typed: String,
@@ -22,7 +22,7 @@ pub(crate) struct CommandPalette {
     presets: Vec<(String, String)>,
 }
 
-/// Entry that the palette can find.
+/// An entry that the palette can find.
 #[derive(Debug, Clone, PartialEq)]
 struct PaletteEntry {
     group: &'static str,
@@ -98,7 +98,7 @@ impl CommandPalette {
         }
     }
 
-    /// Marks the palette as closed, which clears the search text when it opens again.
+    /// Marks the palette as closed, so that the search text is empty when it opens again.
     pub fn close(&mut self) {
         self.is_open = false;
     }
@@ -130,7 +130,7 @@ impl CommandPalette {
 }
 
 fn presets() -> Vec<(String, String)> {
-    // A test checks that the shipped presets are well formed.
+    // A test checks that the built-in presets are well formed.
     let presets = shipped_presets().unwrap_or_default();
     presets.into_iter().map(|preset| (preset.name, preset.about)).collect()
 }
@@ -138,11 +138,11 @@ fn presets() -> Vec<(String, String)> {
 fn first_sentence(text: &str) -> String {
     let sentence = text.split_once(". ").map_or(text, |(first, _)| first);
     let line: Vec<&str> = sentence.split_whitespace().collect();
-    // A longer line is cut where the palette ends.
+    // A longer line is truncated at the edge of the palette.
     line.join(" ").trim_end_matches('.').to_owned()
 }
 
-/// Entries that contain all typed words. Matches at the start of a word come first.
+/// Returns the entries that contain all typed words. Matches at the start of a word come first.
 fn matching(entries: &[PaletteEntry], typed: &str) -> Vec<PaletteEntry> {
     let words: Vec<String> = typed.split_whitespace().map(str::to_lowercase).collect();
     let mut ranked: Vec<(usize, &PaletteEntry)> = entries
@@ -172,7 +172,7 @@ mod tests {
     use crate::studio::panels::testing::{Sent, panel, press};
     use egui_kittest::kittest::{NodeT, Queryable};
 
-    /// The palette in a window of this size, after a text was typed.
+    /// Creates the palette in a window of this size, after a text was typed.
     fn palette(size: [f32; 2], typed: &str) -> Sent<'static> {
         let mut palette = CommandPalette::default();
         let mut harness = panel(size, move |ui, commands| {
@@ -184,7 +184,7 @@ mod tests {
         harness
     }
 
-    /// Commands sent after `typed` is entered and `act` is performed: one that follows the end of the palette, or none.
+    /// Types a text and calls `act`. Returns the command that was sent after the palette was closed, or `None`.
     fn sent(typed: &str, act: impl FnOnce(&mut Sent<'_>)) -> Option<Command> {
         let mut harness = palette([800.0, 600.0], typed);
         act(&mut harness);

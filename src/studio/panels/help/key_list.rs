@@ -1,4 +1,4 @@
-//! Overlay that lists all keyboard shortcuts.
+//! List of all keyboard shortcuts, shown over the window.
 
 use bevy_egui::egui;
 
@@ -8,7 +8,7 @@ use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{at_right, explain, title_text};
 use crate::studio::ui::theme;
 
-/// Mouse actions on the stage.
+/// Mouse actions on the stage, each with its effect.
 const MOUSE: [(&str, &str); 6] = [
     ("Click", "Show a limb's numbers"),
     ("Drag", "Turn the camera; on a limb, pull the limb"),
@@ -18,7 +18,7 @@ const MOUSE: [(&str, &str); 6] = [
     ("Drop a file", "Import a champion or a run"),
 ];
 
-/// Draws the list and collects the user's commands.
+/// Draws the list over the window, and collects the user's commands.
 pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) {
     let palette = theme::of_context(context);
     let screen = context.content_rect();
@@ -42,7 +42,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
             let groups = groups();
             ui.columns(columns, |places| {
                 for (ui, column) in places.iter_mut().zip(in_columns(&groups, columns)) {
-                    // Rows of text need less height than buttons.
+                    // Rows of text need less height than those with buttons.
                     ui.spacing_mut().interact_size.y = theme::GAP * 2.0;
                     column.iter().for_each(|group| draw(ui, group));
                 }
@@ -54,13 +54,13 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
     }
 }
 
-/// A group of shortcuts: keys with their effects.
+/// A group of shortcuts, each with its effect.
 struct KeyGroup {
     name: &'static str,
     keys: Vec<(&'static str, &'static str)>,
 }
 
-/// All groups in menu order, followed by the mouse.
+/// Returns the groups in the order of the menus, followed by the mouse actions.
 fn groups() -> Vec<KeyGroup> {
     let of = |menu: Menu| {
         let with_key = |action: &&Action| action.menu == menu && !action.keys.is_empty();

@@ -1,4 +1,4 @@
-//! Menu bar: every action by name, with its shortcut.
+//! The menu bar, which lists every action with its shortcut.
 
 use std::path::Path;
 
@@ -19,11 +19,11 @@ use crate::studio::ui::text_rows::{at_right, weak};
 use crate::studio::ui::theme;
 use snakes_core::save::library::run_of_plan;
 
-/// Says whether the setting that a command toggles is on; `None` for other commands.
+/// Function that returns whether the setting that a command toggles is on, or `None` for other commands.
 type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
 
-/// Draws the menus and collects the user's commands. `is_on` says whether the setting that a command toggles is on.
-/// `recent` are the files that were opened lately. `about` is shown at the right end.
+/// Draws the menus, and collects the user's commands. `is_on` returns whether the setting that a command toggles is on.
+/// `recent` are the files that were opened recently. `about` is shown at the right end.
 pub(crate) fn menu(
     ui: &mut egui::Ui,
     situation: Situation,
@@ -43,9 +43,9 @@ pub(crate) fn menu(
                 let is_toggle =
                     |action: &Action| action.command(situation).as_ref().and_then(is_on);
                 let has_toggles = listed().any(|action| is_toggle(action).is_some());
-                // In a low window a menu would reach below its end.
+                // In a low window, a menu would otherwise extend beyond the lower edge.
                 let height = ui.ctx().content_rect().height() - theme::GAP * 6.0;
-                // egui gives a menu at most 400 points of height.
+                // By default, egui limits a menu to a height of 400 points.
                 ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
@@ -67,7 +67,7 @@ pub(crate) fn menu(
     });
 }
 
-/// Draws the progress of the file that is being written, and a button that cancels it.
+/// Draws the progress of the file that is being written, and the button that cancels it.
 fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<Command>) {
     let cancel = egui::Button::new("Cancel").frame(true).small();
     let stop = Command::Share(ShareCommand::Cancel);
@@ -80,10 +80,10 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
     ui.add_space(theme::GAP);
 }
 
-/// The action after which the files that were opened lately are listed.
+/// Name of the action after which the submenu of recent files is placed.
 const BEFORE_RECENT: &str = "Open…";
 
-/// Draws the submenu of files that were opened lately: names, with whole paths as hints.
+/// Draws the submenu of recent files: names, with full paths as tooltips.
 fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Command>) {
     ui.add_enabled_ui(recent.paths().len() > 0, |ui| {
         ui.menu_button("Open recent", |ui| {
@@ -100,12 +100,12 @@ fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Comma
     });
 }
 
-/// A file's name; for the plan of a run, the name of its folder.
+/// Returns the name of a file, or the name of the folder if the file is the plan of a run.
 fn short_name(path: &Path) -> String {
     run_of_plan(path).name()
 }
 
-/// Draws an entry. In a menu that `has_toggles`, names begin behind the check boxes.
+/// Draws a menu entry. In a menu that `has_toggles`, names are indented by the width of a check box.
 fn entry(
     ui: &mut egui::Ui,
     action: &Action,
@@ -113,7 +113,7 @@ fn entry(
     (has_toggles, is_on): (bool, IsOn<'_>),
     commands: &mut Vec<Command>,
 ) {
-    // An action for a range of digits needs a digit, which a menu cannot supply.
+    // An action for several digits needs a digit, which a menu cannot supply.
     if action.key().contains("...") {
         return;
     }
@@ -155,14 +155,14 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// The menu bar in the usual situation.
+    /// Creates the menu bar in the default situation.
     fn bar<'a>(is_on: IsOn<'a>, recent: &'a RecentFiles) -> Sent<'a> {
         panel([800.0, 600.0], move |ui, commands| {
             menu(ui, Situation::default(), is_on, recent, ("climb, seed 1", None), commands);
         })
     }
 
-    /// Opens a menu, and clicks an entry. Returns all commands that were sent.
+    /// Opens a menu and clicks an entry. Returns all commands that were sent.
     fn chosen(bar: &mut Sent<'_>, menu: &str, entry: &str) -> Vec<Command> {
         clicked(bar, menu);
         bar.get_by_label_contains(entry).click();

@@ -1,5 +1,5 @@
-//! Tour in five steps, shown when the studio is opened for the first time. Each card points at its panel and has one
-//! thing to try there.
+//! Tour in five steps, which is shown when the studio is opened for the first time. Each card points at a panel, and
+//! suggests one thing to try.
 
 use bevy_egui::egui;
 
@@ -13,13 +13,13 @@ use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::text_rows::{at_right, explain, title_text};
 use crate::studio::ui::theme;
 
-/// Step of the tour: the panel to highlight, its text, and what to try.
+/// A step of the tour: the panel to highlight, a text, and a thing to try.
 struct TourStep {
     highlights: PanelKind,
     title: &'static str,
     text: &'static str,
     try_it: &'static str,
-    /// Whether a command does what is to be tried.
+    /// Returns whether a command does the suggested thing.
     is_done_by: fn(&Command) -> bool,
 }
 
@@ -78,28 +78,28 @@ const STEPS: [TourStep; 5] = [
     },
 ];
 
-/// Period of the outline's pulse, in seconds.
+/// Period of the outline's pulsation, in seconds.
 const PULSE_S: f64 = 1.8;
-/// Height of a card before it was drawn for the first time, in points.
+/// Assumed height of a card that has not been drawn yet, in points.
 const CARD_HEIGHT: f32 = 170.0;
 
-/// Panel that a step highlights.
+/// Returns the panel that a step highlights; `None` if there is no such step.
 pub(crate) fn highlighted_panel(step: usize) -> Option<PanelKind> {
     STEPS.get(step).map(|step| step.highlights)
 }
 
-/// The tour, with what was tried in this session.
+/// State of the tour: what has been tried since the program started.
 #[derive(Debug, Default)]
 pub(crate) struct Tour {
     is_done: [bool; STEPS.len()],
-    /// Number of commands to the player when the step about the stage was first shown.
+    /// Number of commands to the player when the step about the stage was first shown; `None` before.
     first_commands: Option<u32>,
 }
 
 impl Tour {
-    /// Draws a step beside the highlighted rectangle `target` and collects the user's commands. `commands` has those
-    /// of the panels in this frame; `player_commands` counts those that the player has got, which come from keys, too.
-    /// That the stage is paused says nothing: it also waits for the first generation.
+    /// Draws a step beside the highlighted rectangle `target`, and collects the user's commands. `commands` contains
+    /// those of the panels in this frame. `player_commands` counts all commands to the player, including those of keys.
+    /// A paused stage alone proves nothing, because it is also paused until the first generation is finished.
     pub fn ui(
         &mut self,
         context: &egui::Context,
@@ -122,7 +122,7 @@ impl Tour {
         let width = theme::TOUR_WIDTH.min(screen.width() - theme::GAP * 4.0);
         let known = context.memory(|memory| memory.area_rect(id)).map(|area| area.size());
         let size = known.unwrap_or(egui::vec2(width + theme::GAP * 4.0, CARD_HEIGHT));
-        // While another panel is in front, the card points nowhere, and lies where it covers no control above.
+        // If another panel is in front, the card has no target, and is placed where it covers no controls.
         let low =
             egui::Align2::CENTER_BOTTOM.align_size_within_rect(size, screen.shrink(theme::GAP));
         let place = target.map_or(low, |target| card_place(target, screen, size));
@@ -152,7 +152,7 @@ impl Tour {
     }
 }
 
-/// Draws the outline around the target, which pulses gently.
+/// Draws a pulsating outline around the target.
 fn outline(context: &egui::Context, target: egui::Rect) {
     let palette = theme::of_context(context);
     let turn = context.input(|input| input.time) / PULSE_S * std::f64::consts::TAU;
@@ -164,7 +164,7 @@ fn outline(context: &egui::Context, target: egui::Rect) {
     context.layer_painter(layer).rect_stroke(rect, 6.0, stroke, egui::StrokeKind::Inside);
 }
 
-/// Draws what to try, with a box that is ticked once it was done.
+/// Draws the suggestion, with a box that is ticked after it was tried.
 fn to_try(ui: &mut egui::Ui, text: &str, is_done: bool) {
     let palette = theme::of(ui);
     ui.horizontal_wrapped(|ui| {
@@ -186,7 +186,7 @@ fn to_try(ui: &mut egui::Ui, text: &str, is_done: bool) {
     });
 }
 
-/// The command that shows a step.
+/// Returns the command that shows a step.
 fn go_to(step: usize) -> Command {
     Command::Window(WindowCommand::ToggleModal(Modal::Tour(step)))
 }
@@ -197,7 +197,7 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     let (label, next) = if is_last { ("Done", end.clone()) } else { ("Next", go_to(index + 1)) };
     let forward = ui.add(accent_button(ui, label));
     if ui.memory(|memory| memory.focused().is_none()) {
-        // The focus lets Enter step through the whole tour.
+        // The focus lets the user go through the whole tour with Enter.
         forward.request_focus();
     }
     if forward.clicked() {
@@ -220,7 +220,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// A step of the tour in a window of this size.
+    /// Creates a step of the tour in a window of this size.
     fn step(size: [f32; 2], index: usize) -> Sent<'static> {
         let mut cards = Tour::default();
         panel(size, move |ui, commands| cards.ui(&ui.ctx().clone(), index, None, 0, commands))
@@ -260,7 +260,7 @@ mod tests {
             let player_commands = player.borrow().commands();
             cards.ui(&ui.ctx().clone(), 0, None, player_commands, &mut Vec::new());
         });
-        // The first start waits for the first generation.
+        // At the first start, the stage is paused until the first generation is finished.
         player.borrow_mut().hold_at(0.0);
         harness.run();
         let words = STEPS[0].try_it;

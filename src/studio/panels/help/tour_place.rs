@@ -1,4 +1,4 @@
-//! Where a card of the tour stands: beside its target, never over it or over the upper stairs.
+//! Placement of a card of the tour: beside its target, without covering the target or the upper stairs.
 
 use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
@@ -6,14 +6,14 @@ use crate::studio::ui::theme;
 
 /// Distance between a card and its target, in points.
 const GAP: f32 = theme::GAP * 2.0;
-/// Distance of a card over the stage from its upper edge, in points: below the bar with the cameras.
+/// Distance of a card over the stage from the stage's upper edge, in points: below the camera bar.
 const BELOW_BAR: f32 = theme::GAP * 6.0;
-/// Height of a card beside a panel at the right, as a share of the panel's: the stairs rise towards it, so the ground
-/// is free.
+/// Vertical position of a card beside a panel on the right, as a share of the panel's height. The stairs rise to the
+/// right, so the area above the ground is free.
 const LOW: f32 = 0.6;
 
-/// Rectangle for a card of this size: at the right of its target, at its left, below or above it, where there is room;
-/// otherwise in the target's upper left corner, because the stairs rise to the right.
+/// Returns the rectangle for a card of this size: to the right of its target, to the left, below or above, wherever
+/// there is room. Otherwise it is in the target's upper left corner, because the stairs rise to the right.
 pub(super) fn card_place(target: Rect, screen: Rect, size: Vec2) -> Rect {
     let inside = screen.shrink(theme::GAP);
     let at = |x: f32, y: f32| {
@@ -32,7 +32,7 @@ pub(super) fn card_place(target: Rect, screen: Rect, size: Vec2) -> Rect {
     beside.unwrap_or_else(|| at(target.left() + GAP, target.top() + BELOW_BAR))
 }
 
-/// Corners of an arrow from a card to its target; `None` if the card stands over it.
+/// Returns the corners of an arrow from a card to its target, or `None` if the card is over the target.
 pub(super) fn arrow(card: Rect, target: Rect) -> Option<Vec<Pos2>> {
     let (long, half) = (theme::GAP * 1.75, theme::GAP);
     let y = card.center().y.clamp(target.top(), target.bottom()).clamp(card.top(), card.bottom());
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_card_covers_neither_its_panel_nor_the_upper_stairs() {
-        // Window, panel at the left, stage, and charts at the right of a wide window.
+        // The window, the panel on the left, the stage, and the charts on the right of a wide window.
         for (size, left, right) in [
             (vec2(1024.0, 640.0), 307.0, 1024.0),
             (vec2(1280.0, 720.0), 384.0, 1280.0),

@@ -1,4 +1,4 @@
-//! The lessons panel: guesses, results and worksheets.
+//! Tests of the lessons panel: guesses, results and worksheets.
 
 use super::*;
 use crate::studio::panels::testing::{self, Sent, clicked, panel};
@@ -13,7 +13,7 @@ fn panel_of(of: &Lessons) -> Sent<'_> {
     panel([theme::PANEL_WIDTH, 1600.0], move |ui, commands| lessons(ui, of.view(), commands))
 }
 
-/// Commands sent by a click on `label`.
+/// Clicks on `label`, and returns the commands that were sent.
 fn sent(of: &Lessons, label: &str) -> Vec<Command> {
     clicked(&mut panel_of(of), label)
 }
@@ -29,7 +29,7 @@ fn each_lesson_can_be_started_from_the_list() {
     }
 }
 
-/// Lesson after these commands.
+/// Returns the lessons after these commands.
 fn after(commands: &[LessonCommand]) -> Lessons {
     let mut run = prepared_run();
     let mut of = Lessons::default();
@@ -40,7 +40,7 @@ fn after(commands: &[LessonCommand]) -> Lessons {
     of
 }
 
-/// Whether the panel shows a label that contains `part`.
+/// Returns whether the panel shows a label that contains `part`.
 fn shows(of: &Lessons, part: &str) -> bool {
     testing::shows(&panel_of(of), part)
 }

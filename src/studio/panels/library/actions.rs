@@ -1,4 +1,4 @@
-//! Actions on the selected saves, shared by buttons, context menu and keys.
+//! Actions on the selected saves, which buttons, the context menu and keys share.
 
 use std::path::{Path, PathBuf};
 
@@ -10,29 +10,29 @@ use crate::studio::stage::MAX_LANES;
 use crate::studio::state::library::{Library, LibraryItem};
 use snakes_core::save::library::SavePlace;
 
-/// Action on the selected saves.
+/// An action on the selected saves.
 #[derive(Debug)]
 pub struct LibraryAction {
-    /// Label of its button.
+    /// Label of the action's button.
     pub name: &'static str,
-    /// Hover text with its shortcut.
+    /// Tooltip of the action, with its shortcut.
     pub hint: &'static str,
-    /// Its shortcut, if it has one.
+    /// Shortcut of the action, if it has one.
     pub key: Option<Press>,
-    /// Reason why it is disabled, if it is.
+    /// Reason why the action is disabled, if it is.
     pub refusal: Option<&'static str>,
     /// Effect of the action.
     pub act: LibraryActionKind,
 }
 
-/// Effect of an action.
+/// Effect of an action on the selected saves.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LibraryActionKind {
     /// Send this command.
     Send(Command),
-    /// Edit the name in its row.
+    /// Edit the name of this save in its row.
     Rename(SavePlace),
-    /// Open the field for the target folder.
+    /// Ask for the target folder, and export the selected saves.
     Export,
     /// Show or hide the champions of this run.
     ShowChampions(PathBuf),
@@ -42,7 +42,7 @@ const SELECT_ONE: Option<&str> = Some("Select a single save first");
 const DAMAGED: Option<&str> = Some("This save cannot be read");
 const NO_CHAMPION: Option<&str> = Some("The run has no champion yet");
 
-/// Actions for the selected saves. Actions that make no sense for them are left out.
+/// Returns the actions for the selected saves, without those that cannot apply to them.
 pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction> {
     let Some(first) = chosen.first() else { return Vec::new() };
     let places: Vec<SavePlace> = chosen.iter().map(|item| item.place().clone()).collect();
@@ -170,7 +170,7 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
     ]
 }
 
-/// Reason why a save cannot be shown on the stage, if there is one.
+/// Returns the reason why a save cannot be shown on the stage, if there is one.
 fn replay_refusal(item: &LibraryItem) -> Option<&'static str> {
     let has_none = item.run().is_some_and(|run| run.champions.is_empty());
     if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) }

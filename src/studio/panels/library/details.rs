@@ -1,4 +1,4 @@
-//! Below the list: details of the selected save, and buttons for its actions.
+//! Details of the selected save, below the list, and buttons for its actions.
 
 use bevy_egui::egui;
 
@@ -47,7 +47,7 @@ fn clicked_of(
     clicked
 }
 
-/// Draws the details of one save; `is_open` says that it is the run that this window has open.
+/// Draws the details of a save. `is_open` tells whether the save is the run that this window has open.
 pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());

@@ -18,49 +18,49 @@ use snakes_core::check::Invalid;
 use snakes_core::save::library::{SavePlace, check_entry_name};
 use snakes_core::save::{check_notes, check_run_name};
 
-/// Name being edited.
+/// Name of a save that is being edited.
 #[derive(Debug)]
 pub struct RenameField {
-    /// Place of the renamed save.
+    /// Place of the save to rename.
     pub place: SavePlace,
-    /// Name at first.
+    /// Name of the save before the edit.
     before: String,
     prompt: TextPrompt,
 }
 
-/// Notes being edited.
+/// Notes of a save that are being edited.
 #[derive(Debug)]
 pub struct NotesField {
-    /// Place of the save.
+    /// Place of the save with the notes.
     place: SavePlace,
     /// Text typed so far.
     text: String,
-    /// Whether the command to keep it was sent.
+    /// Whether the command that stores the notes has been sent.
     is_sent: bool,
 }
 
-/// Path being typed.
+/// A path that the user types, in answer to a question.
 #[derive(Debug)]
 pub struct PathPrompt {
     question: FileQuestion,
-    /// Reason why the system's dialog is not shown.
+    /// Reason why no file dialog is shown.
     reason: Option<String>,
     prompt: TextPrompt,
 }
 
 impl RenameField {
-    /// A field with the present name, which is selected.
+    /// Creates a field with the present name, which is selected.
     pub fn new(item: &LibraryItem) -> Self {
         let name = item.name().to_owned();
         let prompt = TextPrompt::new(name.clone());
         Self { place: item.place().clone(), before: name, prompt }
     }
 
-    /// The problem with the name typed so far, as a message.
+    /// Returns the problem with the name typed so far, if there is one.
     pub fn problem(&self) -> Option<String> {
         let name = self.prompt.trimmed();
         let checked = match self.place {
-            // Without a name of its own, a run is shown under that of its folder.
+            // A run without a name of its own is shown with its folder's name.
             SavePlace::Run(_) if name.is_empty() => Ok(()),
             SavePlace::Run(_) => check_run_name(name),
             _ => check_entry_name(name),
@@ -70,11 +70,11 @@ impl RenameField {
 }
 
 impl LibraryPanel {
-    /// Draws a text field over the name of a row. Enter accepts the name, Escape cancels.
+    /// Draws a text field over the name of a row. Enter accepts the name; Escape cancels.
     pub(super) fn edit_name(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let Some(renaming) = &mut self.renaming else { return };
         let problem = renaming.problem();
-        // A child leaves the next row where it is.
+        // A child of the layout does not move the next row.
         let mut over_row = ui.new_child(egui::UiBuilder::new().max_rect(rect));
         let (response, end) = renaming.prompt.ui(&mut over_row, |ui, field| {
             let margin = egui::Margin::symmetric(theme::GAP as i8 / 2, 0);
@@ -101,7 +101,7 @@ impl LibraryPanel {
         self.wants_keyboard = true;
     }
 
-    /// Draws the notes of a save, which are kept when the field is left. Escape restores them.
+    /// Draws the notes of a save, which are stored when the field loses the focus. Escape restores the old notes.
     pub(super) fn notes(&mut self, ui: &mut egui::Ui, item: &LibraryItem) {
         if item.place().path().is_none() {
             return;
@@ -134,14 +134,14 @@ impl LibraryPanel {
             self.send(LibraryCommand::SetNotes { place, text });
             is_sent = true;
         }
-        // After the command, the text typed is shown until the new notes are read.
+        // After the command is sent, the typed text is shown until the new notes are read.
         if response.has_focus() || is_edited {
             self.notes = Some(NotesField { place: item.place().clone(), text, is_sent });
         }
     }
 
-    /// Keeps notes that were being edited when another save was selected: that may take the focus away without a frame
-    /// in between.
+    /// Stores notes that were being edited when another save was selected. The field may then be gone before it loses
+    /// the focus.
     pub(super) fn keep_notes_of_others(&mut self, shown: Option<&LibraryItem>) {
         let is_other = |field: &mut NotesField| Some(&field.place) != shown.map(LibraryItem::place);
         if let Some(NotesField { place, text, is_sent: false }) = self.notes.take_if(is_other) {
@@ -149,7 +149,7 @@ impl LibraryPanel {
         }
     }
 
-    /// Opens the field for a path, in place of the system's dialog.
+    /// Opens the field for a path, in place of a file dialog.
     pub(super) fn ask_for_path(
         &mut self,
         question: FileQuestion,
@@ -177,7 +177,7 @@ impl LibraryPanel {
         let mut is_closed = false;
         ui.horizontal_wrapped(|ui| {
             let name = ui.label(label);
-            // Leaves room for the two buttons.
+            // The rest of the width is for two buttons.
             let width = ui.available_width() - theme::COLUMN_WIDTHS[2];
             let (_, end) = prompt.ui(ui, |ui, field| {
                 let response = ui.add(field.desired_width(width)).labelled_by(name.id);

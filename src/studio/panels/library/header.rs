@@ -1,4 +1,4 @@
-//! Above the list: title, search field and sort order.
+//! Header of the list: title, search field and sort order.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Key as Press, Sense, WidgetType};
@@ -36,10 +36,10 @@ impl LibraryPanel {
             .hint_text("Search name, notes, preset, controller, \"damaged\"")
             .desired_width(f32::INFINITY);
         let response = named(ui.add(field), WidgetType::TextEdit, "Search the library");
-        // Enter or Down moves the focus from the search field to the list.
+        // Enter and Down move the focus from the search field to the list.
         let is_left = response.lost_focus();
         let is_in_it = response.has_focus();
-        // The key is consumed, since the list would replay the selected save on Enter.
+        // The key is consumed, because the list would otherwise replay the selected save on Enter.
         self.wants_keyboard |= ui.input_mut(|input| {
             let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
             (is_left && pressed(Press::Enter)) || (is_in_it && pressed(Press::ArrowDown))
@@ -75,7 +75,7 @@ impl LibraryPanel {
         let (line, _) = ui.allocate_exact_size(size, Sense::hover());
         for key in SortKey::ALL {
             let is_key = self.sort.key == key;
-            // Reserves room for the direction arrow. It is painted, because not every font has one.
+            // The spaces reserve room for the arrow of the direction, which is painted, because not every font contains it.
             let name = if is_key { format!("{}    ", key.name()) } else { key.name().to_owned() };
             let button = egui::Button::new(name).selected(is_key).small();
             let place = column(line.expand2(egui::vec2(0.0, 4.0)), key);
@@ -101,7 +101,7 @@ impl LibraryPanel {
     }
 }
 
-/// Progress of operations on many saves and of an exam, with a button to cancel them.
+/// Draws the progress of operations on many saves and of an exam, with buttons that cancel them.
 fn batch_progress(ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
     let of_files = "Stop after the current file. Undo reverses the finished part";
     let of_exam = "Stop the exam. The results of finished champions are kept";

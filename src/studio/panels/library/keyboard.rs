@@ -7,7 +7,7 @@ use super::LibraryPanel;
 use crate::studio::commands::Command;
 use crate::studio::state::library::Library;
 
-/// Number of rows that Page Up and Page Down move.
+/// Number of rows by which Page Up and Page Down move the cursor.
 const PAGE_ROWS: usize = 10;
 
 impl LibraryPanel {
@@ -38,7 +38,7 @@ impl LibraryPanel {
             let (wanted, refusal) = (Some(action.act.clone()), action.refusal);
             match refusal {
                 None => self.act(wanted, library),
-                // A disabled action reports why it is disabled.
+                // For a disabled action, its reason is shown.
                 Some(why) if matches!(key, Press::F2 | Press::Delete) => {
                     self.sent.push(Command::Notify(format!("{why}.")));
                 }
@@ -47,7 +47,7 @@ impl LibraryPanel {
         }
     }
 
-    /// Moves the cursor. Shift extends the selected range.
+    /// Moves the cursor by a key. With Shift, extends the selected range.
     fn move_cursor(&mut self, key: Press, held: Modifiers, library: &Library) {
         let rows = self.order.rows();
         let Some(last) = rows.len().checked_sub(1) else { return };

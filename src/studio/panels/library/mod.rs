@@ -1,7 +1,7 @@
 //! Library: searchable and sortable list of all saves, with replay, race and file operations.
 //!
-//! Only visible rows are laid out, and rows are sorted only after a change, so the cost per frame does not depend on
-//! the number of saves. The list takes the keyboard focus as a whole; every mouse action has a key.
+//! Only visible rows are laid out, and rows are sorted only after a change, so the cost of a frame does not depend on
+//! the number of saves. The list takes the keyboard focus as a whole. Every mouse action is also possible with keys.
 
 mod actions;
 mod details;
@@ -34,43 +34,43 @@ use order::{SortOrder, SortedItems};
 use row::{RowStyle, name_rect, row};
 use selection::ChosenSaves;
 
-/// The panel with its state between frames.
+/// The library panel, with its state between frames.
 #[derive(Debug, Default)]
 pub(super) struct LibraryPanel {
     search: String,
     sort: SortOrder,
     order: SortedItems,
     selection: ChosenSaves,
-    /// Actions for the selection, cached by the selection's change counter and the library's revision.
+    /// Actions on the selected saves. The counter of the selection's changes and the library's revision are the key of this cache.
     actions: (Option<(u64, u64)>, Vec<LibraryAction>),
-    /// Name being edited.
+    /// Name that is being edited, if any.
     renaming: Option<RenameField>,
-    /// Notes being edited.
+    /// Notes that are being edited, if any.
     notes: Option<NotesField>,
-    /// Path being typed.
+    /// Path that is being typed, if any.
     path_prompt: Option<PathPrompt>,
-    /// Number of questions that the system's dialogs left to this panel.
+    /// Number of questions so far for which no file dialog could be shown.
     unanswered: u64,
-    /// Number of requests from elsewhere to export the selection.
+    /// Number of requests so far from outside the panel to export the selected saves.
     export_requests: u64,
     /// Run whose champions are listed.
     listed_run: Option<PathBuf>,
-    /// Visible unread places that were last sent to the loader.
+    /// Unread places among the visible rows that were last sent to the loader.
     visible: Vec<SavePlace>,
-    /// Listing to which the selection belongs.
+    /// Version of the listing to which the selection belongs.
     listing: u64,
-    /// Number of new entries that were selected automatically.
+    /// Number of new entries so far that were selected automatically.
     new_entries: u64,
-    /// Row to scroll into view.
+    /// Row to scroll into view, if any.
     scroll_to: Option<SavePlace>,
-    /// Whether the list requests the focus in the next frame.
+    /// Whether the list will request the focus in the next frame.
     wants_keyboard: bool,
     /// Scroll offset and height of the list, in points.
     offset: f32,
     height: f32,
-    /// Heights above and below the list in the previous frame, in points.
+    /// Heights of the contents above and below the list in the previous frame, in points.
     surrounding_heights: [f32; 2],
-    /// The user's commands in this frame.
+    /// Commands of the user in this frame.
     sent: Vec<Command>,
 }
 
@@ -123,7 +123,7 @@ impl LibraryPanel {
         self.surrounding_heights = [header + gaps, footer];
     }
 
-    /// Drops entries that no longer exist from the selection, and selects new ones.
+    /// Removes entries that do not exist any more from the selection, and selects new ones.
     fn follow(&mut self, library: &Library) {
         if self.listing != library.listings() {
             self.listing = library.listings();
@@ -141,7 +141,7 @@ impl LibraryPanel {
         }
     }
 
-    /// Follows requests that come from the menu or the system's dialogs.
+    /// Processes requests that come from the menu or from failed file dialogs.
     fn take_requests(&mut self, library: &Library) {
         let (count, unanswered) = library.unanswered();
         if let Some((question, reason)) = unanswered.filter(|_| count != self.unanswered) {
@@ -213,7 +213,7 @@ impl LibraryPanel {
         ui.spacing_mut().item_spacing.y = 0.0;
         let view = ui.available_height();
         if self.height != view {
-            // The details of a selected save shrink the list. The list scrolls so that the selected row stays visible.
+            // The details of a selected save make the list shorter. The list scrolls so that the selected row remains visible.
             let was_in_sight = |row: usize| {
                 let top = row as f32 * theme::LIBRARY_ROW_HEIGHT - self.offset;
                 top < self.height && top + theme::LIBRARY_ROW_HEIGHT > 0.0
@@ -291,12 +291,12 @@ impl LibraryPanel {
         self.act(wanted, library);
     }
 
-    /// Items of the selected saves.
+    /// Returns the items of the selected saves.
     fn chosen<'a>(&self, library: &'a Library) -> Vec<&'a LibraryItem> {
         self.selection.places().filter_map(|place| library.item(place)).collect()
     }
 
-    /// Recomputes the actions after a change only, since every save may be selected.
+    /// Recomputes the actions only after a change, because many saves may be selected.
     fn update_actions(&mut self, library: &Library) {
         let wanted = Some((self.selection.changes(), library.revision()));
         if self.actions.0 != wanted {

@@ -1,31 +1,31 @@
-//! Sorted and filtered rows of the library, recomputed only after a change.
+//! Sorted and filtered rows of the library, which are recomputed only after a change.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::studio::state::library::{Library, LibraryItem};
 
-/// Column by which the list is sorted.
+/// A column by which the list can be sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SortKey {
-    /// File or folder name.
+    /// Name of the save.
     Name,
-    /// Best fitness.
+    /// Fitness of a champion, or best fitness of a run.
     Fitness,
-    /// Name of the preset.
+    /// Name of the preset of a champion or run.
     Preset,
     /// Generation of a champion, or number of generations of a run.
     Generation,
-    /// Time of the last change.
+    /// Time of the last change of the save.
     Date,
 }
 
 impl SortKey {
-    /// All keys, in the order of the columns.
+    /// All sort keys, in the order of the columns.
     pub const ALL: [Self; 5] =
         [Self::Name, Self::Fitness, Self::Preset, Self::Generation, Self::Date];
 
-    /// Title of the column.
+    /// Returns the title of the column.
     pub fn name(self) -> &'static str {
         match self {
             Self::Name => "Name",
@@ -37,24 +37,24 @@ impl SortKey {
     }
 }
 
-/// Sort key and direction.
+/// Sort key and direction of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SortOrder {
-    /// Sort key.
+    /// Column by which the list is sorted.
     pub key: SortKey,
-    /// Whether the largest value comes first.
+    /// Whether the largest value comes first in the list.
     pub is_descending: bool,
 }
 
 impl Default for SortOrder {
-    /// Newest first.
+    /// Sorts by date, the newest first.
     fn default() -> Self {
         Self::by(SortKey::Date)
     }
 }
 
 impl SortOrder {
-    /// Default direction of a key: names ascending; fitness, generation and date descending.
+    /// Sorts by a key in its default direction: names and presets ascending; fitness, generation and date descending.
     pub fn by(key: SortKey) -> Self {
         Self {
             key,
@@ -62,17 +62,17 @@ impl SortOrder {
         }
     }
 
-    /// Order after a click on a column: reversed if the column is the sort key already.
+    /// Returns the order after a click on a column: reversed if the column is the sort key already.
     pub fn clicked(self, key: SortKey) -> Self {
         if self.key == key { self.reversed() } else { Self::by(key) }
     }
 
-    /// This order in the opposite direction.
+    /// Returns this order in the opposite direction.
     pub fn reversed(self) -> Self {
         Self { is_descending: !self.is_descending, ..self }
     }
 
-    /// Unknown values come last in both directions. Equal values are ordered by name.
+    /// Compares two items. Unknown values come last in both directions; equal values are ordered by name.
     fn compare(self, a: &LibraryItem, b: &LibraryItem) -> Ordering {
         fn known<T>(a: Option<T>, b: Option<T>, compare: impl Fn(&T, &T) -> Ordering) -> Ordering {
             match (a, b) {
@@ -97,10 +97,10 @@ impl SortOrder {
     }
 }
 
-/// Sorted rows of the list.
+/// Sorted rows of the list, cached.
 #[derive(Debug, Default)]
 pub struct SortedItems {
-    /// Indices into the library's items.
+    /// Index of each row's item among the library's items.
     rows: Arc<[usize]>,
     input: Option<SortInput>,
     sorted_at_s: f64,
@@ -137,7 +137,7 @@ impl SortedItems {
         }
         let words: Vec<&str> = input_now.search.split_whitespace().collect();
         let items = library.items();
-        // If few entries have changed, the existing rows are nearly sorted, and sorting them takes linear time.
+        // If only a few entries have changed, the existing rows are nearly sorted, and sorting them takes linear time.
         let are_same = self.input.as_ref().is_some_and(|of| of.listings == input_now.listings);
         let mut rows: Vec<usize> = if are_same && self.rows.len() == items.len() {
             self.rows.to_vec()
@@ -150,7 +150,7 @@ impl SortedItems {
         (self.input, self.sorted_at_s) = (Some(input_now), now_s);
     }
 
-    /// Indices into the library's items, row by row.
+    /// Returns the index of each row's item among the library's items.
     pub fn rows(&self) -> Arc<[usize]> {
         Arc::clone(&self.rows)
     }

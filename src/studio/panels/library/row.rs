@@ -1,4 +1,4 @@
-//! Row of the library: two lines in a narrow panel, columns in a wide one.
+//! A row of the library: two lines in a narrow panel, columns in a wide one.
 
 use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::LayoutJob;
@@ -10,12 +10,12 @@ use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::theme;
 
-/// Highlighting of a row.
+/// Highlighting of a row of the library.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RowStyle {
     /// Whether the row is selected.
     pub is_chosen: bool,
-    /// Whether the row is the keyboard cursor of a focused list.
+    /// Whether the keyboard cursor of the focused list is on the row.
     pub is_cursor: bool,
 }
 
@@ -70,12 +70,12 @@ fn picture_rect(rect: Rect) -> Rect {
     )
 }
 
-/// Rectangle of the name, for editing in place.
+/// Returns the rectangle of the name, in which it can be edited.
 pub fn name_rect(rect: Rect) -> Rect {
     if rect.width() >= theme::COLUMNS_WIDTH {
         return column(rect, SortKey::Name);
     }
-    // The field covers the name and the fitness, and leaves the second line free.
+    // The field covers the name and the fitness, but not the second line.
     let text = text_rect(rect);
     text.with_min_y(rect.top() + 1.0).with_max_y(rect.center().y)
 }
@@ -85,7 +85,7 @@ fn text_rect(rect: Rect) -> Rect {
     rect.with_min_x(left).with_max_x(rect.right() - theme::GAP).shrink2(egui::vec2(0.0, 4.0))
 }
 
-/// Rectangle of a column within a row.
+/// Returns rectangle of a column within a row.
 pub fn column(row: Rect, key: SortKey) -> Rect {
     let text = text_rect(row);
     let place = SortKey::ALL.iter().position(|of| *of == key).unwrap_or(0);
@@ -137,7 +137,7 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     }
 }
 
-/// Secondary text colour; on a selected row the normal colour, for contrast.
+/// Returns the colour of secondary text. On a selected row it is the normal text colour, for contrast.
 fn weak(ui: &egui::Ui, style: RowStyle) -> egui::Color32 {
     let palette = theme::of(ui);
     if style.is_chosen { palette.text } else { palette.text_weak }

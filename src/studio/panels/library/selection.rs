@@ -1,37 +1,37 @@
-//! Rows of the library that are selected by clicks and keys.
+//! Selection of rows in the library by clicks and keys.
 
 use std::collections::BTreeSet;
 
 use snakes_core::save::library::SavePlace;
 
-/// Set of selected saves, with cursor and anchor.
+/// The selected saves, with cursor and anchor.
 #[derive(Debug, Default)]
 pub struct ChosenSaves {
     chosen: BTreeSet<SavePlace>,
-    /// Row from which keys move.
+    /// Row from which keys move the cursor.
     cursor: Option<SavePlace>,
-    /// Row at which a range starts.
+    /// Row at which a range of selected rows starts.
     anchor: Option<SavePlace>,
     changes: u64,
 }
 
 impl ChosenSaves {
-    /// Whether a save is selected.
+    /// Returns whether a save is selected.
     pub fn has(&self, place: &SavePlace) -> bool {
         self.chosen.contains(place)
     }
 
-    /// Selected saves.
+    /// Returns selected saves.
     pub fn places(&self) -> impl ExactSizeIterator<Item = &SavePlace> {
         self.chosen.iter()
     }
 
-    /// Row from which keys move.
+    /// Returns the row from which keys move the cursor.
     pub fn cursor(&self) -> Option<&SavePlace> {
         self.cursor.as_ref()
     }
 
-    /// Counter that increases with every change of the selection.
+    /// Returns a counter that every change of the selection increments.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -44,7 +44,7 @@ impl ChosenSaves {
         self.cursor = Some(place.clone());
     }
 
-    /// Adds a save to the selection, or removes it.
+    /// Adds a save to the selection, or removes it if it is selected.
     pub fn toggle(&mut self, place: &SavePlace) {
         self.changes += 1;
         if !self.chosen.remove(place) {
@@ -54,7 +54,7 @@ impl ChosenSaves {
         self.cursor = Some(place.clone());
     }
 
-    /// Selects all rows from the anchor to this one.
+    /// Selects all rows from the anchor to the row of this save.
     pub fn extend<'a>(&mut self, place: &SavePlace, rows: impl Iterator<Item = &'a SavePlace>) {
         let rows: Vec<&SavePlace> = rows.collect();
         let row_of = |wanted: &SavePlace| rows.iter().position(|row| *row == wanted);
@@ -72,7 +72,7 @@ impl ChosenSaves {
         self.chosen = rows.cloned().collect();
     }
 
-    /// Removes saves that no longer exist.
+    /// Removes saves that do not exist any more from the selection.
     pub fn retain(&mut self, exists: impl Fn(&SavePlace) -> bool) {
         self.changes += 1;
         self.chosen.retain(&exists);

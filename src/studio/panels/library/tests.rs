@@ -33,7 +33,7 @@ fn run_folder() -> PathBuf {
     PathBuf::from("saves/climb-seed8-0123abcd")
 }
 
-/// Run that was stopped after two of ten generations.
+/// Returns the details of a run that was stopped after two of ten generations.
 fn stopped_run() -> EntryDetails {
     let Ok(EntryDetails::Champion(of)) = read_entry(&SavePlace::Shipped("fast")) else {
         panic!("a built-in champion");
@@ -54,7 +54,7 @@ fn stopped_run() -> EntryDetails {
     }))
 }
 
-/// Library of two champions, a damaged file, a run and a built-in champion. The first is the newest.
+/// Creates a library with two champions, a damaged file, a run and a built-in champion. The first champion is the newest entry.
 fn library() -> Library {
     let shipped = SavePlace::Shipped("fast");
     let champion = read_entry(&shipped).map_err(EntryProblem::from);
@@ -92,14 +92,14 @@ fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
     harness
 }
 
-/// Library commands sent after `act`.
+/// Calls `act`, and returns the commands to the library that were sent afterwards.
 fn sent(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
     let mut harness = harness(library, [420.0, 800.0]);
     act(&mut harness);
     harness.run();
     let commands = harness.state().iter().filter_map(|command| match command {
         Command::Library(request) => Some(request.clone()),
-        // Reasons for refused actions are not compared.
+        // The reasons of refused actions are not compared.
         Command::Notify(_) => None,
         other => panic!("{other:?}"),
     });
@@ -310,7 +310,7 @@ fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
     let (list, row) = (list(&harness), row_of(&harness, "fast").rect());
     assert!(list.height() < before - theme::LIBRARY_ROW_HEIGHT, "{} of {before}", list.height());
     assert!(list.contains_rect(row), "{row} in {list}");
-    // Without a selection the list has its full height again.
+    // Without a selection, the list has its full height again.
     let held = Modifiers::COMMAND;
     let at = row.center();
     harness.event_modifiers(egui::Event::PointerMoved(at), held);
@@ -334,13 +334,13 @@ fn only_the_visible_rows_of_ten_thousand_saves_are_laid_out() {
     };
     let laid_out = rows(&harness);
     assert!((5..20).contains(&laid_out), "{laid_out}");
-    // The last row is reached directly.
+    // The last row is reached with one key.
     harness.get_by_label_contains("Saves: ").focus();
     harness.run();
     press(&mut harness, Modifiers::NONE, Press::End);
     assert!(harness.query_by_label("save 00000, not read yet").is_some());
     assert!((5..20).contains(&rows(&harness)));
-    // Visible entries are read before the others.
+    // Visible entries are read first.
     let hurried = harness.state().iter().rev().find_map(|command| match command {
         Command::Library(LibraryCommand::LoadFirst(places)) => Some(places),
         _ => None,

@@ -1,5 +1,5 @@
-//! Machines panel: other computers that compute, too. Address of their server, state of the connection, workers, queues,
-//! and the commands to type on other computers.
+//! The machines panel, for other computers that take part in the evaluations: address of their server, state of the
+//! connection, workers, queues, and the commands to type on the other computers.
 
 mod queues;
 mod rows;
@@ -19,27 +19,27 @@ use queues::queues;
 use rows::command_line;
 use workers::{in_threads, used, workers, workers_in_words};
 
-/// The panel with its text field.
+/// The machines panel, with its text field.
 #[derive(Debug, Default)]
 pub(super) struct MachinesPanel {
-    /// The text while it is edited; none while the field shows the address used last.
+    /// Text of the address field while it is edited; `None` while the field shows the address that was used last.
     text: Option<String>,
-    /// Why the text is no address.
+    /// Reason why the text is no valid address, if it is not.
     problem: Option<String>,
 }
 
-/// Share of other computers in the window's run.
+/// Computers that take part in this window's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct RunPart {
     /// Whether a run is in progress.
     is_under_way: bool,
-    /// Whether the generation in progress is computed on other computers, too.
+    /// Whether other computers take part in the evaluation of the generation in progress.
     is_shared: bool,
-    /// Number of threads of this computer that compute.
+    /// Number of threads of this computer that evaluate.
     threads: usize,
 }
 
-/// Command that starts a server.
+/// Command that starts a NATS server.
 const SERVER: &str = "nats-server -js";
 
 impl MachinesPanel {
@@ -83,7 +83,7 @@ impl MachinesPanel {
         }
     }
 
-    /// Draws the field for the address and the button beside it.
+    /// Draws the address field and the button beside it.
     fn address(&mut self, ui: &mut egui::Ui, link: &MachinesLink, commands: &mut Vec<Command>) {
         let is_off = matches!(link.state(), LinkState::Off | LinkState::Failed(_));
         let mut text = self.text.clone().unwrap_or_else(|| link.address().to_owned());
@@ -140,7 +140,7 @@ impl MachinesPanel {
     }
 }
 
-/// Draws a dot and the state of the connection.
+/// Draws the state of the connection, with a coloured dot.
 fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
     ui.horizontal(|ui| {
         dot(ui, color, theme::LANE_DOT);
@@ -148,7 +148,7 @@ fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
     });
 }
 
-/// Draws what to do before the first connection.
+/// Draws instructions for the first connection.
 fn first_steps(ui: &mut egui::Ui, copied: &mut dyn FnMut(&str)) {
     title(ui, "How to begin");
     ui.label(
@@ -166,7 +166,7 @@ fn first_steps(ui: &mut egui::Ui, copied: &mut dyn FnMut(&str)) {
     );
 }
 
-/// Draws the state of a connected server.
+/// Draws what is known about a connected server.
 fn connected(
     ui: &mut egui::Ui,
     link: &MachinesLink,
@@ -204,7 +204,7 @@ fn connected(
 }
 
 impl RunPart {
-    /// A sentence that names the computers of the run.
+    /// Describes which computers evaluate the run.
     fn in_words(self, workers: usize) -> String {
         let threads = format!("{} of this computer", in_threads(self.threads as u32));
         match (self.is_under_way, self.is_shared) {
@@ -220,7 +220,7 @@ impl RunPart {
     }
 }
 
-/// Draws the command that starts a worker.
+/// Draws the command that starts a worker on another computer.
 fn worker_command(ui: &mut egui::Ui, address: &str, copied: &mut dyn FnMut(&str)) {
     command_line(ui, &format!("snakes worker --nats {address}"), copied);
     let is_own =

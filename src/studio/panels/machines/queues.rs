@@ -1,4 +1,4 @@
-//! The runs on a server, and what waits there for each.
+//! The runs on a server, with the number of waiting batches and results of each.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::studio::state::machines::KnownServer;
 use crate::studio::ui::text_rows::{explain, problem, title, weak};
 use snakes_cluster::Machines;
 
-/// Draws the runs, the one of this window first.
+/// Draws the runs on the server, that of this window first.
 pub(super) fn queues(
     ui: &mut egui::Ui,
     address: &str,
@@ -34,7 +34,7 @@ pub(super) fn queues(
     }
 }
 
-/// Draws what waits for a run.
+/// Draws the waiting batches and results of a run.
 fn queue(ui: &mut egui::Ui, name: &str, is_own: bool, machines: &Machines) {
     let (run, queue) = (machines.runs.get(name), machines.queues.get(name));
     let place = match run {

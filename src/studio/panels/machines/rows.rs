@@ -1,4 +1,4 @@
-//! Rows of the panel's lists: an entry on a few lines, and a command to type.
+//! Elements of the panel's lists: an entry of several lines, and a command to type.
 
 use bevy_egui::egui;
 
@@ -6,11 +6,11 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::at_right;
 use crate::studio::ui::theme;
 
-/// Width that the button beside a command needs, in points.
+/// Width of the button beside a command, in points.
 const COPY_WIDTH: f32 = 60.0;
 
-/// Draws the lines of one worker or run close together: a name, and what belongs to it at the right end of its line; then
-/// the rest.
+/// Draws the entry of a worker or run with little spacing: a name, a text at the right end of the name's line, and
+/// further lines.
 pub(super) fn entry(
     ui: &mut egui::Ui,
     name: egui::RichText,

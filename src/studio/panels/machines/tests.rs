@@ -1,4 +1,4 @@
-//! The machines panel in each state of the connection.
+//! Tests of the machines panel in each state of the connection.
 
 use super::*;
 use crate::studio::panels::testing::{press, shows};
@@ -11,7 +11,7 @@ use snakes_core::{ENGINE_VERSION, Processors};
 const URL: &str = "nats://192.168.1.5:4222";
 const PROOF: &str = "0123456789abcdef";
 
-/// The panel of a link, and the commands that it sent.
+/// The machines panel, and the commands that it sent.
 type State = (MachinesPanel, Vec<Command>);
 
 fn panel(link: MachinesLink, width: f32) -> Harness<'static, State> {
@@ -21,7 +21,7 @@ fn panel(link: MachinesLink, width: f32) -> Harness<'static, State> {
     };
     let builder = Harness::builder().with_size(egui::vec2(width, 1200.0));
     let mut harness = builder.build_ui_state(draw, State::default());
-    // A spinner never rests.
+    // A spinner is animated without end, so only a few frames are run.
     harness.run_steps(3);
     harness
 }
@@ -30,7 +30,7 @@ fn narrow(link: MachinesLink) -> Harness<'static, State> {
     panel(link, theme::PANEL_WIDTH)
 }
 
-/// A worker with this name and this proof.
+/// Creates the notice of a worker with this name and this proof.
 fn worker(name: &str, proof: &str) -> (String, WorkerNotice) {
     let notice = WorkerNotice {
         format: 1,

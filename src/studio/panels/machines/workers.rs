@@ -1,4 +1,4 @@
-//! The workers on a server: a table where the panel has room for one, or else a few lines for each.
+//! The workers on a server: a table if the panel is wide enough, or else a few lines for each worker.
 
 use bevy_egui::egui;
 
@@ -7,12 +7,12 @@ use crate::studio::ui::text_rows::{at_right, explain, problem, title, weak};
 use crate::studio::ui::theme;
 use snakes_cluster::{Machines, WorkerNotice};
 
-/// Minimum width of the table, in points.
+/// Minimum width of the table of workers, in points.
 const TABLE_WIDTH: f32 = 620.0;
-/// Why a worker is not used.
+/// Reason why a worker is not used.
 const OTHER_PROOF: &str = "Not used: it computes other bits than this computer. Use the same version of the program on both.";
 
-/// The workers whose engine computes the same bits as this computer's.
+/// Returns the workers whose engine computes the same bits as that of this computer.
 pub(super) fn used<'m>(
     machines: &'m Machines,
     proof: &'m str,
@@ -20,7 +20,7 @@ pub(super) fn used<'m>(
     machines.workers.values().filter(move |worker| worker.proof == proof)
 }
 
-/// The workers that are used, in words.
+/// Describes the workers that are used.
 pub(super) fn workers_in_words(machines: &Machines, proof: &str) -> String {
     let all = || used(machines, proof);
     let (count, threads) = (all().count(), all().map(|worker| worker.threads).sum::<u32>());
@@ -33,12 +33,12 @@ pub(super) fn workers_in_words(machines: &Machines, proof: &str) -> String {
     }
 }
 
-/// A number of threads in words.
+/// Formats a number of threads: "1 thread", "2 threads".
 pub(super) fn in_threads(threads: u32) -> String {
     format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
 }
 
-/// Draws the workers.
+/// Draws the workers as a table or, in a narrow panel, as entries of a few lines.
 pub(super) fn workers(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
     title(ui, "Workers");
     if ui.available_width() < TABLE_WIDTH {
@@ -51,7 +51,7 @@ pub(super) fn workers(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
     }
 }
 
-/// Draws a worker on a few lines.
+/// Draws a worker as an entry of a few lines.
 fn worker_entry(ui: &mut egui::Ui, worker: &WorkerNotice, proof: &str) {
     let palette = theme::of(ui);
     let is_used = worker.proof == proof;

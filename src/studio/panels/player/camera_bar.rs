@@ -11,7 +11,7 @@ use crate::studio::scene::overlays::Overlays;
 use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::theme::Theme;
 
-/// Draws the bar and collects the user's commands.
+/// Draws the camera bar, and collects the user's commands.
 pub(crate) fn view_bar(
     ui: &mut egui::Ui,
     camera_mode: CameraMode,

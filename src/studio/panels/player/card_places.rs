@@ -1,35 +1,35 @@
-//! Where the card with a limb's readings stands, and where messages have room beside it.
+//! Placement of the card with a limb's readings, and of the messages beside it.
 
 use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::studio::ui::theme;
 
-/// Distance between two cards, in points.
+/// Minimum distance between two cards, in points.
 const GAP: f32 = theme::GAP;
-/// Distance that a new place keeps from the limbs, in points, so that the card need not move again at once.
+/// Distance of a new place from the limbs, in points, so that the card need not move again soon.
 const FROM_LIMBS: f32 = theme::GAP * 1.5;
 /// Minimum width of messages, in points.
 const LEAST_MESSAGES: f32 = 200.0;
 
-/// Areas that the card with a limb's readings must not cover, in points.
+/// Areas around the card with a limb's readings, in points.
 pub(super) struct AroundLimb<'a> {
-    /// Room for the card.
+    /// Area in which the card can be placed.
     pub room: Rect,
-    /// Areas of the other cards.
+    /// Areas of the other cards, which the card must not cover.
     pub taken: &'a [Rect],
-    /// The selected limb.
+    /// Area of the selected limb, if it is in view.
     pub selected: Option<Rect>,
-    /// All limbs on the stage.
+    /// Areas of all limbs on the stage.
     pub all: &'a [Rect],
 }
 
 impl AroundLimb<'_> {
-    /// Where a card of this size covers neither the selected limb nor, if possible, any other; the lower right corner
-    /// if all places are equally good. A card that stands well at `now` stays.
+    /// Returns a place for a card of this size that covers neither the selected limb nor, if possible, any other limb.
+    /// If all places are equally good, the lower right corner is chosen. A card at `now` is not moved without need.
     pub fn place(&self, size: Vec2, now: Option<Rect>) -> Rect {
         let candidates = self.candidates(size);
         let default = Rect::from_min_size(self.room.max - size, size);
-        // Its size may have changed since.
+        // The size of the card may have changed since.
         let distance = |place: &Rect, now: Rect| {
             let corners = [place.min - now.min, place.max - now.max];
             corners.into_iter().map(Vec2::length).fold(f32::INFINITY, f32::min)
@@ -46,7 +46,7 @@ impl AroundLimb<'_> {
         let is_less = |a: (f32, f32), b: (f32, f32)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
         let best = candidates.iter().copied().min_by(|a, b| is_less(cost(a), cost(b)));
         match (as_now, best) {
-            // It moves only for a good reason.
+            // The card moves only to a much better place.
             (Some(as_now), Some(best)) if !self.is_much_better(&best, &as_now) => as_now,
             (_, Some(best)) => best,
             (_, None) => default,
@@ -58,7 +58,7 @@ impl AroundLimb<'_> {
         ours.0 < theirs.0 || (ours.0 == theirs.0 && ours.1 < theirs.1 / 2.0)
     }
 
-    /// The covered areas of the selected limb and of all others, in square points.
+    /// Returns the areas of the selected limb and of all limbs that a card would cover, in square points.
     fn covered(&self, place: &Rect, margin: f32) -> (f32, f32) {
         let of = |limb: &Rect| {
             let common = place.expand(margin).intersect(*limb);
@@ -67,7 +67,7 @@ impl AroundLimb<'_> {
         (self.selected.as_ref().map_or(0.0, of), self.all.iter().map(of).sum())
     }
 
-    /// Places at the right and the left edge that cover no other card, the preferred ones first.
+    /// Returns the places at the right and the left edge that cover no other card, the preferred ones first.
     fn candidates(&self, size: Vec2) -> Vec<Rect> {
         let (room, last) = (self.room, self.room.max - size);
         let beside =
@@ -84,8 +84,8 @@ impl AroundLimb<'_> {
     }
 }
 
-/// Room for messages at its lower right corner: not below the bar with the cameras, and beside the card of a limb, or
-/// above it if that is where they have room. `size` is that of the messages.
+/// Returns the area for messages, which are drawn in its lower right corner. It is not below the camera bar, and is
+/// beside the card of a limb, or above the card if only there is room. `size` is the size of the messages.
 pub(super) fn messages_room(
     stage: Rect,
     bar: Rect,
@@ -101,12 +101,12 @@ pub(super) fn messages_room(
     let to = |max: Pos2| Rect::from_min_max(whole.min, max);
     let rooms = [
         whole,
-        // Over the ground; above the card they could cover a snake on the stairs.
+        // The area above the ground is preferred; above the card, messages could cover a snake on the stairs.
         to(pos2(card.left(), whole.bottom())),
         Rect::from_min_max(pos2(card.right(), whole.top()), whole.max),
         to(pos2(whole.right(), card.top())),
     ];
-    // Rectangles that only touch do not cover each other.
+    // Rectangles that only touch do not count as overlapping.
     let covers = |a: Rect, b: Rect| a.intersect(b).is_positive();
     let messages = |room: &Rect| {
         let size = vec2(size.x.min(room.width()), size.y);
@@ -132,13 +132,13 @@ mod tests {
         Rect::from_min_max(pos2(left, top), pos2(right, bottom))
     }
 
-    /// The stage and its bar in a window of 1024 by 640 points.
+    /// The stage and its camera bar in a window of 1024 by 640 points.
     const STAGE: Rect = Rect { min: pos2(385.0, 29.0), max: pos2(1024.0, 452.0) };
     const BAR: Rect = Rect { min: pos2(397.0, 41.0), max: pos2(785.0, 76.0) };
-    /// The card that such a stage has room for.
+    /// Size of the card on this stage, in points.
     const CARD: Vec2 = vec2(250.0, 224.0);
 
-    /// The limbs of a snake at the first step, from the head, as the default camera shows them in that window.
+    /// Returns the limbs of a snake at the first step, from the head, as the default camera shows them in this window.
     fn snake() -> Vec<Rect> {
         let middles =
             [(722.0, 230.0), (686.0, 253.0), (648.0, 262.0), (605.0, 272.0), (558.0, 295.0)];
@@ -155,7 +155,7 @@ mod tests {
     fn the_card_of_a_limb_never_covers_that_limb() {
         let limbs = snake();
         for selected in 0..limbs.len() {
-            // Wherever the limb is pulled.
+            // The limb is pulled to many places on the stage.
             for (x, y) in
                 (400..1020).step_by(20).flat_map(|x| (40..450).step_by(20).map(move |y| (x, y)))
             {

@@ -1,4 +1,4 @@
-//! Cards over the stage: camera bar, leaderboard, limb readings and lesson reminder.
+//! Cards over the stage: the camera bar, the leaderboard, readings of a limb, and a reminder of the lesson.
 
 use bevy::prelude::Msaa;
 use bevy_egui::egui;
@@ -17,7 +17,7 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::theme;
 
-/// Draws the reminder that a lesson is in progress, for when the lessons panel is hidden.
+/// Draws the reminder that a lesson is in progress, for the time when the lessons panel is hidden.
 pub(crate) fn lesson_card(
     context: &egui::Context,
     at: egui::Pos2,
@@ -38,23 +38,23 @@ pub(crate) fn lesson_card(
     });
 }
 
-/// Space left beside the cards.
+/// Areas that the cards over the stage leave free or cover.
 pub(crate) struct AroundStage {
-    /// Position for another card below the camera bar.
+    /// Position for a further card below the camera bar, in points.
     pub below_bar: egui::Pos2,
-    /// The cards that the camera keeps the snakes out of, in points: the leaderboard or the card of a generation, and the
-    /// card of a limb.
+    /// Cards that must not cover the snakes, in points: the leaderboard or the card of a generation, and the card of a
+    /// limb.
     pub cards: Vec<egui::Rect>,
-    /// Room for messages, which stand at its lower right corner, in points.
+    /// Area for messages, which are drawn in its lower right corner, in points.
     pub messages_room: egui::Rect,
 }
 
-/// State on which the cards depend besides the stage.
+/// State, apart from the stage, on which the cards depend.
 pub(crate) struct CardSituation {
     pub theme: theme::Theme,
-    /// The evaluated and all snakes of the current generation.
+    /// Number of evaluated snakes and number of all snakes of the current generation.
     pub progress: (u32, u32),
-    /// Whether a card of the tour covers the upper left corner.
+    /// Whether a card of the tour covers the upper left corner of the stage.
     pub is_touring: bool,
     /// Size of the messages in the last frame, in points.
     pub messages: egui::Vec2,
@@ -95,9 +95,9 @@ pub(crate) fn around_stage(
     let mut below_bar = below(bar.response.rect);
     let is_narrow = stage.width() < theme::NARROW_STAGE;
     let mut board = None;
-    // With several lanes, the default camera shows few snakes in the lower left corner, and leaves it free.
+    // With several lanes, the default camera shows few snakes in the lower left corner.
     let low = (egui::Align2::LEFT_BOTTOM, stage.left_bottom());
-    // One lane rises from the lower left to the upper right, so the sky at the upper left is free.
+    // With one lane, the stairs rise from the lower left to the upper right, so the sky at the upper left is free.
     let high = (egui::Align2::LEFT_TOP, below_bar);
     let (pivot, at) = if situation.is_touring { low } else { high };
     let mut corner = None;
@@ -131,7 +131,7 @@ pub(crate) fn around_stage(
     let bar = bar.response.rect;
     let mut others: Vec<egui::Rect> = std::iter::once(bar).chain(board).collect();
     if on_stage.overlays.shows_any() {
-        // The legend ignores the pointer, because the snake may be behind it.
+        // The legend ignores the pointer, because the snake may be behind the legend.
         let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
         let is_pulled = lanes.iter().any(|lane| lane.is_disturbed());
         let shown = place.show(context, |ui| {
@@ -144,7 +144,7 @@ pub(crate) fn around_stage(
         let room = egui::vec2(whole.width(), stage.bottom() - bar.bottom());
         let size = CardSize::for_stage(room);
         let at = limb_place(context, (stage, &others), on_stage, (lanes, focused), (limb, size));
-        // The card ignores the pointer, because a snake may be behind it.
+        // The card ignores the pointer, because a snake may be behind the card.
         let place = card(LIMB_CARD, egui::Align2::LEFT_TOP, at.min).interactable(false);
         let is_playing = on_stage.playback.is_playing();
         let shown = place.show(context, |ui| {
@@ -159,10 +159,10 @@ pub(crate) fn around_stage(
     AroundStage { below_bar, cards: board.into_iter().chain(limb_place).collect(), messages_room }
 }
 
-/// Id of the card of a limb.
+/// Name of the card of a limb, from which egui's ID is derived.
 const LIMB_CARD: &str = "limb";
 
-/// Where the card of a limb of the focused lane stands, beside the `others`.
+/// Returns the place of the card of a limb in the focused lane, beside the `others`.
 fn limb_place(
     context: &egui::Context,
     (room, others): (egui::Rect, &[egui::Rect]),
@@ -171,7 +171,7 @@ fn limb_place(
     (limb, size): (usize, CardSize),
 ) -> egui::Rect {
     let drawn = context.memory(|memory| memory.area_rect(egui::Id::new(LIMB_CARD)));
-    // Before the first frame its height is not known.
+    // Before the first frame, the height of the card is unknown.
     let least = egui::vec2(size.width(), 0.0);
     let drawn_size = drawn.map_or(least, |rect| rect.size());
     let of_lane = |lane: &Lane| on_stage.limbs_in_window(context, lane);

@@ -1,19 +1,19 @@
-//! Events of a rollout for the time line: the first touch of the stairs, steps climbed and lost, the landing.
+//! Events of a rollout for the timeline: first touch of the stairs, steps climbed and lost, landing.
 
 use crate::studio::stage::lane::Lane;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::Stairs;
 
-/// Something that happened to a snake.
+/// An event of a snake's climb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ClimbEvent {
-    /// When, in simulated seconds.
+    /// Time of the event, in simulated seconds.
     pub time_s: f64,
     /// Kind of the event.
     pub kind: ClimbEventKind,
 }
 
-/// Kind of an event.
+/// Kind of an event of a climb.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ClimbEventKind {
     /// A limb touched the stairs for the first time.
@@ -22,15 +22,15 @@ pub(super) enum ClimbEventKind {
     Climbed(u32),
     /// The middle block fell back to this step; 0 is the ground.
     Lost(u32),
-    /// The middle block arrived on the last step or the landing, for the first time.
+    /// The middle block reached the last step or the landing for the first time.
     Landed,
 }
 
-/// Time for which the middle block must stay on a step, in seconds. At the edge of a step it may hop to and fro.
+/// Minimum time for which the middle block must stay on a step, in seconds. At the edge of a step it may move back and forth.
 const STAYS_S: f64 = 0.25;
 
 impl ClimbEvent {
-    /// Description of the event, for a hover text.
+    /// Describes the event for a hover text.
     pub fn words(self) -> String {
         let time_s = self.time_s;
         match self.kind {
@@ -43,7 +43,7 @@ impl ClimbEvent {
     }
 }
 
-/// Events of a lane's rollout in the order of their time, as far as they are known. A recording tells only its landing.
+/// Returns the events of a lane's rollout in the order of time, as far as they are known. For a recording, only the landing is known.
 pub(super) fn events(lane: &Lane) -> Vec<ClimbEvent> {
     match lane.history() {
         Some(history) => of_history(history, &lane.trial().stairs, lane.step_s()),
@@ -64,7 +64,7 @@ fn of_history(history: &KeyframeHistory, stairs: &Stairs, step_s: f64) -> Vec<Cl
     };
     let mut events = changes(&levels, sample_s);
     if history.landed_at_step().is_some() {
-        // The landing has a mark of its own.
+        // The landing has a separate mark.
         let first = events.iter().position(|of| of.kind == ClimbEventKind::Climbed(stairs.steps));
         if let Some(index) = first {
             events.remove(index);
@@ -76,7 +76,7 @@ fn of_history(history: &KeyframeHistory, stairs: &Stairs, step_s: f64) -> Vec<Cl
     events
 }
 
-/// Changes of the step under the middle block that last, given that step in each sample.
+/// Returns the lasting changes of the step under the middle block. `levels` has the step in each sample.
 fn changes(levels: &[u32], sample_s: f64) -> Vec<ClimbEvent> {
     let samples = (STAYS_S / sample_s.max(1.0e-6)).ceil().max(1.0) as usize;
     let mut events = Vec::new();
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn steps_climbed_and_lost_are_marked_but_not_a_hop_at_an_edge() {
-        // A sample each tenth of a second.
+        // There is a sample every tenth of a second.
         let levels = [0, 0, 1, 1, 1, 2, 1, 1, 1, 3, 3, 3, 3, 1, 1, 1, 1];
         let kinds: Vec<_> =
             changes(&levels, 0.1).into_iter().map(|of| (of.time_s, of.kind)).collect();

@@ -1,4 +1,4 @@
-//! Card of a generation on the stage: its number, its best result, and the buttons that choose what comes next.
+//! Card of the generation on the stage: its number, its best result, and buttons for what to show next.
 
 use bevy_egui::egui;
 
@@ -11,7 +11,7 @@ use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 
-/// Draws the card of the generation on the stage. `best` is the lane of its best snake, `shown` the number of lanes.
+/// Draws the card of the generation on the stage. `best` is the lane of the best snake, `shown` the number of lanes.
 pub(crate) fn generation_card(
     ui: &mut egui::Ui,
     mode: &StageMode,
@@ -36,7 +36,7 @@ pub(crate) fn generation_card(
     });
 }
 
-/// Caption of a generation, and the number of its snakes on the stage.
+/// Returns the caption of a generation, and a text about the number of its snakes on the stage.
 fn captions(number: u32, size: u32, shown: usize) -> (String, String) {
     let detail = if shown == size as usize {
         format!("All {size} snakes at once")
@@ -46,7 +46,7 @@ fn captions(number: u32, size: u32, shown: usize) -> (String, String) {
     (format!("Generation {number}"), detail)
 }
 
-/// Draws the card that stands on the stage until the first generation is evaluated: `done` of `all` snakes are.
+/// Draws the card that is shown until the first generation is evaluated: `done` of `all` snakes are.
 pub(crate) fn waiting_card(
     ui: &mut egui::Ui,
     (done, all): (u32, u32),

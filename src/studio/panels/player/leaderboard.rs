@@ -1,4 +1,4 @@
-//! Leaderboard: the ranking of several lanes, and the buttons below it.
+//! The leaderboard: a ranking of several lanes, and buttons below the ranking.
 
 use bevy_egui::egui;
 
@@ -16,8 +16,8 @@ use crate::studio::ui::theme;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::Stairs;
 
-/// Time at which the middle block first passed each riser, in simulated seconds, as far as the snake has come by
-/// `time_s`. The last step is the landing.
+/// Returns the time at which the middle block first passed each riser, in simulated seconds, for the risers passed by
+/// `time_s`. The last riser leads to the landing.
 fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64) -> Vec<f64> {
     let sample_s = step_s * f64::from(history.sample_steps());
     let shown = (time_s / sample_s) as usize + 1;
@@ -29,7 +29,7 @@ fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64
     (0..stairs.steps).map_while(reached).collect()
 }
 
-/// The tooltip of a snake's result: the time of each step that it has climbed.
+/// Draws the tooltip of a snake's result: the time of each step that the snake has climbed.
 fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     let stairs = &lane.trial().stairs;
     let history = lane.history().filter(|_| !lane.is_disturbed());
@@ -51,7 +51,7 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
-/// Draws the leaderboard and collects the user's commands. `focus` is the lane whose numbers are shown. Over a narrow
+/// Draws the leaderboard, and collects the user's commands. `focus` is the lane whose numbers are shown. On a narrow
 /// stage (`is_narrow`) the texts are shorter.
 pub(crate) fn leaderboard(
     ui: &mut egui::Ui,
@@ -64,7 +64,7 @@ pub(crate) fn leaderboard(
 ) {
     let palette = theme::of(ui);
     let heading = match mode {
-        // A generation has a card of its own.
+        // A generation has a separate card.
         StageMode::Solo | StageMode::Generation { .. } => return,
         StageMode::Race => "Race",
         StageMode::WhatIf { .. } => "What if",
@@ -74,7 +74,7 @@ pub(crate) fn leaderboard(
     if let Some(beginning) = beginning {
         explain(ui, &beginning);
     }
-    // One copy is kept by the button below.
+    // If there is only one copy, a button below the lanes keeps it.
     let keeps_each = matches!(mode, StageMode::WhatIf { .. }) && lanes.len() > 2;
     egui::Grid::new("board")
         .num_columns(4)
@@ -86,7 +86,7 @@ pub(crate) fn leaderboard(
                 let lane = lanes.iter().find(|lane| lane.number() == ranked.lane);
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 if is_winner {
-                    // A coloured background would look like the selection.
+                    // A coloured background would look like that of the selected row.
                     landing_flag(ui, WINNER).on_hover_text(WINNER);
                 } else {
                     let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
@@ -100,7 +100,7 @@ pub(crate) fn leaderboard(
                 if name.on_hover_text(hint + &beginning.unwrap_or_default()).clicked() {
                     commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
                 }
-                // A fixed width keeps the layout still while the values change.
+                // The fixed width prevents the layout from moving while the values change.
                 let text = match (ranked.is_disqualified, ranked.landed_s) {
                     _ if ranked.is_disturbed => "pulled".to_owned(),
                     (true, _) if is_narrow => "out".to_owned(),
@@ -142,12 +142,12 @@ pub(crate) fn leaderboard(
     });
 }
 
-/// Name of the flag in place of the first rank.
+/// Tooltip of the flag that replaces the first rank.
 const WINNER: &str = "First on the landing";
-/// Shown while no copy of a what-if changes.
+/// Text that is shown while the next change of a what-if adds a lane.
 const NEXT_LANE: &str = "The next change gets a lane of its own.";
 
-/// The moment from which all copies differ from the original, in words, if it is the same for all.
+/// Describes the time from which all copies differ from the original, if it is the same for all.
 fn common_beginning(lanes: &[&Lane]) -> Option<String> {
     let copies = || lanes.iter().filter(|lane| lane.number() > 0);
     let mut beginnings = copies().map(|lane| lane.staged().beginning_in_words());
@@ -155,7 +155,7 @@ fn common_beginning(lanes: &[&Lane]) -> Option<String> {
     beginnings.all(|other| other.as_ref() == Some(&first)).then_some(first)
 }
 
-/// Draws the button that keeps one of several copies.
+/// Draws the button that keeps only one of several copies.
 fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Command>) {
     let said = format!("Keep {}", ranked.name);
     let hint = format!("{said}: only this lane stays, and the next run gets its world");
@@ -165,7 +165,7 @@ fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Comman
     }
 }
 
-/// Draws the buttons below the lanes.
+/// Draws the buttons below the ranking.
 fn buttons(ui: &mut egui::Ui, mode: &StageMode, keeps_each: bool, commands: &mut Vec<Command>) {
     let StageMode::WhatIf { .. } = mode else {
         let (hint, single) = ("Show only the selected snake", Command::Stage(StageCommand::Single));

@@ -1,4 +1,4 @@
-//! Readings of the selected limb.
+//! Card with the readings of the selected limb.
 
 use bevy_egui::egui;
 
@@ -9,11 +9,11 @@ use crate::studio::ui::text_rows::{title_text, weak};
 use crate::studio::ui::theme;
 use snakes_core::world::JointState;
 
-/// A line of the card.
+/// A line of the card: a reading with its name.
 struct Reading {
     name: &'static str,
     value: String,
-    /// When it was taken, where that is not clear.
+    /// Time of the reading, where this is not obvious.
     when: String,
 }
 
@@ -23,30 +23,30 @@ impl Reading {
     }
 }
 
-/// Rounds to a tenth, and avoids "-0.0".
+/// Rounds to a tenth, and turns -0.0 into 0.0.
 fn tenths(value: f32) -> f32 {
     (value * 10.0).round() / 10.0 + 0.0
 }
 
-/// How much the card shows.
+/// Size of the card, which determines how much it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CardSize {
-    /// All readings of the limb.
+    /// Shows all readings of the limb.
     Full,
-    /// All readings that change, in fewer digits.
+    /// Shows all readings that change, with fewer digits.
     Narrow,
-    /// Speed and contact.
+    /// Shows only speed and contact.
     Least,
 }
 
-/// Stage width and height below the camera bar that the full card needs, in points: beside it, a limb in the middle of
-/// the stage is in sight.
+/// Minimum width and height of the stage below the camera bar for the full card, in points. A limb in the middle of the
+/// stage is then visible beside the card.
 const FULL_NEEDS: egui::Vec2 = egui::vec2(720.0, 300.0);
-/// Stage width and height below the camera bar that the narrow card needs, in points.
+/// Minimum width and height of the stage below the camera bar for the narrow card, in points.
 const NARROW_NEEDS: egui::Vec2 = egui::vec2(560.0, 225.0);
 
 impl CardSize {
-    /// The largest card for which a stage of this size has room, in points.
+    /// Returns the largest card that fits onto a stage of this size, in points.
     pub fn for_stage(size: egui::Vec2) -> Self {
         let has = |needed: egui::Vec2| size.x >= needed.x && size.y >= needed.y;
         match () {
@@ -56,7 +56,7 @@ impl CardSize {
         }
     }
 
-    /// Minimum width of the contents, in points. It keeps the card from growing in its first frames.
+    /// Returns the minimum width of the card's contents, in points. It keeps the card from growing in its first frames.
     pub fn width(self) -> f32 {
         match self {
             Self::Full => theme::LIMB_CARD_WIDTH,
@@ -66,8 +66,8 @@ impl CardSize {
     }
 }
 
-/// Draws the readings of a limb; the head is 0. While the stage plays (`is_playing`), those of its contacts change a few
-/// times per second only.
+/// Draws the readings of a limb; the head is 0. While the stage plays (`is_playing`), the readings of contacts change
+/// only a few times per second.
 pub(super) fn limb_card(
     ui: &mut egui::Ui,
     lane: &Lane,
@@ -115,7 +115,7 @@ pub(super) fn limb_card(
     if size != CardSize::Least {
         rows.extend(joint_rows(lane, limb, size));
     }
-    // Low rows: over a small stage a high card would cover the snake.
+    // The rows are low, because on a small stage a high card would cover the snake.
     let grid = egui::Grid::new("limb").num_columns(2).min_row_height(theme::GAP * 2.25);
     grid.spacing([theme::GAP * 1.5, 0.0]).show(ui, |ui| {
         ui.spacing_mut().interact_size.y = theme::GAP * 2.25;
@@ -135,7 +135,7 @@ pub(super) fn limb_card(
     }
 }
 
-/// Speed and contact of a limb. Each reading of a contact says whether it is of the moment.
+/// Returns the readings of a limb's speed and contacts. Each reading of a contact states whether it is instantaneous or an average.
 fn contact_rows(lane: &Lane, limb: usize, is_playing: bool, size: CardSize) -> Vec<Reading> {
     let readings = lane.readings();
     let Some(speed_m_s) = readings.speeds_m_s.get(limb) else { return Vec::new() };
@@ -179,7 +179,7 @@ fn contact_rows(lane: &Lane, limb: usize, is_playing: bool, size: CardSize) -> V
     rows
 }
 
-/// Angles and torques of the joints of a limb.
+/// Returns the readings of angles and torques at the joints of a limb.
 fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
     let readings = lane.readings();
     let joint = |index: usize| {
@@ -203,7 +203,7 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
         let names = if rear == limb {
             ["Front bend", "Front twist"]
         } else if front == limb && !body.is_branching() {
-            // A limb of a creature may hold several others, whose own cards have these joints.
+            // A limb of a creature may carry several others, whose own cards show these joints.
             ["Rear bend", "Rear twist"]
         } else {
             continue;
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_reading_that_rounds_to_zero_has_no_minus() {
         assert_eq!(format!("{:+.1}", tenths(-0.04)), "+0.0");
-        // It lies at x = 0 at first.
+        // The limb is at x = 0 at first.
         let lane = climber_lane(0, "climber");
         let card = Harness::new_ui(|ui| limb_card(ui, &lane, 2, false, CardSize::Full));
         assert!(card.query_by_label_contains("-0.0").is_none());
@@ -272,7 +272,7 @@ mod tests {
             });
             card.run();
             drop(card);
-            // With its margins, two of them have room side by side, and so has one below the bar.
+            // With their margins, two cards fit side by side, and one fits below the camera bar.
             let (outer, room) = (used + egui::vec2(26.0, 18.0), stage - egui::vec2(24.0, 12.0));
             assert!(outer.x < room.x / 2.0 && outer.y < room.y, "{outer} in {room}");
             sizes.push(size);

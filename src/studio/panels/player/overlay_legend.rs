@@ -1,4 +1,4 @@
-//! Legend of the overlays that are drawn over the scene: a sample and a line of text for each.
+//! Legend of the overlays over the scene: a sample and a line of text for each.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Shape, Stroke};
@@ -10,27 +10,27 @@ use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 
-/// Size of a sample, in points.
+/// Size of a sample in the legend, in points.
 const SAMPLE: egui::Vec2 = egui::vec2(30.0, 14.0);
 /// Width of a sample's line, in points.
 const LINE: f32 = 2.0;
 
-/// How a sample is drawn.
+/// Shape of a sample in the legend.
 #[derive(Debug, Clone, Copy)]
 enum Sample {
     Line,
-    /// A cross.
+    /// A cross, as at a contact.
     Contact,
-    /// A thin arrow.
+    /// A thin arrow, as for a force.
     Force,
-    /// An arrow of the length and width of a torque, as a share of the joint's limit.
+    /// An arrow for a torque. Its length and width show this share of the joint's limit.
     Torque(f32),
 }
 
-/// Draws the meaning of every overlay that is shown; `is_pulled` says whether the mouse has pulled a snake.
+/// Draws the meaning of every visible overlay. `is_pulled` tells whether the mouse has pulled a snake.
 pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: bool) {
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
-    // Rows as low as their samples, because the legend may cover the snake.
+    // The rows are as low as their samples, because the legend may cover the snake.
     ui.spacing_mut().interact_size.y = SAMPLE.y;
     for overlay in Overlay::ALL.into_iter().filter(|overlay| overlays.shows(*overlay)) {
         let name = overlay.name();
@@ -54,7 +54,7 @@ pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: 
     }
 }
 
-/// Samples of an overlay, with their colours and meanings.
+/// Returns the samples of an overlay, with their colours and meanings.
 fn entries(overlay: Overlay, is_pulled: bool, palette: &Palette) -> Vec<(Sample, Color32, String)> {
     let named = |sample, color, text: &str| (sample, color, text.to_owned());
     match overlay {
@@ -87,7 +87,7 @@ fn entries(overlay: Overlay, is_pulled: bool, palette: &Palette) -> Vec<(Sample,
     }
 }
 
-/// The shapes of a sample, drawn as in the scene.
+/// Returns the shapes of a sample, which look as in the scene.
 fn shapes(sample: Sample, rect: egui::Rect, color: Color32) -> Vec<Shape> {
     let (left, right) = (rect.left_center(), rect.right_center());
     let stroke = Stroke::new(LINE, color);
@@ -101,14 +101,14 @@ fn shapes(sample: Sample, rect: egui::Rect, color: Color32) -> Vec<Shape> {
         }
         Sample::Force => arrow(left, right, LINE, color),
         Sample::Torque(share) => {
-            // Longer and wider with the torque.
+            // The arrow is longer and wider for a larger torque.
             let end = rect.left() + SAMPLE.x * (0.3 + 0.7 * share);
             arrow(left, egui::pos2(end, left.y), 1.5 + 4.5 * share, color)
         }
     }
 }
 
-/// An arrow to the right.
+/// Returns the shapes of an arrow from left to right.
 fn arrow(from: Pos2, to: Pos2, width: f32, color: Color32) -> Vec<Shape> {
     let head = egui::vec2(width * 1.6, width * 1.1).max(egui::vec2(6.0, 4.0));
     let tip = vec![to, to - head, to - egui::vec2(head.x, -head.y)];
@@ -126,7 +126,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// A legend of overlays, beside a snake that was not pulled.
+    /// Creates the legend of these overlays. `is_pulled` tells whether the snake was pulled.
     fn legend(shown: &[Overlay], is_pulled: bool) -> Harness<'static> {
         let mut overlays = Overlays::default();
         shown.iter().for_each(|overlay| overlays.toggle(*overlay));

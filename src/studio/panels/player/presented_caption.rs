@@ -1,5 +1,5 @@
-//! Caption of the presenting mode: one large line about what is on the stage, and a smaller one below it, in a band
-//! that no part of the picture lies behind.
+//! Caption of the presenting mode: a large line about what the stage shows, and a smaller line below. The caption is in
+//! a band, so that it covers no part of the picture.
 
 use bevy_egui::egui;
 
@@ -13,24 +13,24 @@ use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::theme;
 
-/// Number of snakes that a race's caption names: the leader and those behind it.
+/// Maximum number of snakes that a race's caption names, the leading ones.
 const NAMED: usize = 3;
-/// Least difference of a what-if that is called one, in metres.
+/// Distance in a what-if within which the snakes count as level, in metres.
 const EQUAL_M: f32 = 0.05;
 
-/// Texts of the caption.
+/// Texts of the presenting mode's caption.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PresentedCaption {
-    /// The large line, with the lane whose dot stands before it.
+    /// Large line, with a dot in the colour of its lane.
     title: CaptionPart,
-    /// Parts of the line below.
+    /// Parts of the smaller line below.
     details: Vec<CaptionPart>,
 }
 
-/// A text of the caption.
+/// A part of the caption: a text with an optional dot.
 #[derive(Debug, Clone, Default, PartialEq)]
 struct CaptionPart {
-    /// Lane whose dot stands before the text; the first is 0.
+    /// Lane whose colour the dot before the text has; the first is 0. `None` for no dot.
     lane: Option<usize>,
     text: String,
 }
@@ -42,7 +42,7 @@ impl CaptionPart {
 }
 
 impl PresentedCaption {
-    /// The caption of what is on the stage now. It tells nothing that has not been seen yet.
+    /// Creates the caption of what the stage shows now. It contains nothing that the playback has not reached yet.
     pub fn of(lanes: &[&Lane], on_stage: &OnStage, run: &CurrentRun) -> Self {
         let Some(first) = lanes.first() else { return Self::default() };
         if on_stage.following.awaits_first() {
@@ -115,7 +115,7 @@ impl PresentedCaption {
         }
     }
 
-    /// The changed snake beside the original: the first lane is the original, the last the latest change.
+    /// Creates the caption of a what-if: compares the latest copy, which is the last lane, with the original, which is the first.
     fn of_what_if(lanes: &[&Lane], time_s: f64) -> Self {
         let racers: Vec<&&Lane> = lanes.iter().filter(|lane| !lane.is_ghost()).collect();
         let (Some(original), Some(changed)) = (racers.first(), racers.last()) else {
@@ -141,7 +141,7 @@ impl PresentedCaption {
     }
 }
 
-/// State of the run behind the stage, if it is the user's own.
+/// Describes the state of the current run; returns `None` during a lesson, or if the run has not begun.
 fn evolution(run: &CurrentRun) -> Option<String> {
     if run.is_lent() {
         return None;
@@ -170,7 +170,7 @@ pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
             let fits = |size: &f32| width_of(ui, &caption.title.text, *size) <= width;
             let sizes = theme::PRESENTED_SIZES;
             let size = sizes.into_iter().find(fits).unwrap_or(sizes[sizes.len() - 1]);
-            // The line below stays where it is when the title shrinks.
+            // The line below does not move when the title is drawn in a smaller size.
             let height = sizes[0] * LINE;
             ui.horizontal(|ui| part(ui, &caption.title, size, height));
             ui.horizontal(|ui| {
@@ -181,13 +181,13 @@ pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
         });
 }
 
-/// Height of a line as a multiple of the size of its text.
+/// Height of a line of the caption, as a multiple of its font size.
 const LINE: f32 = 1.25;
 
-/// Draws a dot and a text in a line of this height, in points.
+/// Draws a part of the caption. `size` is its font size and `height` that of its line, in points.
 fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, height: f32) {
     ui.horizontal(|ui| {
-        // The dot is drawn first, and stands in the middle of the line.
+        // The line gets its height first, so that the dot is centred in it.
         ui.set_height(height);
         ui.spacing_mut().item_spacing.x = size * 0.4;
         if let Some(lane) = part.lane {
@@ -210,7 +210,7 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// The shipped climber in this lane, at this time.
+    /// Creates a lane with the built-in climber at this time, in simulated seconds.
     fn lane(number: usize, name: &str, time_s: f64) -> Lane {
         let mut lane = climber_lane(number, name);
         lane.finish_lookahead();

@@ -1,4 +1,4 @@
-//! Marks of a snake's climb on the time line, and the legend of the strip.
+//! Marks of a snake's climb on the timeline, and the legend of the torque strip.
 
 use bevy_egui::egui;
 use bevy_egui::egui::emath::TSTransform;
@@ -10,14 +10,14 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_core::world::JointPlan;
 
-/// Half the size of a mark, in points.
+/// Half the size of an event's mark, in points.
 const HALF: f32 = 3.5;
-/// Width of the number beside a mark, in points.
+/// Width of the number beside an event's mark, in points.
 const NUMBER_WIDTH: f32 = 13.0;
-/// Distance in which the pointer finds a mark, in points.
+/// Maximum horizontal distance between the pointer and a mark that it hovers over, in points.
 const NEAR: f32 = 6.0;
 
-/// Draws the events as marks in the band `marks`, each with a thin line through the rows below, down to `bottom`.
+/// Draws the events as marks in the band `marks`. A thin line connects each to the rows below, down to `bottom`.
 pub(super) fn draw_events(
     painter: &egui::Painter,
     events: &[ClimbEvent],
@@ -29,7 +29,7 @@ pub(super) fn draw_events(
     let mut free_from = f32::MIN;
     for event in events {
         let time_x = x_of(event.time_s);
-        // A mark at an end of the strip stays whole.
+        // A mark at an end of the strip is moved so that it is completely visible.
         let x = time_x.max(marks.left() + HALF * 1.5).min(marks.right() - HALF * 1.5);
         let color = color_of(event.kind, palette);
         let line = [egui::pos2(time_x, marks.bottom()), egui::pos2(time_x, bottom)];
@@ -38,7 +38,7 @@ pub(super) fn draw_events(
         let (ClimbEventKind::Climbed(step) | ClimbEventKind::Lost(step)) = event.kind else {
             continue;
         };
-        // Where marks are close to each other, some go without a number; the hover text has it.
+        // Where marks are close together, some have no number; the hover text contains it.
         let is_free = x >= free_from && x + HALF + NUMBER_WIDTH <= marks.right();
         if is_free {
             let font = egui::FontId::proportional(theme::SMALL_SIZE - 1.0);
@@ -49,7 +49,7 @@ pub(super) fn draw_events(
     }
 }
 
-/// Description of the event nearest to the pointer at `x`, if one is near.
+/// Returns the description of the event nearest to the pointer at `x`, if one is close enough.
 pub(super) fn event_at(events: &[ClimbEvent], x: f32, x_of: &dyn Fn(f64) -> f32) -> Option<String> {
     let near = events.iter().map(|event| (event, (x_of(event.time_s) - x).abs()));
     let nearest = near.min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -65,7 +65,7 @@ fn color_of(kind: ClimbEventKind, palette: &Palette) -> Color32 {
     }
 }
 
-/// Draws the mark of a landing in a line of text. `said` is its label for screen readers.
+/// Draws the mark of a landing in a line of text. `said` is the mark's label for screen readers.
 pub(super) fn landing_flag(ui: &mut egui::Ui, said: &str) -> egui::Response {
     let size = egui::Vec2::splat(HALF * 4.0);
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -76,7 +76,7 @@ pub(super) fn landing_flag(ui: &mut egui::Ui, said: &str) -> egui::Response {
     named(response, egui::WidgetType::Image, said)
 }
 
-/// The mark of an event: shapes differ, so that colours are not needed to tell them apart.
+/// Returns the mark of an event. The shapes differ, so that they can be distinguished without their colours.
 fn shape(kind: ClimbEventKind, at: egui::Pos2, color: Color32) -> Shape {
     let corner = |x: f32, y: f32| at + egui::vec2(x, y) * HALF;
     let filled = |points: Vec<egui::Pos2>| Shape::convex_polygon(points, color, Stroke::NONE);
@@ -96,7 +96,7 @@ fn shape(kind: ClimbEventKind, at: egui::Pos2, color: Color32) -> Shape {
     }
 }
 
-/// Draws the legend in one line, as far as the width goes: torques first, then the marks.
+/// Draws the legend in one line, as far as the width allows: first the torques, then the marks.
 pub(super) fn legend(ui: &mut egui::Ui, joints: &[JointPlan]) {
     let palette = theme::of(ui);
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
@@ -143,10 +143,10 @@ pub(super) fn legend(ui: &mut egui::Ui, joints: &[JointPlan]) {
     named(response, egui::WidgetType::Label, &format!("Legend: {}", names.join(", ")));
 }
 
-/// Width of a sample, in points.
+/// Width of a sample in the legend, in points.
 const SAMPLE: f32 = 15.0;
 
-/// Unit and scale of the rows.
+/// Describes the unit and the range of the rows.
 fn scale(joints: &[JointPlan]) -> String {
     let limits =
         joints.iter().flat_map(|joint| [joint.max_bend_torque_nm, joint.max_twist_torque_nm]);

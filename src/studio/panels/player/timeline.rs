@@ -1,4 +1,4 @@
-//! Below the stage: caption, player controls, current readings and torques over time.
+//! Timeline below the stage: caption, player controls, current readings, and torques over time.
 
 use bevy_egui::egui;
 
@@ -17,18 +17,18 @@ use crate::studio::ui::text_rows::{at_right, explain, title_text, weak};
 use crate::studio::ui::theme;
 use snakes_core::score::Fitness;
 
-/// The part of the time that the time line shows.
+/// Time span that the timeline shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimelineSpan {
-    /// Its end, in simulated seconds.
+    /// End of the time span, in simulated seconds.
     pub end_s: f64,
-    /// Whether nothing after the present may be seen, nor the result: it answers the question of a lesson.
+    /// Whether the result and everything after the present time are hidden, because they answer the question of a lesson.
     pub hides_future: bool,
 }
 
 impl TimelineSpan {
-    /// The time of all lanes. With a hidden future the end is that of the trial, because an earlier end would tell that
-    /// all snakes are disqualified.
+    /// Returns the time span of all lanes. If the future is hidden, the span ends with the trial. An earlier end would
+    /// reveal that all snakes are disqualified.
     pub fn of<'a>(lanes: impl Iterator<Item = &'a Lane>, hides_future: bool) -> Self {
         let end_s = match hides_future {
             true => lanes.map(|lane| f64::from(lane.trial().duration_s)).fold(0.0, f64::max),
@@ -38,15 +38,15 @@ impl TimelineSpan {
     }
 }
 
-/// The panel with its cached drawing.
+/// The timeline panel, with its cached drawing.
 #[derive(Default)]
 pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
 }
 
-/// Width of the button that lists more readings, in points.
+/// Width of the button that lists further readings, in points.
 const MORE_WIDTH: f32 = 40.0;
-/// Minimum width of a sentence that is cut, in points: "disqualified" fits.
+/// Minimum width of a truncated sentence, in points: enough for "disqualified".
 const LEAST_SENTENCE: f32 = 100.0;
 /// Width of a monospaced character, in points.
 const DIGIT_WIDTH: f32 = 8.0;
@@ -54,7 +54,7 @@ const DIGIT_WIDTH: f32 = 8.0;
 const CHARACTER_WIDTH: f32 = 7.4;
 
 impl TimelinePanel {
-    /// Draws the panel and collects the user's commands. `run` is the number of the current run.
+    /// Draws the timeline and collects the user's commands. `run` is the number of the current run.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -75,7 +75,7 @@ impl TimelinePanel {
         commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }
 
-    /// Caption of the replay, with buttons for recordings.
+    /// Draws the caption of the replay, with buttons for recordings.
     fn caption(
         &self,
         ui: &mut egui::Ui,
@@ -156,7 +156,7 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
     ui.label(egui::RichText::new(time).monospace()).on_hover_text(end);
 }
 
-/// Draws the readings at the current time.
+/// Draws the readings at the displayed time.
 fn readings(ui: &mut egui::Ui, lane: &Lane) {
     let evaluation = lane.evaluation();
     let trial = lane.trial();
@@ -184,7 +184,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     };
     let fitness_hint =
         format!("Fitness if the trial ended now: {}{cost}{more}", trial.fitness.words());
-    // Ordered by importance, because a narrow window has room for only some of them.
+    // The readings are ordered by importance, because a narrow window has room for only some of them.
     let all = [
         (
             "fitness",
@@ -216,7 +216,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         shown = first;
         more_readings(ui, others);
     }
-    // The layout runs from right to left.
+    // The readings are added from right to left.
     for (name, value, hint) in shown.iter().rev() {
         ui.label(egui::RichText::new(value).monospace()).on_hover_text(*hint);
         ui.label(weak(ui, *name)).on_hover_text(*hint);
@@ -224,8 +224,8 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     }
 }
 
-/// Draws why the snake is out, cut with "…" where there is no room for the whole sentence, or behind a button where there
-/// is hardly any.
+/// Draws the reason why the snake is disqualified. The text is truncated if there is no room for the whole sentence, or
+/// replaced by a button if there is hardly any room.
 fn disqualification(ui: &mut egui::Ui, sentence: &str) {
     if ui.available_width() < LEAST_SENTENCE {
         return more_readings(ui, &[(sentence, String::new(), "")]);
@@ -258,12 +258,12 @@ mod tests {
 
     const SPAN: TimelineSpan = TimelineSpan { end_s: 15.0, hides_future: false };
 
-    /// The panel of a lane at this width.
+    /// Creates the timeline of a lane at this width, in points.
     fn timeline(lane: &Lane, span: TimelineSpan, width: f32) -> Sent<'_> {
         timeline_in(lane, span, width, |_| ())
     }
 
-    /// The panel of a lane at this width, in a style.
+    /// Creates the timeline of a lane at this width, in points, after `style` has changed its style.
     fn timeline_in(
         lane: &Lane,
         span: TimelineSpan,
@@ -277,7 +277,7 @@ mod tests {
         })
     }
 
-    /// The climber of a lesson in a world whose speed limit it breaks on its way.
+    /// Creates a lane with the climber of a lesson, in a world whose speed limit it breaks on its way.
     fn disqualified() -> Lane {
         let loaded = shipped_champion().expect("well formed");
         let lesson = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
@@ -322,7 +322,7 @@ mod tests {
         assert!(lane.evaluation().disqualified.is_some());
         for width in [368.0, 480.0, 608.0, 900.0] {
             let timeline = timeline_in(&lane, SPAN, width, theme::apply);
-            // Below a stage of 400 points there is only room for the time itself.
+            // Below a stage of 400 points, the time is shown without the end.
             let time = timeline.query_by_label_contains(" of 15.00 s");
             assert_eq!(time.is_some(), width > 368.0, "{width}");
             let time = time.unwrap_or_else(|| timeline.get_by_label(" 0.00 s")).rect();

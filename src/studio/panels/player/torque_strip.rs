@@ -1,4 +1,4 @@
-//! Torques of a whole rollout, joint by joint from head to tail, with marks of the climb and a draggable time cursor.
+//! Torques of a whole rollout, joint by joint from head to tail, with marks of the climb, and a time cursor that can be dragged.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ use crate::studio::ui::theme;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::{BodyPlan, JointTorque};
 
-/// The strip with its cached lines.
+/// The torque strip, with its cached lines.
 #[derive(Default)]
 pub(crate) struct TorqueStrip {
     drawn: Option<DrawnStrip>,
-    /// The end of the strip while the mouse button is down, in simulated seconds. Going back from a pull that ended the
-    /// trial makes the strip longer, which must not move the moment under the pointer.
+    /// End of the strip when the mouse button was pressed, in simulated seconds; `None` while it is up. Going back from
+    /// a pull that ended the trial extends the end, but must not move the time under the pointer.
     pressed_end_s: Option<f64>,
 }
 
-/// Lines and events that are cached until their input changes.
+/// Lines and events of the strip, cached until their input changes.
 struct DrawnStrip {
     history: Arc<KeyframeHistory>,
     rect: Rect,
@@ -33,10 +33,10 @@ struct DrawnStrip {
     events: Vec<ClimbEvent>,
 }
 
-/// Reads the torque about one axis, in N·m.
+/// Function that returns the torque about one axis, in N·m.
 type TorqueAxis = fn(&JointTorque) -> f32;
 
-/// Width of a sampling column, in points.
+/// Width of a column in which samples are combined, in points.
 const COLUMN_WIDTH: f32 = 2.0;
 /// Height of the time ruler, in points.
 const RULER_HEIGHT: f32 = 11.0;
@@ -44,14 +44,14 @@ const RULER_HEIGHT: f32 = 11.0;
 const MARKS_HEIGHT: f32 = 12.0;
 /// Vertical margin of a row, in points.
 const ROW_MARGIN: f32 = 1.5;
-/// Width of the names of the joints beside a wide and a narrow strip, in points.
+/// Width of the names of the joints beside a wide strip and beside a narrow one, in points.
 const NAMES_WIDTH: [f32; 2] = [82.0, 42.0];
-/// Width from which a strip counts as wide, in points.
+/// Minimum width of a wide strip, in points.
 const WIDE: f32 = 480.0;
 
 impl TorqueStrip {
-    /// Draws the strip over the available width, with its legend above. Returns the time that was clicked or dragged
-    /// to, in simulated seconds.
+    /// Draws the strip in the available width, with its legend above. Returns the time that was clicked or dragged to,
+    /// in simulated seconds.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -70,7 +70,7 @@ impl TorqueStrip {
         response.widget_info(|| {
             egui::WidgetInfo::slider(ui.is_enabled(), now_s, "Time, in simulated seconds")
         });
-        // A quick click goes down and up within one frame.
+        // In a quick click, the button is pressed and released within one frame.
         let is_pointed = response.is_pointer_button_down_on() || response.clicked();
         self.pressed_end_s = is_pointed.then(|| self.pressed_end_s.unwrap_or(end_s));
         let end_s = self.pressed_end_s.unwrap_or(end_s);
@@ -85,7 +85,7 @@ impl TorqueStrip {
             let share = if end_s > 0.0 { time_s / end_s } else { 0.0 };
             plot.left() + plot.width() * share.clamp(0.0, 1.0) as f32
         };
-        // The played part is shaded like a progress bar.
+        // The area before the displayed time is shaded like a progress bar.
         let played = Rect::from_min_max(rect.min, egui::pos2(x_of(now_s), rect.bottom()));
         painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
@@ -98,7 +98,7 @@ impl TorqueStrip {
                 let seen = if hides_future { played } else { rect };
                 let seen = painter.with_clip_rect(seen.intersect(painter.clip_rect()));
                 seen.extend(drawn.shapes.iter().cloned());
-                // A pulled snake climbs otherwise than its undisturbed rollout.
+                // A snake that was pulled does not climb as in its undisturbed rollout.
                 if !lane.is_disturbed() {
                     climb.clone_from(&drawn.events);
                 }
@@ -118,7 +118,7 @@ impl TorqueStrip {
             }
         }
         if hides_future {
-            // Later marks would give away the result that the reader is to guess.
+            // Later marks would reveal the result that the reader has to guess.
             climb.retain(|event| event.time_s <= now_s);
         }
         draw_events(&painter, &climb, marks, plot.bottom(), &x_of, palette);
@@ -167,8 +167,8 @@ impl TorqueStrip {
     }
 }
 
-/// Writes the names of the joints beside their rows, from head to tail; short ones beside a narrow strip. Rows that are
-/// lower than a line of text share a name with their neighbours.
+/// Writes the names of the joints beside their rows, from head to tail, in short form beside a narrow strip. If the
+/// rows are lower than a line of text, neighbouring rows share a name.
 fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, is_wide: bool) {
     let joints = body.joints.len();
     let row_height = area.height() / joints.max(1) as f32;
@@ -177,7 +177,7 @@ fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, is_wide: bool) {
     let painter = ui.painter_at(area.expand2(egui::vec2(0.0, theme::SMALL_SIZE)));
     for joint in (0..joints).step_by(every) {
         let end = match joint {
-            // A creature has no ends.
+            // The body of a creature has no head and tail ends.
             _ if body.is_branching() => "",
             0 => "head",
             _ if joint + every >= joints => "tail",
@@ -195,7 +195,7 @@ fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, is_wide: bool) {
     }
 }
 
-/// Draws a mark at every round second.
+/// Draws a mark and a number at round seconds.
 fn seconds(
     painter: &egui::Painter,
     rect: Rect,
@@ -217,7 +217,7 @@ fn seconds(
     }
 }
 
-/// Lines of all joints: one row per joint, one line per axis.
+/// Returns the lines of all joints: one row per joint, one line per axis.
 fn shapes(
     history: &KeyframeHistory,
     lane: &Lane,
@@ -265,14 +265,14 @@ fn shapes(
     shapes
 }
 
-/// Time under the pointer and, unless they are to be seen later (`is_known == false`), the torques then, as hover text.
+/// Returns the hover text: the time under the pointer and, unless they must be hidden (`is_known == false`), the torques at that time.
 fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
     let mut text = format!("{time_s:.2} s: click or drag to go there");
     let Some(history) = lane.history().filter(|_| is_known) else { return text };
     let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
         for (joint, torque) in (1..).zip(torques) {
-            // Avoids "-0".
+            // Turns -0.0 into 0.0.
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
             let end = match joint {
                 _ if lane.body().is_branching() => "",

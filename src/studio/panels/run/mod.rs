@@ -20,7 +20,7 @@ use snakes_lab::run::THREADS_RANGE;
 
 use progress::progress;
 
-/// The panel with its text fields.
+/// The Run panel, with its text fields.
 #[derive(Debug, Default)]
 pub(super) struct EvolutionPanel {
     seed: NumberField,
@@ -33,7 +33,7 @@ impl EvolutionPanel {
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         self.sheet.begin(ui, run);
         title_and(ui, "Evolution", |ui| preset_switch(ui, run, commands));
-        // A click on a button also ends typing in a field. The typed value is sent before the button's command.
+        // A click on a button also ends typing in a field. The typed value must be sent before the button's command.
         let mut pressed = Vec::new();
         self.buttons(ui, run, &mut pressed);
         progress(ui, run);
@@ -121,7 +121,7 @@ impl EvolutionPanel {
         self.sheet.send(commands);
     }
 
-    /// Strategy selection, with the settings of the selected and of all other strategies.
+    /// Draws the selection of the strategy, with the settings of the selected strategy and of all others.
     fn strategy(&mut self, ui: &mut egui::Ui) {
         self.sheet.section(ui, EvolutionSettings::STRATEGY);
         let common = [EvolutionSettings::RUN, EvolutionSettings::STRATEGY];
@@ -146,7 +146,7 @@ impl EvolutionPanel {
         shown.header_response.on_hover_text("Settings of the strategies that are not selected");
     }
 
-    /// Controller selection, with the ranges of the genome.
+    /// Draws the selection of the controller, with the ranges of the genome.
     fn controller(&mut self, ui: &mut egui::Ui) {
         self.sheet.section(ui, GenomeSpace::CONTROLLER);
         let sections = self.sheet.sections("genome.").into_iter();
@@ -155,14 +155,14 @@ impl EvolutionPanel {
         }
     }
 
-    /// Whether a setting of a section has an effect with the selected strategy and controller.
+    /// Returns whether a setting of a section has an effect with the selected strategy and controller.
     fn is_used(&self, section: Section) -> bool {
         self.sheet.in_section(section).any(|listed| listed.is_used)
     }
 
-    /// Section with a collapsible header.
+    /// Draws a section that its header unfolds.
     fn folded(&mut self, ui: &mut egui::Ui, section: Section, is_open: bool) {
-        // Sections of the genome that the selected controller does not use are dimmed.
+        // Sections of the genome that the selected controller does not use have a dim title.
         let is_of_genome =
             self.sheet.in_section(section).any(|listed| listed.path.starts_with("genome."));
         let is_unused = is_of_genome && !self.is_used(section);
@@ -170,8 +170,8 @@ impl EvolutionPanel {
             true => weak(ui, section.title),
             false => egui::RichText::new(section.title),
         };
-        // The salt includes `is_open`, so that a newly selected section opens regardless of its state under the
-        // others.
+        // The ID includes `is_open`, so that the section of a newly selected strategy is open, even if it was folded
+        // among the others.
         let header = egui::CollapsingHeader::new(name)
             .id_salt((section.title, is_open))
             .default_open(is_open);
@@ -184,7 +184,7 @@ impl EvolutionPanel {
     }
 }
 
-/// Founder of the next run, with a button to remove it.
+/// Draws the name of the next run's founder, if any, with a button to remove it.
 fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let Some(name) = run.next_founder() else { return };
     ui.horizontal(|ui| {
@@ -195,7 +195,7 @@ fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     });
 }
 
-/// Settings that were changed during the current run.
+/// Draws how many settings were changed during the current run, and lists the latest changes in a tooltip.
 fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
     let changes = run.changes();
     let text = match changes.len() {
@@ -211,10 +211,10 @@ fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
     });
 }
 
-/// Maximum number of changes in the hover text.
+/// Maximum number of changes that the tooltip lists.
 const MAX_LISTED_CHANGES: usize = 12;
 
-/// Draws the button that switches between the original experiment and the standard climb.
+/// Draws the button that selects the preset of the original experiment or, if it is selected, that of the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let (label, preset, hint) = if run.next_preset() == REPORT {
         ("Standard climb", CLIMB, "Use the preset that climbs to the landing for the next run")
@@ -230,12 +230,12 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
     CommandButton::small(label, hint, set).show(ui, commands);
 }
 
-/// Preset of the original experiment.
+/// Name of the preset of the original experiment.
 const REPORT: &str = "report";
-/// Preset of the climb to the landing.
+/// Name of the preset of the standard climb to the landing.
 const CLIMB: &str = "climb";
 
-/// List of unfinished runs that can be resumed.
+/// Draws the list of unfinished runs that can be resumed.
 fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let header = egui::CollapsingHeader::new("Resume a stopped run");
     let opened = header.show(ui, |ui| {

@@ -8,7 +8,7 @@ use crate::studio::ui::theme;
 use snakes_core::evolve::{EvolutionSettings, Settings, StrategyKind};
 use snakes_lab::run::GenerationReport;
 
-/// Number of latest generations used to measure the speed.
+/// Number of latest generations over which the speed is averaged.
 const MEASURED_GENERATIONS: usize = 5;
 
 /// Draws the progress of the run.
@@ -19,7 +19,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let generations = run.settings().evolution.generations;
     let finished = run.reports().len();
     let (text, share) = match run.status() {
-        // The evaluation budget is fixed, so larger generations reduce their number.
+        // The number of evaluations is fixed, so larger generations reduce the number of generations.
         RunStatus::Finished if finished < generations as usize => {
             (finished_early(finished, generations, run.budget()), 1.0)
         }
@@ -57,7 +57,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     }
     let evaluations_per_s = evaluations_per_s(run.reports());
     let evaluations_left = evaluations_left(run, done);
-    // This line is always present, so that the layout stays still when the first generation finishes.
+    // This line is always present, so that the layout does not move when the first generation is finished.
     let text = match evaluations_per_s {
         Some(per_s) if run.status() == RunStatus::Finished => {
             format!("{} snakes per second", rounded(per_s))
@@ -78,7 +78,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     }
 }
 
-/// Text for a run whose larger generations, such as the first of CMA-ES, used up its evaluations early.
+/// Describes a run that has fewer generations than planned, because some were larger, such as the first of CMA-ES.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
         "Finished after {finished} of {planned} generations: the first ones were larger and used up the run's {} snakes",
@@ -86,16 +86,16 @@ fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     )
 }
 
-/// Number of random snakes before the first generation of the population's size, as long as it is not finished.
+/// Returns the number of random snakes that CMA-ES evaluates first, until the first generation is finished.
 fn random_first(settings: &Settings, finished: usize, has_founder: bool) -> Option<u32> {
     let EvolutionSettings { strategy, cma_es, .. } = &settings.evolution;
     let is_first = finished == 0 && !has_founder && *strategy == StrategyKind::CmaEs;
-    // They take at most a quarter of the run's evaluations.
+    // The random snakes take at most a quarter of the run's evaluations.
     let most = u32::try_from(settings.evolution.budget() / 4).unwrap_or(u32::MAX);
     Some(cma_es.newborns.min(most)).filter(|random| is_first && *random > 0)
 }
 
-/// A number with commas between its thousands: "5,980".
+/// Formats a number with commas between its thousands: "5,980".
 fn with_thousands(number: u64) -> String {
     let digits = number.to_string();
     let is_before_comma = |index: usize| index > 0 && (digits.len() - index).is_multiple_of(3);
@@ -105,7 +105,7 @@ fn with_thousands(number: u64) -> String {
     digits.chars().enumerate().flat_map(with_comma).collect()
 }
 
-/// Evaluations per second in the latest generations, if there are any.
+/// Returns the evaluations per second over the latest generations, if there are any.
 fn evaluations_per_s(reports: &[GenerationReport]) -> Option<f64> {
     let latest = || reports.iter().rev().take(MEASURED_GENERATIONS);
     let seconds: f64 = latest().map(|report| report.elapsed_s).sum();
@@ -113,13 +113,13 @@ fn evaluations_per_s(reports: &[GenerationReport]) -> Option<f64> {
     (seconds > 0.0 && evaluations > 0.0).then(|| evaluations / seconds)
 }
 
-/// Evaluations left in the budget; `done` of the current generation are finished.
+/// Returns the evaluations left in the run's budget. `done` evaluations of the current generation are finished.
 fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
     let made: u64 = run.reports().iter().map(|report| u64::from(report.evaluations)).sum();
     run.budget().saturating_sub(made + u64::from(done))
 }
 
-/// Reasons for disqualification, the most frequent first.
+/// Describes the reasons for disqualification, the most frequent first.
 fn reasons_text(report: &GenerationReport) -> String {
     let mut reasons: Vec<_> = report.reasons.iter().collect();
     reasons.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
@@ -128,12 +128,12 @@ fn reasons_text(report: &GenerationReport) -> String {
     if reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join("; ")) }
 }
 
-/// Speed with a sensible number of digits.
+/// Formats a speed with a suitable number of digits.
 fn rounded(per_s: f64) -> String {
     if per_s < 10.0 { format!("{per_s:.1}") } else { format!("{per_s:.0}") }
 }
 
-/// Remaining time in words.
+/// Describes the remaining time, given in seconds.
 fn duration_text(seconds: f64) -> String {
     let minutes = seconds / 60.0;
     if seconds < 90.0 {
@@ -153,7 +153,7 @@ mod tests {
     use crate::studio::panels::testing::report_of;
     use snakes_core::world::Disqualification;
 
-    /// Report of a small generation with the given duration.
+    /// Returns the report of a small generation that took this time, in seconds.
     fn report(elapsed_s: f64) -> GenerationReport {
         let mut report = report_of(1);
         report.record.elapsed_s = elapsed_s;

@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{HalvingSettings, StrategyKind};
 
-/// Commands sent after `act`.
+/// Calls `act` on the panel. Returns the commands that were sent.
 fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
     let mut panel = EvolutionPanel::default();
     let mut harness = Harness::builder()
@@ -93,7 +93,7 @@ fn a_typed_seed_is_sent_before_the_command_of_a_button() {
     assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
 }
 
-/// Commands sent after clicks on these labels.
+/// Clicks on these labels. Returns the commands that were sent.
 fn clicked(run: &CurrentRun, labels: &[&str]) -> Vec<Command> {
     sent(run, |harness| {
         for label in labels {
@@ -228,7 +228,7 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
             harness.run();
         }
         assert_nothing_is_wider_than(&harness, width);
-        // Each section shows its settings.
+        // Each section shows its settings when it is unfolded.
         for label in ["Cooling", "Initial step size", "Columns and rows", "Neighbours"] {
             assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
         }

@@ -1,4 +1,4 @@
-//! A decision: the situation in words, what each posture is worth in it, and the rules that say so.
+//! View of a decision: the situation in words, the worth of each posture in it, and the rules on which it is based.
 
 use bevy_egui::egui;
 
@@ -10,13 +10,13 @@ use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveRule, DecisionActivity};
 
-/// Width of the names of postures, in points.
+/// Width of the postures' names, in points.
 const POSTURE_NAMES: f32 = theme::GAP * 20.5;
 
-/// Width of the worths, in points: up to seven characters without a unit.
+/// Width of the postures' worths, in points: up to seven characters without a unit.
 const WORTHS: f32 = theme::GAP * 7.0;
 
-/// Draws a decision.
+/// Draws a decision of the controller.
 pub(super) fn decision_view(
     ui: &mut egui::Ui,
     decision: &DecisionActivity,
@@ -85,12 +85,12 @@ fn postures(ui: &mut egui::Ui, decision: &DecisionActivity) {
     }
 }
 
-/// Name of the things among which the controller decides.
+/// Returns the name of what the controller decides on: a bend or a posture.
 fn noun(decision: &DecisionActivity) -> &'static str {
     if decision.joint.is_some() { "bend" } else { "posture" }
 }
 
-/// A worth, with as many decimals as the largest of its list leaves room for.
+/// Formats a worth with as many decimals as fit beside the largest of the list.
 fn worth_in_words(worth: f32, most: f32) -> String {
     match most {
         size if size >= 1.0e6 => format!("{worth:.1e}"),
@@ -113,14 +113,14 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
     );
     let listed = decision.rules.iter().filter(|rule| *shows_all || rule.matches);
     let mut listed: Vec<&ActiveRule> = listed.collect();
-    // Rules that decided come first, then others that match; within each group, the rules that count most.
+    // Rules that have decided come first, then others that match. Within each group, the most influential rules come first.
     let rank = |rule: &ActiveRule| (rule.decides, rule.matches);
     let use_of = |rule: &ActiveRule| rule.fitness.unwrap_or(rule.worth);
     listed.sort_by(|a, b| rank(b).cmp(&rank(a)).then(use_of(b).total_cmp(&use_of(a))));
     rule_list(ui, "rules", listed.len(), |index| entry(listed[index], decision));
 }
 
-/// A rule: its condition above, its posture and numbers below.
+/// Returns the row of a rule: its condition above, its posture and numbers below.
 fn entry(rule: &ActiveRule, decision: &DecisionActivity) -> RuleRow {
     let posture = decision.postures.get(rule.posture).map_or("", |posture| posture.name);
     RuleRow {
@@ -146,7 +146,7 @@ fn state_of_deciding(decision: &DecisionActivity) -> &'static str {
     }
 }
 
-/// The numbers of a rule, in few words: they stand behind its posture.
+/// Describes the numbers of a rule briefly, because they follow its posture.
 fn rule_numbers(rule: &ActiveRule) -> String {
     let worth = worth_in_words(rule.worth, rule.worth.abs());
     match (rule.fitness, rule.experience) {

@@ -1,4 +1,4 @@
-//! The exam on unseen stairs, by rise and tread: with senses and, beside it, without them. A click watches a cell.
+//! Exam on unseen stairs, by rise and tread: with senses and, beside it, without senses. A click shows the snake on the stairs of a cell.
 
 mod stairs_map;
 
@@ -16,7 +16,7 @@ use snakes_core::score::{ExamSuite, StairsGrid};
 
 use stairs_map::{MapPlace, StairsMap, legend};
 
-/// Draws the section for the snake of a lane.
+/// Draws the section about the exam of a lane's snake.
 pub(super) fn exam(
     ui: &mut egui::Ui,
     lane: &Lane,
@@ -37,7 +37,7 @@ pub(super) fn exam(
     });
 }
 
-/// Draws what the exam is, and the button that begins it.
+/// Draws a description of the exam, and the button that begins it.
 fn invitation(
     ui: &mut egui::Ui,
     staged: &StagedChampion,
@@ -59,7 +59,7 @@ fn invitation(
     CommandButton::new("Examine on 100 staircases", hint, examine).show(ui, commands);
 }
 
-/// Draws the progress of the exam that is under way, of whichever snake, and a button that cancels it.
+/// Draws the progress of the exam in progress, of any snake, and a button that cancels it.
 fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>) {
     let Some(progress) = exams.progress() else { return };
     explain(ui, &format!("Examining {}", progress.name));
@@ -70,7 +70,7 @@ fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>)
     }
 }
 
-/// Draws the grids side by side, with one axis of the rises.
+/// Draws the grids of the exam side by side, with a common axis of the rises.
 fn results(
     ui: &mut egui::Ui,
     staged: &StagedChampion,
@@ -93,7 +93,7 @@ fn results(
     }
 }
 
-/// Title of a grid, in few words.
+/// Returns a short title of a grid.
 fn title_of(grid: &StairsGrid, grids: usize) -> &'static str {
     match grid.suite {
         ExamSuite::Lesion => "Without senses",

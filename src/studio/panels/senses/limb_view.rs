@@ -1,4 +1,4 @@
-//! Neurons of limbs: the activity of all, and the wiring of those of the selected limb.
+//! View of the neurons in limbs: the activity of all, and the connections of those in the selected limb.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Stroke};
@@ -10,16 +10,16 @@ use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveLimb, LimbActivity};
 
-/// Height of a row of the table, in points.
+/// Height of a row in the table of neurons, in points.
 const ROW: f32 = theme::GAP * 2.5;
-/// Width of the names of the rows, in points.
+/// Width of the names of the neurons, in points.
 const NAMES: f32 = theme::GAP * 13.0;
-/// Largest radius of a neuron, in points.
+/// Maximum radius of a drawn neuron, in points.
 const RADIUS: f32 = theme::GAP;
-/// The rows of the table, from the top.
+/// Names of the neurons of a limb, in the order of the rows from the top.
 const ROWS: [&str; 4] = ["neuron 1: bend", "neuron 2: twist", "neuron 3", "neuron 4"];
 
-/// Draws the neurons.
+/// Draws the neurons of all limbs, and the connections of the selected one.
 pub(super) fn limb_view(ui: &mut egui::Ui, activity: &LimbActivity, limb: usize) {
     explain(
         ui,
@@ -38,7 +38,7 @@ pub(super) fn limb_view(ui: &mut egui::Ui, activity: &LimbActivity, limb: usize)
     }
 }
 
-/// Draws a column for each limb and a row for each of its neurons.
+/// Draws a table of the neurons, with a column for each limb.
 fn table(ui: &mut egui::Ui, activity: &LimbActivity, selected: usize) {
     let palette = theme::of(ui);
     let height = ROW * (ROWS.len() as f32 + 1.0);
@@ -67,7 +67,7 @@ fn table(ui: &mut egui::Ui, activity: &LimbActivity, selected: usize) {
             let fill = palette.panel.lerp_to_gamma(full, output.abs().min(1.0));
             let is_off = neuron.kind.name() == "off";
             if is_off {
-                // A dot: it never says anything.
+                // A neuron that is always silent is drawn as a dot.
                 ui.painter().circle_filled(center, radius * 0.25, palette.text_weak);
             } else {
                 ui.painter().circle(center, radius, fill, Stroke::new(1.0, palette.text_weak));

@@ -1,7 +1,7 @@
 //! The senses of the snake on the stage, and how its controller turns them into motion.
 //!
-//! The panel shows the shown moment of one lane. Its switches take senses away through the same command as the settings of
-//! the World panel, so a copy without them walks beside the snake.
+//! The panel shows one lane at the displayed time. Its switches take senses away by the same command as the settings of
+//! the World panel, so a copy without these senses is added beside the snake.
 
 mod decision_view;
 mod exam;
@@ -31,28 +31,28 @@ use snakes_core::score::Rollout;
 use exam::exam;
 use readouts::readouts;
 
-/// The panel with its choices.
+/// The Senses panel, with its options.
 #[derive(Debug, Default)]
 pub(super) struct SensesPanel {
-    /// Whether the list of rules contains those that do not match, too.
+    /// Whether the list of rules also contains those that do not match.
     shows_all_rules: bool,
 }
 
-/// The snake that the panel is about.
+/// The snake that the Senses panel shows.
 pub(super) struct SensesView<'l> {
     lane: &'l Lane,
-    /// The selected limb, or the head.
+    /// Index of the selected limb, or 0, the head, if none is selected.
     limb: usize,
     /// Whether a limb is selected.
     is_selected: bool,
-    /// The lanes among which one can choose; none for a snake alone.
+    /// Lanes among which the user can choose; empty if there is only one.
     others: Vec<&'l Lane>,
-    /// The senses that the switches show: those of the copy in a what-if.
+    /// Senses that the switches show. In a what-if they are those of the current copy.
     switched: ActiveSenses,
 }
 
 impl<'l> SensesView<'l> {
-    /// The selected lane, or the first one.
+    /// Returns the view of the focused lane, or `None` if there is none.
     pub fn of(lanes: &[&'l Lane], focused: Option<&'l Lane>, on_stage: &OnStage) -> Option<Self> {
         let lane = focused?;
         let switched = match *on_stage.mode {
@@ -71,7 +71,7 @@ impl<'l> SensesView<'l> {
         })
     }
 
-    /// The joint in front of the limb, or the first one.
+    /// Returns the index of the joint in front of the limb; for the head, the first joint.
     fn joint(&self) -> usize {
         self.limb.saturating_sub(1)
     }
@@ -117,7 +117,7 @@ impl SensesPanel {
         self.controller(ui, view, rollout.activity(view.joint()).as_ref());
     }
 
-    /// Draws the controller at work.
+    /// Draws the controller's activity.
     fn controller(&mut self, ui: &mut egui::Ui, view: &SensesView, activity: Option<&Activity>) {
         let kind = view.kind();
         title(ui, &format!("Controller: {}", kind.title()));
@@ -135,15 +135,15 @@ impl SensesPanel {
     }
 }
 
-/// A copy that has sensed the start and acted on it: nothing is sensed before the first step. Without it, the panel would
-/// be empty for a moment, and scrolled to its top, whenever a replay starts over.
+/// Returns a copy of the rollout after its first step, because nothing is sensed before. Without the copy, the panel
+/// would be empty for a moment and scroll to its top whenever a replay starts again.
 fn with_first_senses(rollout: &Rollout) -> Rollout {
     let mut started = rollout.clone();
     started.advance();
     started
 }
 
-/// The controllers that sense their surroundings, in a sentence.
+/// Describes in a sentence which controllers sense their surroundings.
 fn sensing_controllers() -> String {
     let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
     let titles: Vec<&str> = sensing.map(|kind| kind.title()).collect();
@@ -153,7 +153,7 @@ fn sensing_controllers() -> String {
     )
 }
 
-/// Sentence about a snake whose controller does not sense its surroundings.
+/// Describes in a sentence a controller that does not sense its surroundings.
 fn unsensing(kind: ControllerKind) -> &'static str {
     match kind {
         ControllerKind::Signal | ControllerKind::Wave => {
@@ -166,7 +166,7 @@ fn unsensing(kind: ControllerKind) -> &'static str {
     }
 }
 
-/// Draws the lanes among which one can choose.
+/// Draws the buttons that select the lane.
 fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
     if view.others.is_empty() {
         return;
@@ -184,7 +184,7 @@ fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>
     });
 }
 
-/// Draws the switches that take senses away from a copy.
+/// Draws the switches that take senses away from a copy of the snake.
 fn switches(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
     let organs = [
         ("Sight", SenseOrgan::Sight, "the gap to the next riser, its height, the clearance"),

@@ -1,4 +1,4 @@
-//! A network as a graph: inputs at the left, outputs at the right, with weights as lines and activities as colours.
+//! A network as a graph: inputs on the left, outputs on the right, weights as lines, activities as colours.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, Color32, Pos2, Stroke};
@@ -10,23 +10,23 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
 use snakes_core::control::{NetworkActivity, NetworkLink, NetworkNode, NodeColumn};
 
-/// Height of an input with its name, in points.
+/// Height of an input with a name, in points.
 const NAMED_ROW: f32 = theme::GAP * 1.75;
-/// Number of inputs up to which all have their names beside them.
+/// Maximum number of inputs with names beside them.
 const MOST_NAMED: usize = 28;
-/// Height of the graph with more inputs, in points.
+/// Maximum height of the graph, in points.
 const MOST_HEIGHT: f32 = theme::GAP * 48.0;
 /// Minimum height of the graph, in points.
 const LEAST_HEIGHT: f32 = theme::GAP * 16.0;
-/// Widths of the names beside inputs and outputs, in points.
+/// Width of the names beside the inputs, and of those beside the outputs, in points.
 const INPUT_NAMES: f32 = theme::GAP * 15.5;
 const OUTPUT_NAMES: f32 = theme::GAP * 9.5;
-/// Largest radius of a node, in points.
+/// Maximum radius of a node, in points.
 const RADIUS: f32 = theme::GAP * 0.75;
 /// Width of the strongest link, in points.
 const STRONGEST: f32 = 3.0;
 
-/// Draws the graph.
+/// Draws the graph of a network.
 pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
     let palette = theme::of(ui);
     let whose = network.joint.map_or_else(String::new, |joint| format!("Joint {}. ", joint + 1));
@@ -52,7 +52,7 @@ pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
     }
 }
 
-/// Draws what the colours mean.
+/// Draws the meaning of the colours.
 fn legend(ui: &mut egui::Ui, palette: &Palette) {
     ui.horizontal(|ui| {
         for (color, text) in [(palette.torque_plus, "positive"), (palette.torque_minus, "negative")]
@@ -65,28 +65,28 @@ fn legend(ui: &mut egui::Ui, palette: &Palette) {
     });
 }
 
-/// The number of nodes of a column.
+/// Returns the number of nodes in a column.
 fn count(network: &NetworkActivity, column: NodeColumn) -> usize {
     network.nodes.iter().filter(|node| node.column == column).count()
 }
 
-/// Whether the inputs have their names beside them.
+/// Returns whether the inputs have names beside them.
 fn names_inputs(network: &NetworkActivity) -> bool {
     count(network, NodeColumn::Input) <= MOST_NAMED
 }
 
-/// Where the nodes are drawn.
+/// Positions of the nodes.
 struct Places {
     at: Vec<Pos2>,
     radius: f32,
-    /// Whether the inputs have their names beside them.
+    /// Whether the inputs have names beside them.
     names_inputs: bool,
-    /// Height between two inputs, in points.
+    /// Distance between two inputs, in points.
     row: f32,
 }
 
 impl Places {
-    /// Takes the room of the graph.
+    /// Allocates the area of the graph, and places the nodes in it.
     fn of(ui: &mut egui::Ui, network: &NetworkActivity) -> Self {
         let count = |column| count(network, column);
         let inputs = count(NodeColumn::Input);
@@ -111,7 +111,7 @@ impl Places {
             let seen = &mut placed[node.column as usize];
             let share = (*seen as f32 + 0.5) / total.max(1) as f32;
             *seen += 1;
-            // Many hidden nodes are staggered, so that links between them can be seen.
+            // If there are many hidden nodes, they are staggered, so that links between them are visible.
             let is_staggered = node.column == NodeColumn::Hidden && total > 6;
             let aside = if is_staggered { (*seen % 3) as f32 - 1.0 } else { 0.0 };
             let x = x_of(node.column) + aside * theme::GAP * 3.0;
@@ -125,7 +125,7 @@ impl Places {
         if column == NodeColumn::Input { self.radius } else { RADIUS }
     }
 
-    /// Size of the area in which the pointer is at a node.
+    /// Returns the size of the area around a node in which the pointer hovers over it, in points.
     fn target(&self, column: NodeColumn) -> egui::Vec2 {
         let radius = self.radius_of(column);
         let height = if column == NodeColumn::Input { self.row } else { radius * 2.5 };
@@ -133,7 +133,7 @@ impl Places {
     }
 }
 
-/// Draws the links, the strongest on top; those of the hovered node alone stay coloured.
+/// Draws the links, the strongest on top. If a node is hovered, the links of other nodes are faded.
 fn links(
     ui: &egui::Ui,
     palette: &Palette,
@@ -148,7 +148,7 @@ fn links(
         let strength = if most > 0.0 { link.weight.abs() / most } else { 0.0 };
         let is_meant = hovered.is_none_or(|node| link.from == node || link.to == node);
         let full = if link.weight < 0.0 { palette.torque_minus } else { palette.torque_plus };
-        // The panel's colour instead of opacity: the window would blend light.
+        // Links are faded towards the panel's colour. Opacity would be blended in linear light, which looks different.
         let shown = if is_meant { 0.2 + 0.8 * strength } else { 0.06 };
         let color = palette.panel.lerp_to_gamma(full, shown);
         let stroke = Stroke::new(0.5 + (STRONGEST - 0.5) * strength, color);
@@ -157,7 +157,7 @@ fn links(
             let center = from - egui::vec2(0.0, RADIUS * 1.3);
             ui.painter().circle_stroke(center, RADIUS, stroke);
         } else if (from.x - to.x).abs() < 1.0 {
-            // A link within a column would cross the nodes between.
+            // A straight link within a column would cross the nodes in between.
             let aside = egui::vec2(-theme::GAP * 3.0, 0.0);
             let points = [from, from + aside, to + aside, to];
             let curve = egui::epaint::CubicBezierShape::from_points_stroke(
@@ -195,10 +195,10 @@ fn draw_node(ui: &egui::Ui, palette: &Palette, node: &NetworkNode, index: usize,
     }
 }
 
-/// Number of links that the tip of a node lists.
+/// Maximum number of links that the tooltip of a node lists.
 const MOST_LISTED: usize = 6;
 
-/// Describes a node with its strongest links.
+/// Draws the name of a node, and lists its strongest links.
 fn strongest(ui: &mut egui::Ui, network: &NetworkActivity, index: usize, said: &str) {
     ui.label(egui::RichText::new(said).strong());
     let is_of = |link: &&NetworkLink| link.from == index || link.to == index;

@@ -1,4 +1,4 @@
-//! Read-outs of the senses, in units that a person can measure.
+//! Readings of the senses, in physical units.
 
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
@@ -11,10 +11,10 @@ use crate::studio::ui::theme;
 use snakes_core::control::{ActiveSenses, Perception, SenseKind};
 use snakes_core::score::Rollout;
 
-/// The senses of the snake as a whole.
+/// Senses of the snake as a whole.
 const OF_SNAKE: [SenseKind; 4] =
     [SenseKind::Yaw, SenseKind::SpeedAhead, SenseKind::SpeedUp, SenseKind::Aside];
-/// The senses of a limb, by organ.
+/// Senses of a limb, grouped by organ.
 const OF_LIMB: [SenseKind; 8] = [
     SenseKind::Gap,
     SenseKind::StepUp,
@@ -26,7 +26,7 @@ const OF_LIMB: [SenseKind; 8] = [
     SenseKind::Roll,
 ];
 
-/// Draws the senses of the snake, of a limb, and of all joints.
+/// Draws the readings of the senses of the snake, of a limb, and of all joints.
 pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) {
     let palette = theme::of(ui);
     let senses = rollout.perception();
@@ -59,16 +59,16 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
     }
 }
 
-/// The senses of a snake at a moment.
+/// Senses of a snake at the displayed time.
 struct ReadSenses<'s> {
     senses: &'s Perception,
     active: ActiveSenses,
-    /// Weight of a limb on average, in N.
+    /// Mean weight of a limb, in N.
     limb_weight_n: f32,
 }
 
 impl ReadSenses<'_> {
-    /// Draws a sense of a part; the first is 0.
+    /// Draws the row of a sense, for the part with this index.
     fn row(&self, ui: &mut egui::Ui, kind: SenseKind, part: usize, color: Color32) {
         let info = kind.info();
         let sensed = self.senses.value(kind, part);
@@ -124,7 +124,7 @@ impl ReadSenses<'_> {
     }
 }
 
-/// An angle within a range on both sides of 0, with its text.
+/// Returns the text, the note, the value and the ends of the bar for an angle in a symmetric range.
 fn in_degrees(angle_deg: f32, most_deg: f32) -> (String, String, f32, [f32; 2]) {
     let text = format!("{}°", decimals(angle_deg, 0));
     (text, format!("±{most_deg:.0}°"), angle_deg, [-most_deg, most_deg])
@@ -135,7 +135,7 @@ fn capitalized(name: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Meaning of a sense.
+/// Returns an explanation of a sense.
 fn hint(kind: SenseKind) -> &'static str {
     match kind {
         SenseKind::Bend => "Angle of the joint's bend",

@@ -1,4 +1,4 @@
-//! The reflexes of a joint: what each sense adds to the bend target of the gait.
+//! View of a joint's reflexes: what each sense adds to the bend target of the gait.
 
 use bevy_egui::egui;
 
@@ -8,7 +8,7 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::control::ReflexActivity;
 
-/// Draws the reflexes.
+/// Draws the reflexes of a joint.
 pub(super) fn reflex_view(ui: &mut egui::Ui, reflex: &ReflexActivity) {
     let palette = theme::of(ui);
     let (moved_deg, reach_deg) = (reflex.moved_rad.to_degrees(), reflex.reach_rad.to_degrees());

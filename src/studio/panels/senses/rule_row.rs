@@ -1,17 +1,17 @@
-//! A list of rules: each with its condition above and its action below. The rules that hold are lit.
+//! List of rules: each with its condition above and its action below. Rules whose conditions hold are highlighted.
 
 use bevy_egui::egui;
 
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 
-/// Height of a rule in the list, in points: two lines for its condition, one for its action.
+/// Height of a rule in the list, in points: two lines for the condition, one for the action.
 const RULE_HEIGHT: f32 = theme::GAP * 6.75;
-/// Height of the list, in points. The panel scrolls, too, and a list in it would otherwise get no more than the room that
-/// is left in the window.
+/// Height of the list of rules, in points. It is fixed because the panel scrolls as well; otherwise the list would get
+/// only the remaining height of the window.
 const LIST_HEIGHT: f32 = theme::GAP * 40.0;
 
-/// Draws a list of rules with its own scroll bar, of which only those in sight are laid out.
+/// Draws a list of rules with its own scroll bar. Only visible rules are laid out.
 pub(super) fn rule_list(
     ui: &mut egui::Ui,
     id_salt: &str,
@@ -24,17 +24,17 @@ pub(super) fn rule_list(
     area.show_rows(ui, RULE_HEIGHT, rules, |ui, seen| seen.for_each(|index| row(index).ui(ui)));
 }
 
-/// A rule of a list.
+/// A row of the list: one rule.
 pub(super) struct RuleRow {
-    /// Its condition: "If ...".
+    /// Condition of the rule: "If ...".
     pub condition: String,
     /// The action of the rule, in words.
     pub action: String,
-    /// Whether its condition holds.
+    /// Whether the condition of the rule holds.
     pub holds: bool,
-    /// Whether it holds and decides.
+    /// Whether the rule has decided what the controller does.
     pub decides: bool,
-    /// Whether the rule holds and decides, in a sentence without a full stop.
+    /// State of the rule in a sentence without a full stop.
     pub state: &'static str,
 }
 

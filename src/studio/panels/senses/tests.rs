@@ -1,4 +1,4 @@
-//! The panel with snakes of several controllers.
+//! Tests of the Senses panel with snakes of several controllers.
 
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
@@ -10,7 +10,7 @@ use snakes_core::learn::classifiers::{Zcs, ZcsSettings};
 use snakes_core::rng::{Purpose, stream};
 use std::sync::Arc;
 
-/// A lane of a random snake with a controller, at 0.5 s, in a world with other settings.
+/// Creates a lane of a random snake with this controller, at 0.5 s, in a world with changed settings.
 fn lane_of(
     kind: ControllerKind,
     fields: &[(&str, &str)],
@@ -21,12 +21,12 @@ fn lane_of(
     lane
 }
 
-/// The panel for a limb of a lane.
+/// Creates the panel for a limb of a lane.
 fn panel(lane: &Lane, limb: usize) -> Sent<'_> {
     panel_in_window(lane, limb, 1600.0)
 }
 
-/// The panel in a window of this height, in which it scrolls.
+/// Creates the panel in a window of this height, in points, in which it scrolls.
 fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
     let mut panel = SensesPanel::default();
     testing::panel([320.0, height], move |ui, commands| {
@@ -122,7 +122,7 @@ fn reflexes_are_listed_by_sense() {
     }
 }
 
-/// A lane of a snake with 400 rules of equal strength that leave out this share of what they could say.
+/// Creates a lane of a snake with 400 rules of equal strength. This share of their conditions' parts is left open.
 fn lane_of_rules(wildcard_share: f32) -> Lane {
     lane_of(ControllerKind::Decisions, &[], |genome| {
         let ControllerGenes::Decisions(genes) = &mut genome.controller else { panic!("decisions") };

@@ -1,4 +1,4 @@
-//! A row with a name, a bar over a range, and a number.
+//! A row with a name, a bar in a range, and a number.
 
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
@@ -6,42 +6,42 @@ use bevy_egui::egui::Color32;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 
-/// A row of the panel.
+/// A row of the Senses panel: a value with its name, as a bar and as a number.
 #[derive(Default)]
 pub(super) struct ValueBar<'b> {
     pub name: &'b str,
-    /// Width of the names of the list, in points.
+    /// Width of all names in the list, in points.
     pub names_width: f32,
-    /// Width of its numbers, in points.
+    /// Width of all numbers in the list, in points.
     pub numbers_width: f32,
-    /// The number with its unit.
+    /// Number with its unit, as text.
     pub text: String,
-    /// The value on the bar, and the ends of the bar.
+    /// Value that the bar shows, and the ends of the bar's range.
     pub value: f32,
     pub range: [f32; 2],
-    /// A short note at the right end: the range in words, or that the value is frozen.
+    /// Short note at the right end: the range in words, or that the value is frozen.
     pub note: &'b str,
     pub color: Color32,
-    /// Whether it no longer changes, and is drawn grey.
+    /// Whether the value does not change any more, so that the row is grey.
     pub is_frozen: bool,
-    /// Whether it is the chosen one of several.
+    /// Whether the row is the selected one of several.
     pub is_chosen: bool,
     pub hint: String,
 }
 
-/// Height of a row, in points.
+/// Height of a row with a bar, in points.
 const ROW_HEIGHT: f32 = theme::GAP * 2.25;
 /// Width of the names of senses, in points.
 const SENSE_NAMES: f32 = theme::GAP * 12.5;
 /// Width of the numbers of senses with their units, in points.
 const SENSE_NUMBERS: f32 = theme::GAP * 9.5;
-/// Width of the notes, in points.
+/// Width of the notes at the right end, in points.
 const NOTES: f32 = theme::GAP * 9.5;
 /// Height of a bar, in points.
 const BAR: f32 = theme::GAP * 0.75;
 
 impl ValueBar<'_> {
-    /// An empty row of a list of senses.
+    /// Creates an empty row for a list of senses.
     pub fn of_sense() -> Self {
         Self { names_width: SENSE_NAMES, numbers_width: SENSE_NUMBERS, ..Self::default() }
     }
@@ -91,7 +91,7 @@ impl ValueBar<'_> {
         }
     }
 
-    /// The place of a value on the bar, from 0 to 1.
+    /// Returns the position of a value on the bar, from 0 to 1.
     fn share(&self, value: f32) -> f32 {
         let [least, most] = self.range;
         let width = most - least;

@@ -1,4 +1,4 @@
-//! Waves chosen by rules: the wave of each joint, the waves with their phases, and the rules that have chosen them.
+//! View of waves that rules choose: the wave of each joint, the waves with their phases, and the rules on which the choice is based.
 
 use bevy_egui::egui;
 use bevy_egui::egui::{Align2, FontId, Rect, Stroke};
@@ -11,18 +11,18 @@ use crate::studio::ui::theme;
 use snakes_core::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
 use snakes_core::genome::controllers::{JointGroup, Wave};
 
-/// Height of the row of joints and of a wave, in points.
+/// Height of the row of joints, and of a wave's row, in points.
 const JOINTS_HEIGHT: f32 = theme::GAP * 4.5;
 const WAVE_HEIGHT: f32 = theme::GAP * 5.5;
-/// Widths of the names and the shares beside the curves, in points.
+/// Width of the names, and of the shares, beside the curves, in points.
 const NAMES: f32 = theme::GAP * 9.0;
 const SHARES: f32 = theme::GAP * 6.0;
-/// Width from which a joint has room for a word, in points.
+/// Minimum width at which a joint is labelled with a word, in points.
 const WORD_WIDTH: f32 = theme::GAP * 6.0;
-/// Points of a curve.
+/// Number of segments of a wave's curve.
 const CURVE_POINTS: usize = 64;
 
-/// Draws the choice.
+/// Draws the waves and the rules that choose them.
 pub(super) fn wave_view(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     joints(ui, choice);
     title(ui, &format!("Waves at joint {}", choice.joint + 1));
@@ -39,12 +39,12 @@ pub(super) fn wave_view(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     rules(ui, choice);
 }
 
-/// Draws the wave that each joint follows, on its colour.
+/// Draws the wave that each joint follows, on the wave's colour.
 fn joints(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     let palette = theme::of(ui);
     let size = egui::vec2(ui.available_width(), JOINTS_HEIGHT);
     let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
-    // A gap parts the halves.
+    // A gap separates the halves of the joints.
     let gap = theme::GAP;
     let width = (area.width() - gap) / choice.of_joints.len().max(1) as f32;
     let (small, body) =
@@ -75,7 +75,7 @@ fn joints(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     }
 }
 
-/// One period of a wave: part of the period, and angle in radians.
+/// Returns one period of a wave, as points of the elapsed part, from 0 to 1, and the angle in radians.
 fn curve(wave: &Wave) -> impl Iterator<Item = [f32; 2]> + '_ {
     (0..=CURVE_POINTS).map(|point| {
         let part = point as f64 / CURVE_POINTS as f64;
@@ -83,7 +83,7 @@ fn curve(wave: &Wave) -> impl Iterator<Item = [f32; 2]> + '_ {
     })
 }
 
-/// Draws a wave with its phase. `most` is the largest angle of all, in radians.
+/// Draws a wave with its phase. `most` is the largest angle of all waves, in radians.
 fn wave_row(
     ui: &mut egui::Ui,
     choice: &WaveChoiceActivity,
@@ -99,7 +99,7 @@ fn wave_row(
     let painter = ui.painter();
     let small = FontId::proportional(theme::SMALL_SIZE);
     let body = egui::TextStyle::Body.resolve(ui.style());
-    // A tab in the wave's colour, which is that of the joints that follow it.
+    // The mark has the wave's colour, which the joints that follow the wave also have.
     let tab = Rect::from_min_size(area.min, egui::vec2(theme::GAP / 2.0, area.height() - 4.0));
     painter.rect_filled(tab, 2.0, color);
     let left = area.left() + theme::GAP;
@@ -147,7 +147,7 @@ fn wave_row(
     named(response, egui::WidgetType::Label, &said).on_hover_text(&said);
 }
 
-/// Draws the rules, the strongest first, so that the first of those that hold decides.
+/// Draws the rules, the strongest first. The first rule that holds decides.
 fn rules(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     let held = choice.rules.iter().filter(|rule| rule.holds).count();
     title(ui, &format!("Rules: {held} of {} hold", choice.rules.len()));
@@ -157,12 +157,12 @@ fn rules(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
          strongest of them decided, and is brighter. Where none holds, wave 1 moves the joints.",
     );
     let mut listed: Vec<&ActiveWaveRule> = choice.rules.iter().collect();
-    // The sort is stable, because of equals the first decides.
+    // The sort is stable, because the first of equally strong rules decides.
     listed.sort_by(|a, b| b.rule.strength.total_cmp(&a.rule.strength));
     rule_list(ui, "wave rules", listed.len(), |index| entry(listed[index]));
 }
 
-/// The joints of a group in words.
+/// Describes a group of joints.
 fn joints_of(group: JointGroup) -> &'static str {
     match group {
         JointGroup::Front => "front joints",
@@ -171,7 +171,7 @@ fn joints_of(group: JointGroup) -> &'static str {
     }
 }
 
-/// A rule: its condition above, its joints and wave below.
+/// Returns the row of a rule: its condition above, its joints and wave below.
 fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
     let (joints, strength) = (joints_of(rule.group), decimals(rule.strength, 2));
     let condition = match rule.words() {

@@ -10,7 +10,7 @@ use crate::studio::ui::theme;
 use snakes_core::schema::Choice;
 
 impl Sheet {
-    /// A drop-down list. Returns the new choice.
+    /// Draws a drop-down list. Returns the new choice, if it has changed.
     pub(super) fn choice(
         &mut self,
         ui: &mut egui::Ui,
@@ -43,7 +43,7 @@ impl Sheet {
         })
     }
 
-    /// A check box. Returns the new value.
+    /// Draws a check box. Returns the new value, if it has changed.
     pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         self.row(ui, shown, true, |_, ui, _, name| {
             let mut is_on = shown.value == "true";
@@ -52,7 +52,7 @@ impl Sheet {
         })
     }
 
-    /// A text field with comma-separated numbers. Returns the new list when the field loses focus.
+    /// Draws a text field with comma-separated numbers. Returns the new list when the field loses the focus.
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let check = |text: &str| shown.check.typed(text);
         let plain = shown.text.trim_start_matches('[').trim_end_matches(']');

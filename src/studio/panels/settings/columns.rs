@@ -4,7 +4,7 @@ use bevy_egui::egui;
 
 use crate::studio::ui::theme;
 
-/// The widths of a row, in points.
+/// Widths of the columns of a setting's row, in points.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns {
     is_wide: bool,
@@ -12,26 +12,26 @@ pub struct Columns {
     control: f32,
 }
 
-/// A part of a row.
+/// A part of a setting's row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Label.
+    /// Column with the label of the setting.
     Label,
-    /// Control.
+    /// Column with the control of the setting.
     Control,
-    /// Buttons that reset to the preset's value, and that show several values side by side.
+    /// Column with the buttons that reset the setting to the preset's value, and that show several values side by side.
     Buttons,
 }
 
-/// Minimum width of a one-line row, in points.
+/// Minimum width of a row in one line, in points.
 const WIDE: f32 = 460.0;
-/// Width of the two buttons, in points.
+/// Width of the column with the two buttons, in points.
 pub const BUTTONS_WIDTH: f32 = 50.0;
 /// Width of a number field, in points.
 pub const VALUE_WIDTH: f32 = 76.0;
 
 impl Columns {
-    /// Columns for the available width. A small control shares the line with its label even on a narrow panel.
+    /// Returns the columns for the available width. A small control is in the same line as its label even on a narrow panel.
     pub fn of(ui: &egui::Ui, is_small: bool) -> Self {
         let all = ui.available_width();
         let gap = theme::GAP;
@@ -46,13 +46,13 @@ impl Columns {
                 control: all,
             };
         }
-        // Limit the width: a longer slider is no easier to set.
+        // The width is limited, because a longer slider is not easier to set.
         let label = (all * 0.42).min(300.0);
         let control = (all - label - BUTTONS_WIDTH - 2.0 * gap).min(440.0);
         Self { is_wide: true, label, control }
     }
 
-    /// Draws a row, its parts in reading order.
+    /// Draws a row. Calls `part` for each part in reading order, with the part's width in points.
     pub fn row(self, ui: &mut egui::Ui, mut part: impl FnMut(&mut egui::Ui, Part, f32)) {
         let Self { is_wide, label, control } = self;
         ui.horizontal(|ui| {
@@ -68,8 +68,8 @@ impl Columns {
     }
 }
 
-/// A part of exactly this width, so that wide contents do not move other columns. Contents of several lines make the
-/// row higher.
+/// Draws a part of exactly this width, in points, so that wide contents do not move other columns. Contents of several
+/// lines increase the height of the row.
 fn cell(ui: &mut egui::Ui, width: f32, show: impl FnOnce(&mut egui::Ui)) {
     let height = ui.spacing().interact_size.y;
     let rect = egui::Rect::from_min_size(ui.cursor().min, egui::vec2(width, height));

@@ -1,5 +1,5 @@
-//! Basic and advanced settings of a section. The advanced ones stand below a fold, except those that are not as usual:
-//! what makes a surface special must be seen.
+//! Basic and advanced settings of a section. The advanced settings are below a fold, except those with unusual values,
+//! so that what is special about a surface is always visible.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,18 +12,18 @@ use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::text_rows::weak;
 use snakes_core::schema::{ListedSetting, Section};
 
-/// Which advanced settings are in sight.
+/// Which advanced settings are visible.
 #[derive(Debug, Default)]
 pub(super) struct Folds {
     /// Titles of the sections whose advanced settings are unfolded.
     open: BTreeSet<String>,
-    /// Advanced settings that were not as usual, by their full names. They keep their places above the fold until it is
-    /// used or another preset is chosen: a control must not vanish under the pointer that sets it to the usual value.
+    /// Advanced settings that had unusual values, by their full names. They stay above the fold until the fold is used or another preset
+    /// is selected. Otherwise a control would disappear under the pointer when it reaches the usual value.
     kept: BTreeSet<String>,
 }
 
 impl Folds {
-    /// Lets settings that are as usual again return below their folds.
+    /// Moves settings that have their usual values again below their folds.
     pub fn forget_kept(&mut self) {
         self.kept.clear();
     }
@@ -35,7 +35,7 @@ impl Sheet {
         self.folds.open.extend(sections);
     }
 
-    /// Draws a section's settings, the advanced ones below a fold, and its reset button.
+    /// Draws the settings of a section, with the advanced ones below a fold, and the section's reset button.
     pub fn section(&mut self, ui: &mut egui::Ui, section: Section) {
         let values = Arc::clone(&self.values);
         let is_open = self.folds.open.contains(section.title);
@@ -93,7 +93,7 @@ mod tests {
 
     type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
 
-    /// The section of the surface, with these sections unfolded.
+    /// Creates the section of the surface, with these sections unfolded.
     fn surface<'a>(run: &'a CurrentRun, unfolded: &[&str]) -> Panel<'a> {
         let mut sheet = Sheet::default();
         sheet.unfold(unfolded.iter().map(|title| (*title).to_owned()));

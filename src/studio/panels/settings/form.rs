@@ -1,8 +1,8 @@
-//! Controls of settings, and the values being dragged or typed.
+//! Controls of settings, and the values that are being dragged or typed.
 //!
-//! A change of the world also starts a what-if lane on the stage. So that a drag does not restart it with every pixel,
-//! a slider takes effect in intervals: see [`Changing::takes_effect`]. Typed text takes effect when its field loses
-//! focus; invalid text stays, with the reason below it.
+//! A change of the world also starts a what-if lane on the stage. To avoid a restart for every pixel of a drag, a
+//! slider takes effect at intervals: see [`Changing::takes_effect`]. Typed text takes effect when its field loses the
+//! focus. Invalid text stays in the field, with the reason below.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,41 +23,41 @@ use crate::studio::ui::theme;
 use snakes_core::evolve::Settings;
 use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind};
 
-/// Values being dragged or typed in a panel's controls.
+/// Values that are being dragged or typed in the controls of a panel.
 #[derive(Debug, Default)]
 pub struct Sheet {
     pub(super) values: Arc<Values>,
-    /// The slider being dragged.
+    /// Slider that is being dragged, if any.
     pub(super) changing: Option<Changing>,
-    /// Unfinished or invalid text, by control.
+    /// Unfinished or invalid text, by the ID of its control.
     pub(super) typed: BTreeMap<String, Typed>,
-    /// Last frame in which the panel was drawn.
+    /// Number of the last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
     pub(super) folds: Folds,
-    /// Whether the run under way takes changes, with the reason if not; `None` before and after a run.
+    /// Whether the run in progress accepts changes, with the reason if not; `None` if no run is in progress.
     takes_changes: Option<Result<(), &'static str>>,
-    /// The user's commands: see [`Sheet::send`].
+    /// Commands of the user: see [`Sheet::send`].
     pub(super) sent: Vec<Command>,
 }
 
-/// Text that has not taken effect.
+/// Typed text that has not taken effect.
 #[derive(Debug)]
 pub(super) struct Typed {
     pub text: String,
-    /// Reason why it is invalid.
+    /// Reason why the text is invalid; `None` while it is only unfinished.
     pub problem: Option<String>,
-    /// The setting's value when it was typed; if that changes, the text is dropped.
+    /// Value of the setting when the text was typed. If the value changes, the text is removed.
     pub beside: String,
-    /// Last frame in which its control was drawn.
+    /// Number of the last frame in which the text's control was drawn.
     pub seen_in: u64,
 }
 
 impl Sheet {
-    /// Reads the current settings; call before anything is drawn.
+    /// Reads the current settings. Must be called before anything is drawn.
     pub fn begin(&mut self, ui: &egui::Ui, run: &CurrentRun) {
         let frame = ui.ctx().cumulative_frame_nr();
         if frame > self.drawn_in + 1 {
-            // Forget a drag that was unfinished when the panel was hidden.
+            // A drag is forgotten if the panel was hidden before it ended.
             self.changing = None;
         }
         self.drawn_in = frame;
@@ -70,41 +70,41 @@ impl Sheet {
         }
     }
 
-    /// Moves the user's commands; call after everything is drawn.
+    /// Moves the user's commands to `commands`. Must be called after everything is drawn.
     pub fn send(&mut self, commands: &mut Vec<Command>) {
         commands.append(&mut self.sent);
     }
 
-    /// The settings of the next run.
+    /// Returns the settings of the next run.
     pub fn settings(&self) -> &Settings {
         self.values.settings()
     }
 
-    /// Whether a visible field contains invalid text.
+    /// Returns whether a visible field contains invalid text.
     pub fn has_problem(&self) -> bool {
         let is_on_show = |typed: &Typed| typed.seen_in + 1 >= self.drawn_in;
         self.typed.values().any(|typed| typed.problem.is_some() && is_on_show(typed))
     }
 
-    /// Keeps unfinished or invalid text.
+    /// Stores unfinished or invalid text.
     pub(super) fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
         let (beside, seen_in) = (beside.to_owned(), self.drawn_in);
         self.typed.insert(id.to_owned(), Typed { text, problem, beside, seen_in });
     }
 
-    /// Keeps invalid text.
+    /// Stores invalid text, for tests.
     #[cfg(test)]
     pub fn keep_wrong(&mut self, id: &str, text: &str, beside: &str) {
         self.keep(id, text.to_owned(), Some("wrong".to_owned()), beside);
     }
 
-    /// The sections of the next run's settings whose names begin with `prefix`.
+    /// Returns the sections of those settings of the next run whose full names begin with `prefix`.
     pub fn sections(&self, prefix: &str) -> Vec<Section> {
         let listed = self.values.listed().iter();
         sections_of(listed.filter(|listed| listed.path.starts_with(prefix)))
     }
 
-    /// The settings of a section.
+    /// Returns the settings of a section.
     pub fn in_section(&self, section: Section) -> impl Iterator<Item = &ListedSetting> {
         self.values.listed().iter().filter(move |listed| listed.section == section)
     }
@@ -123,7 +123,7 @@ impl Sheet {
         }
     }
 
-    /// Draws the button that resets a section, if a setting differs from the preset's.
+    /// Draws the button that resets a section, if a setting differs from the preset.
     pub(super) fn reset_section(&mut self, ui: &mut egui::Ui, section: Section) {
         let fields = self.in_section(section).map(|listed| listed.path.as_str());
         let back = self.values.back(fields);
@@ -136,7 +136,7 @@ impl Sheet {
         CommandButton::small("Reset section", hint, back).show(ui, &mut self.sent);
     }
 
-    /// Draws one setting, if it exists at present.
+    /// Draws a setting, if it exists at present.
     pub fn entry(&mut self, ui: &mut egui::Ui, listed: &ListedSetting) {
         let values = Arc::clone(&self.values);
         let (field, setting) = (listed.path.as_str(), &listed.setting);
@@ -162,8 +162,8 @@ impl Sheet {
         self.sent.extend(new.map(|text| set(field, &text)));
     }
 
-    /// Draws the button of a sweep beside a number of the world, and the reset button if the value differs from the
-    /// preset's. Returns the preset's value after a click on that.
+    /// Draws the sweep button beside a number of the world, and the reset button if the value differs from the preset.
+    /// Returns the preset's value after a click on the reset button.
     pub(super) fn buttons(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let is_number = matches!(shown.setting.kind, SettingKind::Number(_));
         if is_number && shown.field.starts_with("trial.") {
@@ -190,14 +190,14 @@ impl Sheet {
         small_icon_button(ui, Icon::Reset, &label, &hint).clicked().then_some(preset)
     }
 
-    /// Draws the reason why a control's text is invalid.
+    /// Draws the reason why the text of a control is invalid, if it is.
     pub(super) fn problem(&self, ui: &mut egui::Ui, id: &str) {
         if let Some(reason) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
             problem(ui, reason);
         }
     }
 
-    /// A setting's row: label, `control` and reset button. Returns a new value.
+    /// Draws the row of a setting: label, `control` and buttons. Returns a new value, if there is one.
     pub(super) fn row(
         &mut self,
         ui: &mut egui::Ui,
@@ -217,14 +217,14 @@ impl Sheet {
     }
 }
 
-/// A setting being drawn.
+/// A setting that is being drawn.
 pub(super) struct Shown<'a> {
     pub setting: &'a Setting,
-    /// Text of the tooltip.
+    /// Text of the setting's tooltip.
     pub hint: String,
-    /// Checks typed text.
+    /// Check for text that is typed for the setting.
     pub check: Check<'a>,
-    /// Full dotted name.
+    /// Full dotted name of the setting.
     pub field: &'a str,
     /// Value as text, in the unit of files.
     pub value: &'a str,
@@ -234,7 +234,7 @@ pub(super) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// Draws the label.
+    /// Draws the setting's label.
     pub fn name(&self, ui: &mut egui::Ui, width: f32) -> egui::Response {
         ui.set_max_width(width);
         if self.is_from_next_generation {
@@ -244,7 +244,7 @@ impl Shown<'_> {
     }
 }
 
-/// A dot marks settings that may change during the run.
+/// Draws a dot that marks a setting that may change during the run.
 fn next_generation_mark(ui: &mut egui::Ui) {
     let (rect, response) =
         ui.allocate_exact_size(egui::Vec2::splat(theme::GAP), egui::Sense::hover());
@@ -252,7 +252,7 @@ fn next_generation_mark(ui: &mut egui::Ui) {
     response.on_hover_text("A change takes effect from the next generation");
 }
 
-/// Text of a setting's tooltip: its effect, its range, and when a change takes effect.
+/// Returns the text of a setting's tooltip: its effect, its range, and when a change takes effect.
 fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     let mut hint = format!("{}.", setting.hint.trim_end_matches('.'));
     let allowed = setting.shown_range_in_words();
@@ -268,7 +268,7 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
     hint
 }
 
-/// The command that sets a new value.
+/// Returns the command that sets a setting to a new value.
 fn set(field: &str, text: &str) -> Command {
     Command::Plan(match text.parse() {
         Ok(population) if field == "evolution.population" => PlanCommand::SetPopulation(population),
@@ -276,7 +276,7 @@ fn set(field: &str, text: &str) -> Command {
     })
 }
 
-/// Sentence that says when a change takes effect.
+/// Describes when a change takes effect.
 fn when(answer: Result<(), &'static str>) -> String {
     match answer {
         Ok(()) => "Takes effect from the next generation.".to_owned(),

@@ -1,6 +1,6 @@
 //! Controls of settings, generated from the rows of [`snakes_core::schema`].
 //!
-//! [`Sheet`] draws sections and keeps the values being dragged or typed.
+//! [`Sheet`] draws sections, and stores the values that are being dragged or typed.
 
 mod changing;
 mod choices;

@@ -1,6 +1,6 @@
-//! Controls for numbers: a slider and a field, for one value or one per part.
+//! Controls for numbers: a slider and a field, for a single value or for one value per part.
 //!
-//! Controls have the unit of panels, such as degrees; the texts that they return have the unit of files.
+//! Controls use the unit of panels, such as degrees. The texts that they return use the unit of files.
 
 use bevy_egui::egui;
 
@@ -15,28 +15,28 @@ use crate::studio::ui::text_rows::{text_field, weak};
 use crate::studio::ui::theme;
 use snakes_core::schema::NumberRange;
 
-/// Width of the switch between one value and one per part, in points.
+/// Width of the switch between a single value and one value per part, in points.
 const SWITCH_WIDTH: f32 = 52.0;
 
-/// A control for one text.
+/// A control for the text of one value.
 pub(super) struct Control<'a> {
-    /// Id.
+    /// ID of the control.
     pub id: &'a str,
-    /// Id of the label.
+    /// ID of the control's label.
     pub name: egui::Id,
-    /// Accessible name, if the label is not enough.
+    /// Name for accessibility tools, if the label is not sufficient.
     pub said: Option<String>,
     /// Value as text, in the unit of panels.
     pub value: &'a str,
     /// Value as text, in the unit of files.
     pub stored: &'a str,
     pub hint: &'a str,
-    /// Turns typed text into the setting's text, in the unit of files.
+    /// Converts typed text to the setting's text, in the unit of files. The error is a sentence.
     pub check: &'a dyn Fn(&str) -> Result<String, String>,
 }
 
 impl<'a> Control<'a> {
-    /// The control of a whole setting.
+    /// Creates the control of a whole setting.
     pub(super) fn of(
         shown: &'a Shown,
         name: egui::Id,
@@ -48,7 +48,7 @@ impl<'a> Control<'a> {
 }
 
 impl Sheet {
-    /// Draws a number, or one per part. Returns a new value.
+    /// Draws a number, or one number per part. Returns a new value, if there is one.
     pub(super) fn number(
         &mut self,
         ui: &mut egui::Ui,
@@ -97,7 +97,7 @@ impl Sheet {
         new
     }
 
-    /// Draws the number of one part. Returns the new list.
+    /// Draws the number of one part. Returns the new list, if the number has changed.
     fn part(
         &mut self,
         ui: &mut egui::Ui,
@@ -148,8 +148,8 @@ impl Sheet {
         new.map(|text| with(&text))
     }
 
-    /// A slider, if the range has one, and a field. Returns the slider's value on release or rest, and the field's when
-    /// it loses focus.
+    /// Draws a slider, if the range has one, and a field. Returns the slider's value when the slider is released or
+    /// rests, and the field's value when the field loses the focus.
     fn slider_and_field(
         &mut self,
         ui: &mut egui::Ui,
@@ -165,7 +165,7 @@ impl Sheet {
             let scale = Scale::of(range, ends, shown.setting.shown_unit());
             slid = self.slider(ui, control, &scale, range.is_whole);
         } else {
-            // Align with the other fields.
+            // The field is aligned with the other fields.
             ui.add_space(width - VALUE_WIDTH);
         }
         let value = match &self.changing {
@@ -176,7 +176,7 @@ impl Sheet {
         slid.or(typed)
     }
 
-    /// A text field. Returns its text when it loses focus, if valid.
+    /// Draws a text field. Returns its text when it loses the focus, if the text is valid and has changed.
     pub(super) fn text_field(
         &mut self,
         ui: &mut egui::Ui,
@@ -214,18 +214,19 @@ impl Sheet {
             return None;
         }
         if self.typed.get(control.id).is_some_and(|typed| typed.problem.is_some()) {
-            // Invalid text stays, to be corrected.
+            // Invalid text stays in the field, so that the user can correct it.
             return None;
         }
         let typed = self.typed.remove(control.id)?;
-        // A value that was not typed in the unit of panels is shown rounded. The same text leaves it as it is.
+        // A value that was not typed in the unit of panels is shown rounded. If its text is not changed, the value
+        // stays exactly as it is.
         let is_other = typed.text.trim() != control.value;
         (control.check)(&typed.text).ok().filter(|text| is_other && text != control.stored)
     }
 }
 
-/// The label of a number, with a check box if the value is optional, and a switch if each part may have its own value.
-/// Returns its id and the requested value.
+/// Draws the label of a number, with a check box if the value is optional, and a switch if each part may have its own
+/// value. Returns the label's ID and the requested value.
 fn number_name(
     ui: &mut egui::Ui,
     shown: &Shown,
@@ -271,14 +272,14 @@ fn number_name(
     (name.inner.id, requested)
 }
 
-/// Adds the space into which the numbers below a slider's marks reach.
+/// Adds space for the numbers below a slider's marks.
 fn make_room_for_numbers(ui: &mut egui::Ui, range: &NumberRange) {
     if range.slider.is_some() && range.logarithmic_from.is_some() {
         ui.add_space(NUMBERS_HEIGHT);
     }
 }
 
-/// Explains what stands in place of a number.
+/// Draws an explanation in place of a number.
 fn instead(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(weak(ui, text)).wrap());
 }

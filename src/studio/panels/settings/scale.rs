@@ -1,26 +1,26 @@
-//! The scale of a slider: how its values lie along the rail, and the marks below it.
+//! The scale of a slider: the positions of its values on the rail, and the marks below the rail.
 
 use bevy_egui::egui;
 
 use crate::studio::ui::theme;
 use snakes_core::schema::NumberRange;
 
-/// Share of the rail of a logarithmic slider that stands for zero, which has no place on a logarithmic scale.
+/// Share of a logarithmic slider's rail that represents zero, which has no position on a logarithmic scale.
 const ZERO_SHARE: f32 = 0.1;
-/// Distance of the marks from the middle of the rail, in points: just below the handle.
+/// Vertical distance between the marks and the middle of the rail, in points: just below the handle.
 const MARK_TOP: f32 = 8.5;
 /// Length of a mark, in points.
 const MARK_LENGTH: f32 = 3.0;
-/// Font size of the numbers below the marks, in points: one whose glyphs are loaded at the start. They fit into the gap
-/// between two rows.
+/// Font size of the numbers below the marks, in points. Glyphs of this size are loaded at the start, and fit between
+/// two rows.
 const NUMBER_SIZE: f32 = theme::SMALL_SIZE - 1.0;
-/// Least distance between two numbers, in points.
+/// Minimum distance between two numbers, in points.
 const NUMBER_GAP: f32 = 5.0;
-/// Height that numbers need below their row, in points.
+/// Additional height for the numbers below a row, in points.
 pub const NUMBERS_HEIGHT: f32 = 8.0;
-/// Steps between marks of an angle, in degrees.
+/// Possible steps between the marks of an angle, in degrees.
 const ANGLE_STEPS: [f32; 4] = [5.0, 15.0, 45.0, 90.0];
-/// Most marks on a linear scale.
+/// Maximum number of steps between marks on a linear scale.
 const MOST_STEPS: f32 = 5.0;
 
 /// The scale of a slider.
@@ -28,28 +28,28 @@ const MOST_STEPS: f32 = 5.0;
 pub struct Scale {
     least: f32,
     most: f32,
-    /// The least positive value of a logarithmic scale; none: the scale is linear.
+    /// Smallest positive value of a logarithmic scale; `None` for a linear scale.
     logarithmic_from: Option<f32>,
     is_angle: bool,
 }
 
-/// A mark below the rail.
+/// A mark below the rail of a slider.
 #[derive(Debug, Clone, PartialEq)]
 struct ScaleMark {
-    /// Place on the rail: 0 is its left end, 1 its right.
+    /// Position of the mark on the rail: 0 is the left end, 1 the right end.
     share: f32,
-    /// The value, on a scale whose marks have numbers.
+    /// Value of the mark as text, if the scale has numbers.
     number: Option<String>,
 }
 
 impl Scale {
-    /// The scale of a setting with this range, unit and ends of its slider.
+    /// Creates the scale of a setting with this range and unit. `least` and `most` are the ends of its slider.
     pub fn of(range: &NumberRange, [least, most]: [f32; 2], unit: &str) -> Self {
         let logarithmic_from = range.logarithmic_from.map(|from| from.max(least));
         Self { least, most, logarithmic_from, is_angle: unit == "°" }
     }
 
-    /// A slider on this scale for `value`.
+    /// Creates an egui slider for `value` on this scale.
     pub fn slider<'a>(&self, value: &'a mut f32) -> egui::Slider<'a> {
         let slider = egui::Slider::new(value, self.least..=self.most)
             .clamping(egui::SliderClamping::Never)
@@ -60,7 +60,7 @@ impl Scale {
         slider.logarithmic(true).smallest_positive(f64::from(self.first_positive()))
     }
 
-    /// The value at which the logarithmic part would begin, if it reached to the left end of the rail.
+    /// Returns the value at which the logarithmic part would begin if it extended to the left end of the rail.
     fn first_positive(&self) -> f32 {
         let Some(from) = self.logarithmic_from else { return self.least };
         if self.least > 0.0 {
@@ -70,8 +70,8 @@ impl Scale {
         self.most / libm::powf(10.0, decades)
     }
 
-    /// The value for one that the slider returned. In the part of the rail that stands for zero, the pointer gives zero;
-    /// a key leads from zero to the least positive value and back.
+    /// Corrects a value that the egui slider returned. In the part of the rail that represents zero, a drag gives zero;
+    /// a key goes from zero to the smallest positive value and back.
     pub fn settled(&self, slid: f32, before: f32, is_dragged: bool) -> f32 {
         match self.logarithmic_from {
             Some(from) if self.least <= 0.0 && slid < from => {
@@ -81,7 +81,7 @@ impl Scale {
         }
     }
 
-    /// Place of a value on the rail, from 0 to 1.
+    /// Returns the position of a value on the rail, from 0 to 1.
     fn share(&self, value: f32) -> f32 {
         if self.logarithmic_from.is_none() {
             return ((value - self.least) / (self.most - self.least)).clamp(0.0, 1.0);
@@ -93,7 +93,7 @@ impl Scale {
         (libm::log10f(value / first) / libm::log10f(self.most / first)).clamp(0.0, 1.0)
     }
 
-    /// The marks, from left to right.
+    /// Returns the marks from left to right.
     fn marks(&self) -> Vec<ScaleMark> {
         let Some(from) = self.logarithmic_from else { return self.linear_marks() };
         let mark =
@@ -101,7 +101,7 @@ impl Scale {
         let first = if self.least > 0.0 { self.least } else { 0.0 };
         let lowest = libm::ceilf(libm::log10f(from) - 1.0e-3) as i32;
         let highest = libm::floorf(libm::log10f(self.most) + 1.0e-3) as i32;
-        // Powers of ten from text: computed ones would have digits such as 0.000099999.
+        // Powers of ten are parsed from text, because computed ones would have digits such as 0.000099999.
         let decades = (lowest..=highest).filter_map(|power| format!("1e{power}").parse().ok());
         let mut values: Vec<f32> =
             std::iter::once(first).chain(decades).chain([self.most]).collect();
@@ -124,7 +124,7 @@ impl Scale {
         if !ui.is_rect_visible(rect) {
             return;
         }
-        // The reach of the middle of the handle, as egui computes it.
+        // The range of the handle's centre, as egui computes it.
         let radius = rect.height() / 2.5;
         let aside = match ui.visuals().handle_shape {
             egui::style::HandleShape::Circle => radius,
@@ -152,7 +152,7 @@ impl Scale {
             }
         };
         let x_of = |mark: &ScaleMark| rail.min + rail.span() * mark.share;
-        // The ends come first, so that they have their numbers where there is no room for all.
+        // The ends come first, so that they have their numbers even if there is no room for all.
         for mark in marks.first().into_iter().chain(marks.last()).chain(&marks) {
             number(mark, x_of(mark));
         }
@@ -162,7 +162,7 @@ impl Scale {
     }
 }
 
-/// A round step, of 1, 2 or 5 times a power of ten, that divides a width into a few parts.
+/// Returns a round step, 1, 2 or 5 times a power of ten, that divides a width into a few parts.
 fn round_step(width: f32) -> f32 {
     let power = libm::powf(10.0, libm::floorf(libm::log10f(width / MOST_STEPS)));
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);

@@ -1,5 +1,5 @@
-//! Sliders of settings. A slider takes effect while it is dragged, if it changes the world, and else when it rests or is
-//! released.
+//! Sliders of settings. If a slider changes the world, its value takes effect during the drag; otherwise when the
+//! slider rests or is released.
 
 use bevy_egui::egui;
 
@@ -10,7 +10,7 @@ use super::scale::Scale;
 use super::values::rounded;
 
 impl Sheet {
-    /// A slider with marks. Returns the setting's text on release or rest.
+    /// Draws a slider with marks. Returns the setting's text when its value takes effect.
     pub(super) fn slider(
         &mut self,
         ui: &mut egui::Ui,
@@ -38,14 +38,14 @@ impl Sheet {
         if response.changed() {
             let is_dragged = response.dragged() || response.clicked();
             so_far = scale.settled(so_far, before, is_dragged);
-            // Within the part of the rail that stands for zero, the pointer moves and the value rests.
+            // In the part of the rail that represents zero, the pointer can move while the value does not.
             if so_far != before {
                 let earlier = self.changing.take().filter(|changing| changing.id == control.id);
                 self.changing = Some(Changing::moved(control.id, so_far, now_s, earlier));
             }
         }
         let changing = self.changing.as_mut().filter(|changing| changing.id == control.id)?;
-        // With the arrow keys it has the focus and is never released.
+        // A slider that is moved by the arrow keys has the focus and is never released.
         let is_held = response.dragged() || response.has_focus();
         if is_held && !changing.takes_effect(now_s) {
             return None;
@@ -80,8 +80,8 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// Drags a setting's slider for this number of frames, a sixtieth of a second each, of which the first `moving`
-    /// move it. Returns the values that took effect while it was held, and those after it was released.
+    /// Drags a setting's slider for this number of frames, each a sixtieth of a second. The first `moving` frames move
+    /// it. Returns the values that took effect while the slider was held, and those after it was released.
     fn dragged(field: &'static str, label: &str, moving: usize, frames: usize) -> [Vec<f32>; 2] {
         type State = (CurrentRun, Vec<f32>);
         let mut sheet = Sheet::default();

@@ -1,4 +1,4 @@
-//! Every setting is shown once, and every control sends the value that was entered.
+//! Tests that every setting is shown once, and that every control sends the value that was entered.
 
 use std::collections::BTreeSet;
 
@@ -29,12 +29,12 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
     }
 }
 
-/// Titles of all sections.
+/// Returns the titles of all sections.
 pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
     every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
 }
 
-/// A run in which all optional settings have values, and lower bounds of ranges are at their minimum.
+/// Creates a run in which all optional settings have values, and lower bounds of ranges are at their minimum.
 fn run_with_all_given() -> CurrentRun {
     let mut run = prepared_run();
     let given = [
@@ -52,13 +52,13 @@ fn run_with_all_given() -> CurrentRun {
     run
 }
 
-/// A setting by its full name.
+/// Finds a setting by its full name.
 fn setting(run: &CurrentRun, field: &str) -> ListedSetting {
     let all = list(run.next_settings());
     all.into_iter().find(|listed| listed.path == field).expect("a setting")
 }
 
-/// An allowed number that differs from the current one.
+/// Returns an allowed number that differs from the current one.
 fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) -> String {
     let [least, most] = range.slider.unwrap_or([range.least, range.most]);
     let places = [0.5, 0.25, 0.1, 0.02, 0.0].map(|share| least + (most - least) * share);
@@ -67,7 +67,7 @@ fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) ->
     others.next().expect("an allowed one")
 }
 
-/// A panel with one setting.
+/// Creates a panel with one setting.
 fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
     let listed = setting(run, field);
     let mut sheet = Sheet::default();
@@ -81,7 +81,7 @@ fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
     )
 }
 
-/// Types into the only field and presses Enter.
+/// Types into the only field, and presses Enter.
 fn type_into(harness: &mut Harness<'_, Vec<Command>>, text: &str) {
     let field = || egui::accesskit::Role::TextInput;
     harness.get_by_role(field()).focus();
@@ -130,7 +130,7 @@ fn every_control_sends_the_value_that_was_entered() {
             SettingKind::Number(range) => {
                 let is_allowed = |text: &str| with_field(settings, &full, text).is_ok();
                 let text = another(range, now, is_allowed);
-                // A person types it in the unit of panels.
+                // The user types the value in the unit of panels.
                 let shown = listed.setting.shown_text(&text);
                 type_into(&mut panel, &shown);
                 listed.setting.stored_text(&shown).expect("a number")
@@ -144,7 +144,7 @@ fn every_control_sends_the_value_that_was_entered() {
                 let taken = |name: &str| with_field(settings, &full, name).is_ok();
                 let other = choices.iter().find(|choice| choice.name != now && taken(choice.name));
                 if full == "trial.physics.engine" {
-                    // Soft limbs, whose settings are given here, need rapier.
+                    // The run has soft limbs, which need the engine rapier.
                     assert_eq!(other, None);
                     continue;
                 }
@@ -245,7 +245,7 @@ fn invalid_text_stays_with_its_reason_and_nothing_is_sent() {
     assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
 }
 
-/// The commands that a click on a label sends.
+/// Clicks on a label, and returns the commands that were sent.
 fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
     testing::clicked(&mut panel_of(run, field), label)
 }
@@ -331,7 +331,7 @@ fn sliders_contain_the_values_of_the_built_in_presets() {
             };
             let now = values.iter().find(|(field, _)| *field == full);
             let Some(value) = now.and_then(|(_, text)| text.parse::<f32>().ok()) else { continue };
-            // Large frictions, such as 150 in the engine's manual, behave alike.
+            // Large frictions, such as 150 in the engine's manual, all have a similar effect.
             if !(least..=most).contains(&value) && entry.label != "Friction" {
                 beyond.push(format!("{full} = {value} of {}", preset.name));
             }
@@ -369,7 +369,7 @@ fn no_text_of_a_panel_has_radians() {
     for listed in list(run.next_settings()) {
         let setting = listed.setting;
         let shown = [setting.title(), setting.shown_range_in_words(), setting.hint.to_owned()];
-        // A stiffness per radian is no angle.
+        // A stiffness per radian is not an angle.
         let is_angle = setting.unit == "rad";
         let words = shown.iter().flat_map(|text| text.split(|c: char| !c.is_alphanumeric()));
         assert!(!is_angle || words.clone().all(|word| word != "rad"), "{}", listed.path);

@@ -1,28 +1,28 @@
-//! Checks and normalises text typed into a setting.
+//! Checks and normalises text that is typed for a setting.
 
 use super::values::numbers;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{Settings, with_field};
 use snakes_core::schema::{ListedSetting, Setting, SettingKind, SettingValue};
 
-/// A setting being typed, with all others.
+/// A setting that is being typed, with all other settings.
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
-    /// Current settings.
+    /// Current settings of the next run.
     pub settings: &'a Settings,
-    /// Full dotted name.
+    /// Full dotted name of the setting.
     pub field: &'a str,
-    /// Its row.
+    /// Declaration of the setting.
     pub setting: &'a Setting,
-    /// All settings with their rows.
+    /// All settings with their declarations.
     pub all: &'a [ListedSetting],
 }
 
 impl Check<'_> {
-    /// The setting's text for the typed text, which is in the unit of panels.
+    /// Converts typed text, in the unit of panels, to the setting's text, in the unit of files.
     ///
     /// # Errors
-    /// The text is invalid; the message has the setting, the value and the allowed range.
+    /// The text is invalid; the message contains the setting, the value and the allowed range.
     pub fn typed(&self, text: &str) -> Result<String, String> {
         let typed = text.trim();
         let unreadable = || {
@@ -42,7 +42,7 @@ impl Check<'_> {
                 };
                 let allowed = range.least..=range.most;
                 let is_allowed = text.parse().is_ok_and(|value: f32| allowed.contains(&value));
-                // Use the label in the message.
+                // The message uses the setting's label.
                 if !is_number || !is_allowed {
                     return Err(unreadable());
                 }
@@ -56,7 +56,7 @@ impl Check<'_> {
                 };
                 let list = numbers(&text).ok_or_else(unreadable)?;
                 let is_allowed = |number: &f32| (range.least..=range.most).contains(number);
-                // The check of the whole list would write the numbers in the unit of files.
+                // The check of the whole list would show the numbers in the unit of files.
                 let is_shown_otherwise = self.setting.display.is_some();
                 if list.iter().any(|number| !number.is_finite())
                     || (is_shown_otherwise && !list.iter().all(is_allowed))
@@ -72,8 +72,8 @@ impl Check<'_> {
         self.whole(&text).map(|()| text)
     }
 
-    /// The list in the unit of files. A number whose text stays as it is shown keeps all its digits: the text of a
-    /// number that was not typed in this unit is rounded.
+    /// Converts a list to the unit of files. A number whose text has not changed keeps all its digits, although the
+    /// text in the unit of panels is rounded.
     fn stored_list(&self, typed: &str) -> Option<String> {
         let now = self.all.iter().find(|listed| listed.path == self.field);
         let now = match now.map(|listed| &listed.value) {
@@ -92,20 +92,20 @@ impl Check<'_> {
     /// Checks the text together with all other settings.
     ///
     /// # Errors
-    /// The text is invalid, in words.
+    /// The text is invalid; the error is a message for the user.
     pub fn whole(&self, text: &str) -> Result<(), String> {
         let checked = with_field(self.settings, self.field, text);
         checked.map(drop).map_err(|invalid| in_words(&invalid, self.all))
     }
 }
 
-/// Accepts a decimal comma: "0,5".
+/// Replaces a decimal comma, as in "0,5", by a point.
 fn with_point(typed: &str) -> String {
     let is_comma = typed.matches(',').count() == 1 && !typed.contains('.');
     if is_comma { typed.replace(',', ".") } else { typed.to_owned() }
 }
 
-/// Error message with the setting's label.
+/// Returns an error message with the setting's label.
 fn in_words(invalid: &Invalid, all: &[ListedSetting]) -> String {
     let Invalid { field, value, allowed } = invalid;
     let (path, index) = field
@@ -167,7 +167,7 @@ mod tests {
                  commas between them",
             ),
             ("trial.agent.twist_limit_rad", "200", "Twist limit is \"200\"; allowed: 0 to 171.88°"),
-            // The value conflicts with another setting.
+            // The value is in conflict with another setting.
             (
                 "trial.agent.limbs",
                 "6",

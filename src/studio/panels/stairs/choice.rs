@@ -11,10 +11,10 @@ use snakes_core::evolve::{Settings, fields};
 use snakes_core::save::NamedStairs;
 use snakes_core::world::Stairs;
 
-/// The name of stairs that are none of these.
+/// Text for stairs that are not among the known ones.
 const OTHER: &str = "none of these";
 
-/// Draws the selection and collects the user's commands.
+/// Draws the selection of stairs, and collects the user's commands.
 pub(in crate::studio::panels) fn stairs_choice(
     ui: &mut egui::Ui,
     run: &CurrentRun,
@@ -34,7 +34,7 @@ pub(in crate::studio::panels) fn stairs_choice(
         });
     let list = named(list.response, egui::WidgetType::ComboBox, "Known stairs");
     if list.clicked() {
-        // The folder may have new files.
+        // The folder may contain new files.
         commands.push(Command::Plan(PlanCommand::ListStairs));
     }
     list.on_hover_text("Replaces all settings of the stairs");
@@ -43,7 +43,7 @@ pub(in crate::studio::panels) fn stairs_choice(
     }
 }
 
-/// The name of known stairs.
+/// Returns the name of stairs, if they are known.
 pub(super) fn name_of<'r>(run: &'r CurrentRun, stairs: &Stairs) -> Option<&'r str> {
     let known = run.known_stairs();
     let own = known.own().iter().filter_map(|own| own.content.as_ref().ok());
@@ -51,13 +51,13 @@ pub(super) fn name_of<'r>(run: &'r CurrentRun, stairs: &Stairs) -> Option<&'r st
     all.find(|named| named.stairs == *stairs).map(|named| named.name.as_str())
 }
 
-/// The command that puts other stairs into the next run; none if it has them already.
+/// Returns the command that uses other stairs in the next run, or `None` if it has these stairs already.
 pub(super) fn replacement(settings: &Settings, stairs: &Stairs) -> Option<Command> {
     let is_new = settings.trial.stairs != *stairs;
     is_new.then(|| Command::Plan(PlanCommand::SetFields(changes(settings, stairs))))
 }
 
-/// The settings of these stairs, all of them: the snake on the stage may stand on others than those of the next run.
+/// Returns all settings of these stairs. None is left out, because the stairs on the stage may differ from those of the next run.
 fn changes(settings: &Settings, stairs: &Stairs) -> Vec<(String, String)> {
     let mut changed = settings.clone();
     changed.trial.stairs = stairs.clone();

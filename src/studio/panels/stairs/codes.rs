@@ -6,7 +6,7 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::world::{BUILDING_CODES, Stairs, TRUE_MM_PER_M};
 
-/// Draws the mean step in true size, and a line for each building code.
+/// Draws the mean step in its real size, and a line for each building code.
 pub(super) fn codes(ui: &mut egui::Ui, stairs: &Stairs) {
     let Some([rise_mm, tread_mm]) = stairs.mean_step_mm() else { return };
     let degrees = libm::atan2f(rise_mm, tread_mm).to_degrees();

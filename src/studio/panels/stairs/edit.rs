@@ -2,17 +2,17 @@
 
 use snakes_core::world::Stairs;
 
-/// A change of the stairs by one of the panel's parts.
+/// A change of the stairs that the drawing or the table returns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StairsEdit {
-    /// The stairs after it.
+    /// Stairs after the change.
     pub stairs: Stairs,
-    /// Whether it is complete, or a drag is still going on.
+    /// Whether the change is complete, rather than part of a drag in progress.
     pub is_complete: bool,
 }
 
 impl StairsEdit {
-    /// A change that is complete.
+    /// Creates a change that is complete.
     pub fn complete(stairs: Stairs) -> Self {
         Self { stairs, is_complete: true }
     }

@@ -1,4 +1,4 @@
-//! The editor of the next run's stairs: a drawing with edges to drag, a table of the steps, random stairs, and a comparison with building codes.
+//! Editor of the next run's stairs: a drawing with edges to drag, a table of the steps, random stairs, and building codes.
 
 mod choice;
 mod codes;
@@ -29,25 +29,25 @@ use profile::{Grab, Profile};
 use random::RandomStairs;
 use table::table;
 
-/// The panel with what is being changed.
+/// The Stairs panel, with the change in progress.
 #[derive(Debug, Default)]
 pub(super) struct StairsPanel {
-    /// The stairs during a drag.
+    /// Stairs during a drag; `None` if no drag is in progress.
     draft: Option<Stairs>,
-    /// The edge that is dragged.
+    /// Edge that is being dragged, if any.
     grab: Option<Grab>,
-    /// Why the latest change is not allowed, in a sentence.
+    /// Reason why the latest change is not allowed, in a sentence.
     problem: Option<String>,
-    /// The stairs of the next run in the last frame.
+    /// Stairs of the next run in the last frame.
     before: Option<Stairs>,
-    /// The step that is pointed at, in the drawing or in the table; the lowest is 0.
+    /// Step under the pointer, in the drawing or in the table; the lowest is 0.
     pointed: Option<u32>,
     name: OwnName,
     random: RandomStairs,
 }
 
 impl StairsPanel {
-    /// Draws the panel and collects the user's commands. `lane` is the selected lane of the stage.
+    /// Draws the panel and collects the user's commands. `lane` is the selected lane on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -109,7 +109,7 @@ impl StairsPanel {
         }
     }
 
-    /// The row of known stairs, and the buttons that save and take over stairs.
+    /// Draws the selection of known stairs, and the buttons that save stairs or take them from the stage.
     fn files(
         &mut self,
         ui: &mut egui::Ui,
@@ -142,8 +142,8 @@ impl StairsPanel {
         }
     }
 
-    /// Drops the changes of a drag that ended by Escape or while the panel was hidden, and the message about a change once the
-    /// stairs are others.
+    /// Discards a drag that was ended by Escape or while the panel was hidden. Also removes the message about a change
+    /// after the stairs have changed.
     fn forget_what_is_over(&mut self, ui: &egui::Ui, next: &Stairs) {
         let context = ui.ctx();
         let is_dragging = context.dragged_id().is_some() || context.drag_stopped_id().is_some();
@@ -156,8 +156,8 @@ impl StairsPanel {
         }
     }
 
-    /// Takes a change over: into the draft, and into the next run once it is complete. One that is not allowed leaves
-    /// the stairs as they were.
+    /// Stores a change as the draft, and applies the draft to the next run when it is complete. A change that is not
+    /// allowed does not affect the stairs.
     fn take(&mut self, edit: StairsEdit, run: &CurrentRun, commands: &mut Vec<Command>) {
         match check(&edit.stairs) {
             Ok(()) => {
@@ -170,7 +170,7 @@ impl StairsPanel {
             && let Some(stairs) = self.draft.take()
         {
             commands.extend(replacement(run.next_settings(), &stairs));
-            // The reason why it went no further stays.
+            // The reason why the drag could go no further stays visible.
             self.before = Some(stairs);
         }
     }

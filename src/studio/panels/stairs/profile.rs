@@ -1,4 +1,4 @@
-//! The stairs from the side, to scale, with edges to drag.
+//! Drawing of the stairs from the side, to scale, with edges that can be dragged.
 
 use bevy_egui::egui;
 
@@ -9,58 +9,58 @@ use snakes_core::score::AgentSettings;
 use snakes_core::world::{BUILDING_CODES, BuildingCode, Stairs};
 use snakes_lab::plot::Role;
 
-/// Greatest height of the drawing, in points.
+/// Maximum height of the drawing, in points.
 const MOST_HEIGHT: f32 = 220.0;
-/// Space around the stairs, in points.
+/// Margin around the stairs, in points.
 const SPACE: f32 = 10.0;
-/// Depth of the landing that is drawn, in metres.
+/// Maximum depth of the landing that is drawn, in metres.
 const LANDING_M: f32 = 2.0;
-/// Height over the stairs that is drawn, in metres.
+/// Height above the stairs that is drawn, in metres.
 const ABOVE_M: f32 = 1.0;
 /// Radius of an edge's handle, in points.
 const HANDLE: f32 = 4.0;
-/// Radius within which a handle is taken, in points.
+/// Maximum distance between the pointer and the centre of a handle that it drags, in points.
 const REACH: f32 = 9.0;
-/// Edges move in steps of this length, in metres; with the Shift key in those of [`FINE_M`].
+/// Step by which edges move, in metres; with the Shift key they move by [`FINE_M`].
 const SNAP_M: f32 = 0.05;
-/// The smaller steps, in metres.
+/// Step by which edges move with the Shift key, in metres.
 const FINE_M: f32 = 0.01;
-/// Space between the block of the snake and the stairs, in metres.
+/// Distance between the block of the snake and the stairs, in metres.
 const BEFORE_M: f32 = 0.3;
 
-/// The drawing.
+/// The drawing of the stairs.
 pub(super) struct Profile<'a> {
-    /// The stairs as they are drawn: with the changes of a drag that is not over.
+    /// Stairs to draw, including the changes of a drag in progress.
     pub stairs: &'a Stairs,
-    /// The stairs of the next run. They give the scale, which must not change under the pointer during a drag.
+    /// Stairs of the next run. They determine the scale, which must not change during a drag.
     pub next: &'a Stairs,
-    /// The snake, one block of which shows the scale.
+    /// Snake of which one block is drawn, as a scale.
     pub agent: &'a AgentSettings,
-    /// The step to highlight; the lowest is 0.
+    /// Step to highlight; the lowest is 0.
     pub pointed: Option<u32>,
 }
 
-/// The response of the drawing to the pointer.
+/// Response of the drawing to the pointer.
 #[derive(Debug, Default)]
 pub(super) struct ProfileResponse {
-    /// The step whose edge it points at; the lowest is 0.
+    /// Step whose edge is under the pointer; the lowest is 0.
     pub pointed: Option<u32>,
-    /// The edge that is dragged.
+    /// Edge that is being dragged, if any.
     pub grab: Option<Grab>,
-    /// A moved edge.
+    /// Change of the stairs by a moved edge, if any.
     pub edit: Option<StairsEdit>,
 }
 
-/// An edge that is dragged.
+/// An edge that is being dragged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grab {
-    /// The step; the lowest is 0.
+    /// Step to which the edge belongs; the lowest is 0.
     step: u32,
-    /// Where the pointer took it: y and z, in metres.
+    /// Position at which the pointer took hold of the edge: y and z, in metres.
     from_m: [f32; 2],
 }
 
-/// From metres to points.
+/// Conversion from metres to points.
 #[derive(Debug, Clone, Copy)]
 struct ProfileScale {
     origin: egui::Pos2,
@@ -83,7 +83,8 @@ impl ProfileScale {
 }
 
 impl Profile<'_> {
-    /// Draws the stairs. An edge that is dragged gives the changed stairs, snapped. `grab` is the edge that was dragged before.
+    /// Draws the stairs. While an edge is dragged, returns the changed stairs, with the movement rounded to steps.
+    /// `grab` is the edge that was dragged in the last frame.
     pub fn ui(&self, ui: &mut egui::Ui, grab: Option<Grab>) -> ProfileResponse {
         let stairs = self.next;
         let [block_m, block_high_m] =
@@ -117,7 +118,7 @@ impl Profile<'_> {
         self.handles(ui, scale, grab)
     }
 
-    /// The solids of the stairs, and their outline.
+    /// Draws the solid parts of the stairs, and their outline.
     fn solids(&self, painter: &egui::Painter, scale: ProfileScale, palette: &theme::Palette) {
         let stairs = self.stairs;
         let to_y_m = end_y_m(stairs);
@@ -143,7 +144,7 @@ impl Profile<'_> {
         painter.add(egui::Shape::line(points, egui::Stroke::new(1.5, palette.text)));
     }
 
-    /// The steepest stairs that a home may have, as a dashed line over the first edges.
+    /// Draws the steepest stairs that building codes allow in a home, as a dashed line over the first edges.
     fn code_line(
         &self,
         ui: &egui::Ui,
@@ -163,7 +164,7 @@ impl Profile<'_> {
         let stroke = egui::Stroke::new(1.5, palette.second);
         let line = [scale.at(from_m), scale.at(to_m)];
         painter.extend(egui::Shape::dashed_line(&line, stroke, 6.0, 4.0));
-        // On the left of the upper end of the line.
+        // The text is to the left of the line's upper end.
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         let text = "steepest in a home";
         let layout = painter.layout_no_wrap(text.to_owned(), font, palette.second);
@@ -174,7 +175,7 @@ impl Profile<'_> {
         painter.galley(place, layout, palette.second);
     }
 
-    /// The handles of all steps.
+    /// Draws the handles of all steps. Returns the response to the pointer.
     fn handles(
         &self,
         ui: &mut egui::Ui,
@@ -206,7 +207,7 @@ impl Profile<'_> {
                 let grab = grab.unwrap_or(Grab { step, from_m: pointer_m });
                 drawn.grab = Some(grab).filter(|_| response.dragged());
                 let snap_m = if ui.input(|input| input.modifiers.shift) { FINE_M } else { SNAP_M };
-                // The movement is snapped, not the place: a coordinate that is not moved stays as it is.
+                // The movement is rounded, not the position, so that a coordinate that is not moved stays exactly as it is.
                 let moved_m =
                     |axis: usize| ((pointer_m[axis] - grab.from_m[axis]) / snap_m).round() * snap_m;
                 let [y_m, z_m] = self.next.handle_m(step);
@@ -227,7 +228,7 @@ impl Profile<'_> {
     }
 }
 
-/// Position at which the drawing ends on the y axis, in metres.
+/// Returns the position on the y axis at which the drawing ends, in metres.
 fn end_y_m(stairs: &Stairs) -> f32 {
     stairs.riser_y_m(stairs.steps) + stairs.landing_m.min(LANDING_M)
 }

@@ -1,4 +1,4 @@
-//! Random stairs: of a class, and of a seed that gives the same stairs again.
+//! Random stairs of a class. The same seed gives the same stairs again.
 
 use bevy_egui::egui;
 
@@ -7,14 +7,14 @@ use crate::studio::ui::theme;
 use snakes_core::genome::{StairsClass, StairsGenome};
 use snakes_core::schema::{Choice, Choices};
 
-/// The class and the seed that were chosen.
+/// Selected class and seed of random stairs.
 #[derive(Debug)]
 pub(super) struct RandomStairs {
     class: StairsClass,
     seed: u32,
 }
 
-/// The greatest seed.
+/// Maximum seed of random stairs.
 const MOST: u32 = 999_999;
 
 impl Default for RandomStairs {
@@ -24,7 +24,7 @@ impl Default for RandomStairs {
 }
 
 impl RandomStairs {
-    /// Draws the row. Returns other stairs.
+    /// Draws the row of controls. Returns random stairs after the class or the seed has changed.
     pub fn ui(&mut self, ui: &mut egui::Ui) -> Option<StairsGenome> {
         let mut is_other = false;
         ui.horizontal_wrapped(|ui| {

@@ -9,15 +9,15 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::world::Stairs;
 
-/// Change of a value for each point that its field is dragged, in metres.
+/// Change of a length per point by which its field is dragged, in metres.
 const SPEED_M: f32 = 0.01;
 
-/// The response of the table to the user.
+/// Response of the table to the user.
 #[derive(Debug, Default)]
 pub(super) struct Listed {
-    /// The step whose row the pointer is on; the lowest is 0.
+    /// Step whose row is under the pointer; the lowest is 0.
     pub pointed: Option<u32>,
-    /// A changed, copied or removed step.
+    /// Change of the stairs: a step was changed, copied or removed.
     pub edit: Option<StairsEdit>,
 }
 
@@ -68,7 +68,7 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
     listed
 }
 
-/// The buttons of a row. Returns whether the step is to be copied, and whether it is to be removed.
+/// Draws the buttons of a row. Returns whether to copy the step, and whether to remove it.
 fn buttons(ui: &mut egui::Ui, number: u32) -> [bool; 2] {
     let mut is_clicked = |sign: &str, name: String, hint: &str| {
         let button = named(ui.small_button(sign), egui::WidgetType::Button, &name);
@@ -80,20 +80,20 @@ fn buttons(ui: &mut egui::Ui, number: u32) -> [bool; 2] {
     [copied, removed]
 }
 
-/// A length that was changed.
+/// A length that the user has changed.
 struct Changed {
     length_m: f32,
     is_complete: bool,
 }
 
 impl Changed {
-    /// The change of the stairs.
+    /// Returns the change of the stairs, which `stairs` computes from the length.
     fn edit(self, stairs: impl FnOnce(f32) -> Stairs) -> StairsEdit {
         StairsEdit { stairs: stairs(self.length_m), is_complete: self.is_complete }
     }
 }
 
-/// Draws a length that can be dragged or typed.
+/// Draws a field for a length that can be dragged or typed. Returns the length if it has changed.
 fn length(
     ui: &mut egui::Ui,
     length_m: f32,

@@ -1,4 +1,4 @@
-//! The panel as its users work with it.
+//! Tests of the Stairs panel.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -9,7 +9,7 @@ use crate::studio::state::current_run::prepared_run;
 use crate::studio::ui::theme;
 use snakes_core::genome::StairsClass;
 
-/// A next run, the panel, and the commands that it sent.
+/// State of a test: a next run, the panel, and the commands that it sent.
 struct Editing {
     run: CurrentRun,
     panel: StairsPanel,
@@ -18,7 +18,7 @@ struct Editing {
 
 type Window = Harness<'static, Editing>;
 
-/// The panel for a next run with these stairs.
+/// Creates the panel for a next run with these stairs.
 fn editing(stairs: &Stairs, width: f32) -> Window {
     let mut run = prepared_run();
     set(&mut run, stairs);
@@ -73,7 +73,7 @@ fn click(window: &mut Window, name: &str) {
     window.run();
 }
 
-/// Drags a thing by some points, in many small steps.
+/// Drags the element with this name by some points, in many small steps.
 fn drag(window: &mut Window, name: &str, by: egui::Vec2) {
     let from = centre(window, name);
     window.hover_at(from);
@@ -152,7 +152,7 @@ fn a_click_on_an_edge_changes_nothing_and_escape_drops_a_drag() {
 fn an_edge_stays_where_a_further_move_is_not_allowed_and_the_panel_says_why() {
     let mut window = editing(&house(), theme::PANEL_WIDTH);
     let [from, next] = ["Edge of step 3", "Edge of step 4"].map(|name| centre(&window, name));
-    // Beyond the edge behind it.
+    // The edge is dragged beyond the edge behind it.
     drag(&mut window, "Edge of step 3", egui::vec2((next - from).x * 1.5, 0.0));
     let tread_m = stairs(&window).step_tread_m(2);
     assert!((0.1..0.3).contains(&tread_m), "{tread_m}");

@@ -1,4 +1,4 @@
-//! World and snake of the next run, section by section, with a search over all settings.
+//! The World panel: settings of the world and the snake of the next run by section, with a search over all settings.
 
 pub mod presets;
 pub mod surface_readout;
@@ -25,12 +25,12 @@ use snakes_core::world::Stairs;
 use presets::PresetChoice;
 use surface_readout::{ReadLanes, ReadSurface};
 
-/// The panel with its search text and fields.
+/// The World panel, with its search text and fields.
 #[derive(Debug, Default)]
 pub(super) struct WorldPanel {
     sheet: Sheet,
     presets: PresetChoice,
-    /// Search text.
+    /// Text for which settings are searched.
     search: String,
 }
 
@@ -62,7 +62,7 @@ impl WorldPanel {
         self.sheet.unfold(sections.iter().cloned());
     }
 
-    /// Sets the search text.
+    /// Sets the text for which settings are searched.
     pub fn set_search(&mut self, text: &str) {
         text.clone_into(&mut self.search);
     }
@@ -135,10 +135,10 @@ impl WorldPanel {
     }
 }
 
-/// Sections that are open when the panel is shown for the first time.
+/// Sections that are unfolded when the panel is shown for the first time.
 const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, Trial::GROUND, Trial::REWARD];
 
-/// Sections with a read-out of the surfaces that they are about.
+/// Sections that begin with readings of a surface.
 const READ_OUT: [(Section, ReadSurface); 3] = [
     (Trial::SURFACE, ReadSurface::Stairs),
     (Trial::GROUND, ReadSurface::Ground),
@@ -155,7 +155,7 @@ fn stairs_row(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) 
     });
 }
 
-/// Draws the switch for a separate ground surface.
+/// Draws the switch that gives the ground its own surface.
 fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let trial = &run.next_settings().trial;
     let differs = trial.ground.is_some();
@@ -168,9 +168,9 @@ fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
     command_box(ui, differs, words, Command::Plan(change), commands);
 }
 
-/// Tells which settings the current run uses, with a button that starts the next run.
+/// Draws whether the current run uses these settings, with a button that starts the next run.
 fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    // The row is always present, so that the layout stays still when a slider is released.
+    // The row is always present, so that the layout does not move when a slider is released.
     let palette = theme::of(ui);
     let (text, color) = if !run.is_under_way() {
         ("These settings will be used by the next run.", palette.text_weak)
@@ -205,12 +205,12 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// Commands sent after `act`.
+    /// Calls `act` on the panel. Returns the commands that were sent.
     fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
         sent_at(run, theme::PANEL_WIDTH, &UndoHistory::default(), act)
     }
 
-    /// Commands sent after `act`, at a given width and with a given history.
+    /// Calls `act` on the panel, with this width in points and this history. Returns the commands that were sent.
     fn sent_at(
         run: &CurrentRun,
         width: f32,
@@ -350,7 +350,7 @@ mod tests {
     fn columns_align_and_fit_at_every_panel_width() {
         use egui::accesskit::Role;
         let mut run = prepared_run();
-        // These settings show the widest rows: reset buttons, lists of limbs, limits.
+        // With these values, the rows are widest: reset buttons, lists of limbs, limits.
         let given = [
             ("trial.surface.soft_cfm_m_s_per_n", "0.00012345"),
             ("trial.agent.limb_width_m", "[1, 1.5, 1, 1, 1]"),

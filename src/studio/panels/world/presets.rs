@@ -1,4 +1,4 @@
-//! Preset selection: shipped and own presets, and a field to save a new one.
+//! Selection of built-in and own presets, and a field to save a new one.
 
 use bevy_egui::egui;
 
@@ -9,15 +9,15 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, Preset};
 
-/// The selection with its text field.
+/// The selection of presets, with its text field.
 #[derive(Debug, Default)]
 pub(crate) struct PresetChoice {
-    /// Name of the preset to save.
+    /// Field for the name of a preset to save.
     name: OwnName,
 }
 
 impl PresetChoice {
-    /// Draws the selection and collects the user's commands.
+    /// Draws the selection of presets, and collects the user's commands.
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ui.horizontal_wrapped(|ui| {
             ui.label("Preset");
@@ -28,7 +28,7 @@ impl PresetChoice {
                 .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
             let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
             if list.clicked() {
-                // The folder may have new files.
+                // The folder may contain new files.
                 commands.push(Command::Plan(PlanCommand::ListPresets));
             }
             list.on_hover_text("Replaces all settings of the next run");
@@ -49,7 +49,7 @@ fn presets(
     chosen: &str,
     commands: &mut Vec<Command>,
 ) {
-    // Close together, so that all fit into a small window.
+    // The rows are close together, so that all fit into a small window.
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
     let preset = known_files(ui, presets, "Your presets", Some(chosen), |preset| &preset.about);
@@ -66,17 +66,17 @@ mod tests {
 
     fn panel(run: &CurrentRun) -> Sent<'_> {
         let mut choice = PresetChoice::default();
-        // The height of the smallest usual window.
+        // The height is that of the smallest usual window.
         testing::panel([theme::PANEL_WIDTH, 720.0], move |ui, commands| {
             theme::apply(ui.ctx());
             choice.ui(ui, run, commands);
         })
     }
 
-    /// Opens the field and types a name.
+    /// Opens the field for the name of a preset, and types into it.
     fn type_name(panel: &mut Sent<'_>, name: &str) {
         clicked(panel, "Save as preset…");
-        // The field has the focus, and its suggestion is selected.
+        // The field has the focus, and the suggested name is selected.
         panel.event(egui::Event::Text(name.to_owned()));
         panel.run();
     }
@@ -96,7 +96,7 @@ mod tests {
     fn the_open_list_shows_all_presets_of_the_program_and_a_click_selects_one() {
         let run = prepared_run();
         let last = run.presets().built_in().last().expect("shipped").name.clone();
-        // Entries out of sight are clipped, and a click on them reaches none.
+        // A click on an entry that is scrolled out of view would have no effect.
         for name in ["ice".to_owned(), last] {
             let mut panel = panel(&run);
             panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();

@@ -1,5 +1,5 @@
-//! Readings of the contacts between the snakes on the stage and a surface at the shown moment, above the settings of that
-//! surface.
+//! Readings of the contacts between the snakes on the stage and a surface at the displayed time, above the settings of
+//! the surface.
 
 mod lane_column;
 
@@ -15,30 +15,31 @@ use snakes_core::world::TouchedSurface;
 
 use lane_column::{LaneColumn, in_m_s, in_mm, in_watts};
 
-/// The lanes whose contacts are read.
+/// Lanes whose contacts the World panel shows.
 #[derive(Clone, Default)]
 pub(crate) struct ReadLanes<'l> {
-    /// The selected lane, or both lanes of a what-if.
+    /// The selected lane, or all lanes of a what-if.
     pub lanes: Vec<&'l Lane>,
-    /// Whether they stand beside others, so that their names must be shown.
+    /// Whether there are other lanes beside these, so that their names are shown.
     pub are_named: bool,
-    /// Whether the stage plays. Readings then change a few times per second only.
+    /// Whether the stage plays. The readings then change only a few times per second.
     pub is_playing: bool,
 }
 
-/// Surfaces that a section of the panel is about.
+/// Surface that a section of the World panel is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ReadSurface {
-    /// The stairs, and the ground where it shares their surface.
+    /// The stairs, and the ground if it shares their surface.
     Stairs,
-    /// The ground with a surface of its own.
+    /// The ground, if it has its own surface.
     Ground,
-    /// The skin, where limbs touch each other.
+    /// The skin of the snake, where limbs touch each other.
     Skin,
 }
 
 impl ReadSurface {
-    /// Whether a surface that a limb touches is meant. The ground belongs to the stairs unless it has a surface of its own.
+    /// Returns whether a surface that a limb touches belongs to this section. The ground belongs to the stairs unless
+    /// it has its own surface.
     fn is_meant(self, has_own_ground: bool, touched: TouchedSurface) -> bool {
         match (self, touched) {
             (Self::Stairs, TouchedSurface::Stairs)
@@ -50,29 +51,29 @@ impl ReadSurface {
     }
 }
 
-/// A line of the read-out.
+/// A line of the readings.
 struct ReadoutLine {
     name: &'static str,
-    /// The term of the field.
+    /// Technical term for the quantity.
     term: &'static str,
     hint: &'static str,
     draw: fn(&LaneColumn, &mut egui::Ui),
-    /// Contents of the tooltip of a value.
+    /// Contents of the tooltip of a value in the line.
     detail: ReadoutDetail,
 }
 
-/// Contents of the tooltip of a value.
+/// Contents of the tooltip of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReadoutDetail {
     /// Slip, grip and depth of each limb.
     Limbs,
-    /// The speed of the fastest point, and those of each limb.
+    /// Speed of the fastest point, and the readings of each limb.
     LimbsAndFastest,
-    /// Where the energy went.
+    /// Energy that was lost, by cause.
     Energy,
 }
 
-/// The lines; the last is about the whole snake, and stands with the stairs only.
+/// Lines of the readings. The last is about the whole snake, and is shown only with the stairs.
 const LINES: [ReadoutLine; 6] = [
     ReadoutLine {
         name: "Contact",
@@ -124,20 +125,20 @@ const LINES: [ReadoutLine; 6] = [
     },
 ];
 
-/// Width of the names, in points.
+/// Width of the lines' names, in points.
 const NAME_WIDTH: f32 = theme::GAP * 11.0;
-/// Panel width from which the names have the terms of the field beside them, in points.
+/// Minimum width of the panel at which the technical terms are beside the names, in points.
 const WIDTH_FOR_TERMS: f32 = theme::GAP * 35.0;
-/// Width of a name with its term, in points.
+/// Width of a name together with its term, in points.
 const TERM_WIDTH: f32 = theme::GAP * 21.0;
-/// Minimum width of a column, in points: every number fits.
+/// Minimum width of a lane's column, in points: enough for every number.
 const LEAST_COLUMN: f32 = theme::GAP * 8.5;
 
 impl<'l> ReadLanes<'l> {
-    /// The lanes to read out of those on the stage.
+    /// Selects the lanes to read among those on the stage.
     pub fn of(lanes: &[&'l Lane], focused: Option<&'l Lane>, on_stage: &OnStage) -> Self {
         let lanes = match *on_stage.mode {
-            // To see what a change does, one needs both values.
+            // The readings of all lanes are shown, so that the effect of the change can be seen.
             StageMode::WhatIf { .. } => lanes.to_vec(),
             StageMode::Solo | StageMode::Race | StageMode::Generation { .. } => {
                 focused.into_iter().collect()
@@ -147,7 +148,7 @@ impl<'l> ReadLanes<'l> {
         Self { lanes, are_named, is_playing: on_stage.playback.is_playing() }
     }
 
-    /// Draws the read-out of a surface; nothing without lanes, or for a ground that shares the surface of the stairs.
+    /// Draws the readings of a surface. Draws nothing without lanes, or for a ground that shares the surface of the stairs.
     pub(super) fn ui(&self, ui: &mut egui::Ui, surface: ReadSurface) {
         let has_own_ground = self.lanes.iter().any(|lane| lane.trial().ground.is_some());
         if self.lanes.is_empty() || (surface == ReadSurface::Ground && !has_own_ground) {
@@ -189,7 +190,7 @@ impl<'l> ReadLanes<'l> {
         let has_terms = columns.len() == 1 && ui.available_width() >= WIDTH_FOR_TERMS;
         let names_width = if has_terms { TERM_WIDTH } else { NAME_WIDTH };
         let all_room = ui.available_width() - names_width;
-        // Columns for which there is no room follow below the first ones.
+        // Columns for which there is no room are drawn below the first ones.
         let most = ((all_room / (LEAST_COLUMN + theme::GAP)) as usize).max(1);
         let beside = columns.len().div_ceil(columns.len().div_ceil(most));
         let room = all_room / beside as f32 - theme::GAP;
@@ -199,7 +200,7 @@ impl<'l> ReadLanes<'l> {
         }
     }
 
-    /// Draws lanes side by side. `index` counts the tables of a surface.
+    /// Draws the readings of several lanes side by side. `index` is the number of the table among those of the surface.
     fn grid(
         &self,
         ui: &mut egui::Ui,
@@ -233,8 +234,8 @@ impl<'l> ReadLanes<'l> {
     }
 }
 
-/// The head of a lane's column: the label, or where that has no room its value, because the labels of worlds with other
-/// values of a setting begin alike.
+/// Returns the head of a lane's column: its label or, if there is no room, the value at the label's end. The beginnings
+/// of the labels are often the same.
 fn head_of(ui: &egui::Ui, label: &str) -> String {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let whole = ui.painter().layout_no_wrap(label.to_owned(), font, egui::Color32::PLACEHOLDER);
@@ -245,13 +246,13 @@ fn head_of(ui: &egui::Ui, label: &str) -> String {
     }
 }
 
-/// The lines of a read-out with a column for each lane.
+/// A table of readings with a column for each lane.
 struct ReadoutTable<'c, 'l> {
     columns: &'c [LaneColumn<'l>],
-    /// Whether a surface that a limb touches is meant.
+    /// Returns whether a surface that a limb touches belongs to the section.
     is_meant: &'c dyn Fn(TouchedSurface) -> bool,
     has_terms: bool,
-    /// Widths of the names and of a column, in points.
+    /// Widths of the names, and of a column, in points.
     names_width: f32,
     room: f32,
 }
@@ -269,7 +270,7 @@ impl ReadoutTable<'_, '_> {
         });
         for column in self.columns {
             let cell = self.cell(ui, |ui| (line.draw)(column, ui));
-            // Above the number, which would keep the pointer from the cell.
+            // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
             let id = ui.id().with((line.name, column.lane.number()));
             ui.interact(cell.rect, id, egui::Sense::hover())
                 .on_hover_ui(|ui| column.explain(ui, line, self.is_meant));

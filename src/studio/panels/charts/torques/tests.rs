@@ -1,4 +1,4 @@
-//! Tests of the torques chart: signals, waves, and the snake that it shows.
+//! Tests of the torques chart: free signals, waves, and the choice of the snake.
 
 use super::*;
 use crate::studio::state::current_run::explored_run;
@@ -52,7 +52,7 @@ fn wave_torques_come_from_the_rollout() {
     assert!(view.figure.note.contains("Its parent is unknown"), "{}", view.figure.note);
 }
 
-/// The charts, once the torques are computed.
+/// Waits until the torques are computed, and returns the charts.
 fn computed(torques: &mut TorqueComparison) -> ChartView {
     for subject in [&mut torques.child, &mut torques.parent].into_iter().flatten() {
         subject.lookahead.iter_mut().for_each(Lookahead::wait);
@@ -64,7 +64,7 @@ fn computed(torques: &mut TorqueComparison) -> ChartView {
 fn the_torques_are_those_of_the_selected_snake_and_its_parent() {
     let run = explored_run();
     let latest = run.exploration().expect("explored").generation.clone().expect("this session's");
-    // Not every parent's genome is kept.
+    // The genomes of some parents are not kept.
     let first = |parents: &Parents| parents.ids().next().filter(|of| run.genome_of(*of).is_some());
     let mut children = (0..).zip(&latest.parents);
     let child = children.find_map(|(individual, parents)| Some((individual, first(parents)?)));

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Commands of the library and about files sent so far, which are then forgotten.
+/// Returns and removes the commands that were sent so far.
 fn taken(harness: &mut Test<'_>) -> Vec<Command> {
     std::mem::take(harness.state_mut())
 }
@@ -157,7 +157,7 @@ fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
     let mut library = library();
     library.request_export();
     let mut harness = harness(&library, [420.0, 800.0]);
-    // The helper forgets what was sent at first.
+    // Removes the commands that were sent at the start.
     assert_eq!(taken(&mut harness), []);
     let mut panel = LibraryPanel::default();
     panel.selection.only(&file("alpha"));

@@ -1,11 +1,11 @@
-//! The leaderboard: ranking, buttons, split times.
+//! Tests of the leaderboard: ranking, buttons, split times.
 
 use super::*;
 use crate::studio::panels::testing::{Sent, clicked, climber_lane, panel};
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{RunPlan, Settings};
 
-/// The leaderboard of these lanes at this time, with the first of them selected.
+/// Creates the leaderboard of these lanes at this time in simulated seconds, with the first lane selected.
 fn board<'a>(lanes: &'a [Lane], mode: StageMode, time_s: f64, is_narrow: bool) -> Sent<'a> {
     panel([800.0, 600.0], move |ui, commands| {
         let lanes: Vec<&Lane> = lanes.iter().collect();
@@ -61,7 +61,7 @@ fn the_winner_has_a_flag_and_only_the_selected_snake_the_look_of_a_selection() {
     }
 }
 
-/// The colour behind a text.
+/// Returns the background colour of a text, if it has one.
 fn background_of(shape: &egui::Shape) -> Option<egui::Color32> {
     let egui::Shape::Text(text) = shape else { return None };
     let sections = text.galley.job.sections.iter();

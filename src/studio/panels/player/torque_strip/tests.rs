@@ -1,4 +1,4 @@
-//! The strip under the pointer.
+//! Tests of clicks and drags on the torque strip.
 
 use super::*;
 use crate::studio::panels::testing::{climber_lane, shows};
@@ -40,7 +40,7 @@ fn a_strip_that_grows_while_it_is_pressed_keeps_its_scale_until_the_release() {
     let mut strip_panel = TorqueStrip::default();
     let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
         |ui, moments: &mut Vec<f64>| {
-            // After the first moment the pull that ended the trial is undone.
+            // When the pointer goes back for the first time, the pull that ended the trial is undone.
             let end_s = if moments.is_empty() { 4.0 } else { 15.0 };
             let span = TimelineSpan { end_s, ..SPAN };
             moments.extend(strip_panel.ui(ui, &lane, 1.0, span, 60.0));

@@ -1,4 +1,4 @@
-//! A grid of an exam as a map: rises upwards, treads to the right, in each cell the number of landings and its colour.
+//! Map of an exam's grid: rises upwards, treads to the right. Each cell shows the number of landings, also by its colour.
 
 use bevy_egui::egui;
 use bevy_egui::egui::Color32;
@@ -11,48 +11,48 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::palette::{ramp, text_on};
 use snakes_core::score::{ExamSuite, StairsCell, StairsGrid, Trial};
 
-/// A map and where it is drawn.
+/// A map of an exam's grid, and its place in the panel.
 pub(super) struct StairsMap<'m> {
     pub grid: &'m StairsGrid,
     /// Title above the map.
     pub title: &'m str,
-    /// The examined snake, as the stage shows it.
+    /// Examined snake, as the stage shows it.
     pub staged: &'m StagedChampion,
     pub place: MapPlace,
 }
 
-/// Where a map is drawn.
+/// Place of a map in the panel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MapPlace {
-    /// The cells.
+    /// Rectangle of all cells, in points.
     cells: egui::Rect,
-    /// Whether the rises stand at its left.
+    /// Whether the labels of the rises are to the left of the map.
     has_rises: bool,
 }
 
 /// Width of the labels of the rises, in points.
 const RISES_WIDTH: f32 = theme::GAP * 6.0;
-/// Height of a cell and greatest width, in points.
+/// Height of a cell, and its maximum width, in points.
 const CELL_HEIGHT: f32 = theme::GAP * 3.0;
 const MOST_CELL_WIDTH: f32 = theme::GAP * 8.0;
 /// Height of a line of text, in points.
 const LINE: f32 = theme::GAP * 2.25;
-/// Distance of two maps, in points.
+/// Distance between two maps, in points.
 const APART: f32 = theme::GAP * 1.5;
 /// Radius of the dot that marks the snake's own stairs, in points.
 const DOT: f32 = 2.5;
-/// Size of a sample in the legend, in points.
+/// Size of a colour sample in the legend, in points.
 const SAMPLE: egui::Vec2 = egui::vec2(theme::GAP * 2.5, theme::GAP * 2.0);
 
 impl MapPlace {
-    /// Places for grids of the same stairs side by side.
+    /// Places grids of the same stairs side by side.
     pub fn side_by_side(ui: &mut egui::Ui, grids: &[StairsGrid]) -> Vec<Self> {
         let columns: usize = grids.iter().map(|grid| grid.treads_m.len()).sum();
         let rows = grids.iter().map(|grid| grid.rises_m.len()).max().unwrap_or(0);
         let gaps = APART * grids.len().saturating_sub(1) as f32;
         let room = ui.available_width() - RISES_WIDTH - gaps;
         let width = (room / columns.max(1) as f32).min(MOST_CELL_WIDTH);
-        // Above, the title and the count; below, the treads and their name.
+        // Above the cells are the title and the count; below them the labels of the treads and their title.
         let height = CELL_HEIGHT * rows as f32 + 4.0 * LINE;
         let all = egui::vec2(ui.available_width(), height);
         let (all, _) = ui.allocate_exact_size(all, egui::Sense::hover());
@@ -66,7 +66,7 @@ impl MapPlace {
         grids.iter().enumerate().map(place).collect()
     }
 
-    /// The rectangle of the cell in a row, from the bottom, and a column, from the left.
+    /// Returns the rectangle of the cell in a row, counted from the bottom, and a column, counted from the left.
     fn cell(&self, grid: &StairsGrid, row: usize, column: usize) -> egui::Rect {
         let (rows, columns) = (grid.rises_m.len() as f32, grid.treads_m.len() as f32);
         let size = self.cells.size() / egui::vec2(columns, rows);
@@ -76,7 +76,7 @@ impl MapPlace {
 }
 
 impl StairsMap<'_> {
-    /// Draws the map; returns the index of the cell that is clicked.
+    /// Draws the map. Returns the index of the clicked cell, if any.
     pub fn ui(&self, ui: &mut egui::Ui) -> Option<usize> {
         self.labels(ui);
         let mut clicked = None;
@@ -93,7 +93,7 @@ impl StairsMap<'_> {
             self.draw(ui, cell, rect);
             let palette = theme::of(ui);
             if self.staged.is_on_stairs_of_exam() && cell.typical == *self.staged.trial() {
-                // The accent would be lost on colours of the ramp.
+                // The accent colour would not stand out from the cells' colours.
                 outlines.push((rect, palette.text));
             } else if response.hovered() || response.has_focus() {
                 outlines.push((rect, palette.text_weak));
@@ -105,7 +105,7 @@ impl StairsMap<'_> {
             }
             response.on_hover_text(self.hover_text(cell));
         }
-        // Over the neighbouring cells.
+        // The outlines are drawn over the neighbouring cells.
         for (rect, color) in outlines {
             let stroke = egui::Stroke::new(2.0, color);
             ui.painter().rect_stroke(rect, 2.0, stroke, egui::StrokeKind::Outside);
@@ -113,7 +113,7 @@ impl StairsMap<'_> {
         clicked
     }
 
-    /// Draws title, count and axes.
+    /// Draws the title, the count and the axes of the map.
     fn labels(&self, ui: &egui::Ui) {
         let palette = theme::of(ui);
         let cells = self.place.cells;
@@ -148,7 +148,7 @@ impl StairsMap<'_> {
         text(at, egui::Align2::RIGHT_BOTTOM, "Rise (m)".to_owned(), &small, palette.text_weak);
     }
 
-    /// Draws a cell with its number.
+    /// Draws a cell with its number of landings.
     fn draw(&self, ui: &egui::Ui, cell: &StairsCell, rect: egui::Rect) {
         let fill = fill(cell.landed, cell.trials);
         ui.painter().rect_filled(rect, 2.0, fill);
@@ -161,7 +161,7 @@ impl StairsMap<'_> {
         }
     }
 
-    /// Hover text of a cell.
+    /// Returns the hover text of a cell.
     fn hover_text(&self, cell: &StairsCell) -> String {
         let frozen = match self.grid.suite {
             ExamSuite::Lesion => "Sight, touch and balance keep the values of the snake at rest.\n",
@@ -183,7 +183,7 @@ impl StairsMap<'_> {
     }
 }
 
-/// A cell in a sentence.
+/// Describes a cell in a sentence.
 fn said(cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, trials, landed, median_steps, typical, .. } = cell;
     format!(
@@ -192,12 +192,12 @@ fn said(cell: &StairsCell) -> String {
     )
 }
 
-/// Colour of a number of landings.
+/// Returns the colour for a number of landings.
 fn fill(landed: u32, trials: u32) -> Color32 {
     ramp(landed as f32 / trials.max(1) as f32)
 }
 
-/// Whether the stairs on which a champion evolved have the rise and the tread of a cell.
+/// Returns whether all steps on which a champion evolved have the rise and the tread of a cell.
 fn is_own(cell: &StairsCell, own: &Trial) -> bool {
     let near = |own_m: f32, cell_m: f32| (own_m - cell_m).abs() < 1.0e-4;
     let is_like = |step| {
@@ -207,7 +207,7 @@ fn is_own(cell: &StairsCell, own: &Trial) -> bool {
     (0..own.stairs.steps).all(is_like)
 }
 
-/// Draws what the colours and the dot mean.
+/// Draws the meaning of the colours and of the dot.
 pub(super) fn legend(ui: &mut egui::Ui, grid: &StairsGrid, own: &Trial) {
     let trials = grid.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
     ui.horizontal_wrapped(|ui| {

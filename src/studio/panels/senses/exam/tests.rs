@@ -1,4 +1,4 @@
-//! The section before, during and after an exam.
+//! Tests of the section before, during and after an exam.
 
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
@@ -7,17 +7,17 @@ use egui_kittest::kittest::Queryable;
 use snakes_core::genome::ControllerKind;
 use snakes_core::score::ExamEnd;
 
-/// The built-in champion, a gait.
+/// Returns the built-in champion, which has a gait and no senses.
 fn gait() -> StagedChampion {
     climber(0, "climber")
 }
 
-/// A snake with senses.
+/// Returns a snake with senses.
 fn sensing() -> StagedChampion {
     random_snake(ControllerKind::Reflex, &[], |_| ())
 }
 
-/// Made-up results: on the lowest stairs all land, on the highest none.
+/// Creates results without simulation: all snakes land on the lowest stairs, none on the highest.
 fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
     let own = &staged.champion().trial;
     let conditions = suite.conditions(own);
@@ -31,7 +31,7 @@ fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
     StairsGrid::of(suite, own, &conditions, &ends)
 }
 
-/// The section `width` points wide.
+/// Creates the section, `width` points wide.
 fn section(staged: StagedChampion, exams: &StairsExams, width: f32) -> Sent<'_> {
     let lane = Lane::new(staged, 0);
     panel([width, 500.0], move |ui, commands| {
@@ -56,7 +56,7 @@ fn before_the_exam_a_button_begins_it_for_every_controller() {
 fn during_the_exam_its_progress_is_shown_and_a_button_cancels_it() {
     let mut exams = StairsExams::default();
     exams.apply(&ExamCommand::Examine, Some(&gait())).expect("begun");
-    // Another snake on the stage shows it, too.
+    // The section of another snake shows the progress as well.
     for staged in [gait(), sensing()] {
         let mut section = section(staged, &exams, theme::PANEL_WIDTH);
         assert!(shows(&section, "Examining climber"));

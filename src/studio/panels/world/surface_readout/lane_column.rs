@@ -1,4 +1,4 @@
-//! A column of the read-out: the readings of one lane on one surface.
+//! A column of the table: the readings of one lane on one surface.
 
 use bevy_egui::egui;
 
@@ -10,27 +10,27 @@ use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::theme;
 use snakes_core::world::TouchedSurface;
 
-/// Height of the bar, in points.
+/// Height of the bar that shows the share of friction, in points.
 const BAR_HEIGHT: f32 = theme::GAP;
-/// Largest width of the bar, in points.
+/// Maximum width of the bar, in points.
 const BAR_WIDTH: f32 = theme::GAP * 15.0;
-/// Room for the text beside a bar, in points.
+/// Width of the text beside the bar, in points.
 const PERCENT_WIDTH: f32 = theme::GAP * 5.0;
-/// Width of a column in which "5 of 5 limbs" fits, in points.
+/// Minimum width of a column in which "5 of 5 limbs" fits, in points.
 const WIDTH_FOR_LIMBS: f32 = theme::GAP * 12.5;
-/// Share from which a contact counts as sliding: the engine stays a little below 1.
+/// Share of the available friction from which a contact counts as sliding. The engine's values stay slightly below 1.
 const SLIDES_FROM: f32 = 0.995;
 
-/// A lane with its reading on one surface.
+/// A column of the table: a lane with its reading on one surface.
 pub(super) struct LaneColumn<'l> {
     pub lane: &'l Lane,
-    /// `None` if no limb touches the surface.
+    /// Reading of the surface; `None` if no limb touches it.
     reading: Option<SurfaceReading>,
     is_playing: bool,
 }
 
 impl<'l> LaneColumn<'l> {
-    /// The readings of a lane on the surfaces for which `is_meant` holds.
+    /// Creates the column of a lane for the surfaces for which `is_meant` holds.
     pub fn of(lane: &'l Lane, is_playing: bool, is_meant: impl Fn(TouchedSurface) -> bool) -> Self {
         let reading = lane.readings().meter.surface(is_playing, is_meant);
         Self { lane, reading, is_playing }
@@ -56,12 +56,12 @@ impl<'l> LaneColumn<'l> {
         number(ui, &text);
     }
 
-    /// Draws a value of the reading.
+    /// Draws a value of the reading as text.
     pub fn value(&self, ui: &mut egui::Ui, text: impl Fn(&SurfaceReading) -> String) {
         number(ui, self.reading.as_ref().map(text).as_deref().unwrap_or(UNKNOWN));
     }
 
-    /// Draws the share of the friction as a bar with its number.
+    /// Draws the used share of the available friction as a bar with a number.
     pub fn grip(&self, ui: &mut egui::Ui) {
         let Some(share) = self.reading.and_then(|reading| reading.grip_share) else {
             let is_frictionless = self.reading.is_some();
@@ -83,7 +83,7 @@ impl<'l> LaneColumn<'l> {
         number(ui, &format!("{percent:>5}"));
     }
 
-    /// The tooltip of a value: its meaning, and slip and grip of each limb that touches the surface.
+    /// Draws the tooltip of a value: its meaning, and the readings of each limb that touches the surface.
     pub fn explain(
         &self,
         ui: &mut egui::Ui,
@@ -117,7 +117,7 @@ impl<'l> LaneColumn<'l> {
         });
     }
 
-    /// Lists where the energy went.
+    /// Draws a list of the energy lost, by cause.
     fn explain_energy(&self, ui: &mut egui::Ui) {
         let Some(lost) = self.lane.readings().energy_lost else {
             if self.lane.is_disturbed() {
@@ -141,7 +141,7 @@ impl<'l> LaneColumn<'l> {
     }
 }
 
-/// Stands for a value that there is not.
+/// Text in place of a value that is unknown.
 const UNKNOWN: &str = "-";
 
 fn number(ui: &mut egui::Ui, text: &str) {
@@ -149,7 +149,7 @@ fn number(ui: &mut egui::Ui, text: &str) {
     ui.add(egui::Label::new(text).truncate());
 }
 
-/// A speed in at most four digits.
+/// Formats a speed with two decimals, or with one decimal from 10 m/s upwards.
 pub(super) fn in_m_s(speed_m_s: f32) -> String {
     let decimals = if speed_m_s < 9.995 { 2 } else { 1 };
     format!("{speed_m_s:.decimals$} m/s")
@@ -164,7 +164,7 @@ pub(super) fn in_watts(power_w: f32) -> String {
 }
 
 pub(super) fn in_joules(energy_j: f32) -> String {
-    // Rounding must not leave "-0 J" at the start.
+    // Rounding must not yield "-0 J" at the start.
     let energy_j = if energy_j.abs() < 0.5 { 0.0 } else { energy_j };
     if energy_j.abs() < 999.5 {
         format!("{energy_j:.0} J")

@@ -1,4 +1,4 @@
-//! The read-out of surfaces, drawn in panels of several widths.
+//! Tests of the readings of surfaces, in panels of several widths.
 
 use super::lane_column::in_joules;
 use super::*;
@@ -12,7 +12,7 @@ use snakes_core::save::shipped_champion;
 use snakes_core::score::Recording;
 use snakes_core::world::Surface;
 
-/// A lane of a snake at a time at which it touches the ground, and that lane on ice.
+/// Creates a lane of a snake at a time at which it touches the ground, and the same lane on ice.
 fn on_stone_and_ice() -> [Lane; 2] {
     let stone = climber(0, "climber");
     let mut trial = stone.trial().clone();
@@ -127,7 +127,7 @@ fn a_ground_of_its_own_has_readings_of_its_own() {
 #[test]
 fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
     let [stone, ice] = on_stone_and_ice();
-    // With the margins of the test's window.
+    // The width includes the margins of the test's window.
     let width = 320.0 + 16.0;
     let panel = panel(vec![&stone, &ice, &stone, &ice, &stone], ReadSurface::Stairs, width);
     assert_nothing_is_wider_than(&panel, width);
@@ -136,7 +136,7 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
         let lost = in_joules(lane.readings().energy_lost.expect("undisturbed").elsewhere_j());
         let grip = format!("{:>5}", in_percent(reading.grip_share.expect("friction")));
         for label in [in_m_s(reading.slip_m_s), grip, in_watts(reading.lost_w), lost] {
-            // The width of a label that is not cut: that of its text in the monospaced font.
+            // A label that is not truncated has the width of its text in the monospaced font.
             let font = egui::TextStyle::Monospace.resolve(&panel.ctx.global_style());
             let whole = panel.ctx.fonts_mut(|fonts| {
                 fonts.layout_no_wrap(label.clone(), font, egui::Color32::BLACK).size().x
