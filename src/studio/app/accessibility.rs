@@ -1,7 +1,7 @@
 //! Executes the actions that a screen reader requests.
 //!
-//! Windowing crates pass the panels' labels to the screen reader. Its requests, such as a click on a button, are passed
-//! to egui here.
+//! Windowing crates pass the panels' labels to the screen reader. This module passes the screen reader's requests, such
+//! as a click on a button, to egui.
 
 use bevy::a11y::ActionRequest;
 use bevy::prelude::*;

@@ -1,4 +1,4 @@
-//! Passes each command to the part of the studio that executes its group.
+//! Passes each command to the module that executes its group.
 
 pub mod stage;
 
@@ -104,7 +104,7 @@ pub(super) fn apply(
                 .apply(command, &mut history, notices)
                 .map(|show| stage.present_others(show, notices)),
             Command::Share(ShareCommand::Ask(format)) => {
-                // Before anyone chooses a file in vain.
+                // The number of champions is checked before the user chooses a file.
                 refuse_number(*format, stage.champions_to_share().len()).and_then(|()| {
                     let question = FileQuestion::Share(*format, stage.name_for_file());
                     let ask = FileCommand::Ask(question);
@@ -135,7 +135,7 @@ pub(super) fn apply(
                     let is_new = show.is_some();
                     stage.present_for_now(show);
                     if is_new && lessons.awaits_guess() {
-                        // The race waits at its start until the reader has guessed.
+                        // The race is paused at its start until the user has made a guess.
                         stage.apply_to_player(&PlayerCommand::Toggle);
                     }
                 })
@@ -155,7 +155,7 @@ pub(super) fn apply(
                 show.map(|show| stage.present_others(show, notices))
             }
             Command::Machines(command) => machines.apply(command, &mut run),
-            // A running batch operation is not in the history yet, and an earlier step would be the wrong one.
+            // A running batch operation is not in the history yet, so undo would revert an earlier step.
             Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
             Command::Undo | Command::Redo => {
                 let way = match command {
@@ -191,7 +191,7 @@ pub(super) fn apply(
     }
 }
 
-/// Whether a command puts another run in the place of the current one.
+/// Returns whether a command replaces the current run by another one.
 fn replaces_run(command: &RunCommand, run: &CurrentRun) -> bool {
     match command {
         RunCommand::Start => run.status() == RunStatus::Finished,
@@ -200,11 +200,11 @@ fn replaces_run(command: &RunCommand, run: &CurrentRun) -> bool {
     }
 }
 
-/// Error message for evolution commands during a lesson.
+/// Message for commands that would change the user's own run during a lesson.
 const LESSON: &str =
     "A lesson is open and your own run is paused: \"Back to my own run\" ends the lesson.";
 
-/// Whether a command would start or change the user's own run.
+/// Returns whether a command would start or change the user's own run.
 fn changes_own_run(command: &Command) -> bool {
     matches!(
         command,

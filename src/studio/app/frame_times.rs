@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
 
-/// Measurements of consecutive frames.
+/// Measured costs of consecutive frames.
 #[derive(Resource, Debug)]
 struct FrameTimes {
     frames: u32,
@@ -16,16 +16,16 @@ struct FrameTimes {
     wall: Vec<Duration>,
 }
 
-/// Skipped frames. The first ones compile pipelines and upload textures, so they are not typical.
+/// Number of frames that are not measured. The first ones compile pipelines and upload textures, so they are not typical.
 const WARM_UP_FRAMES: usize = 20;
 
-/// Closes the window after `frames` frames and prints the cost of a frame.
+/// Measures `frames` frames, prints the cost of a frame, and closes the window.
 pub(crate) fn plugin(app: &mut App, frames: u32) {
     let times = FrameTimes { frames, last: None, cpu: Vec::new(), wall: Vec::new() };
     app.insert_resource(times).add_systems(First, measure);
 }
 
-/// The `NonSendMarker` keeps this system on the main thread, whose clock it reads.
+/// Measures a frame. `NonSendMarker` keeps the system on the main thread, whose CPU time it reads.
 fn measure(_: NonSendMarker, mut times: ResMut<FrameTimes>, mut exit: MessageWriter<AppExit>) {
     let now = (main_thread_cpu(), Instant::now());
     if let Some((cpu, wall)) = times.last.replace(now) {
@@ -36,7 +36,7 @@ fn measure(_: NonSendMarker, mut times: ResMut<FrameTimes>, mut exit: MessageWri
         let skipped = WARM_UP_FRAMES.min(times.cpu.len() / 2);
         let cpu = summary(&mut times.cpu[skipped..]);
         let wall = summary(&mut times.wall[skipped..]);
-        // Writing to standard error may fail. There is no other place to report that.
+        // A failure to write to standard error cannot be reported anywhere else.
         let _ =
             writeln!(io::stderr(), "main thread CPU per frame: {cpu}\nwall time per frame: {wall}");
         exit.write(AppExit::Success);
@@ -56,14 +56,14 @@ fn summary(times: &mut [Duration]) -> String {
     )
 }
 
-/// CPU time of the calling thread so far.
+/// Returns the CPU time of the calling thread so far.
 #[cfg(unix)]
 fn main_thread_cpu() -> Duration {
     use nix::time::{ClockId, clock_gettime};
     clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(Duration::ZERO, Duration::from)
 }
 
-/// Other systems have no portable thread clock; the figure is zero.
+/// Returns zero, because other systems have no portable CPU time of a thread.
 #[cfg(not(unix))]
 fn main_thread_cpu() -> Duration {
     Duration::ZERO

@@ -1,4 +1,4 @@
-//! The keyboard: maps key presses to the commands of actions.
+//! The keyboard: maps key presses to commands.
 
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
@@ -17,7 +17,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 /// Sends the commands of this frame's key presses in their order, except for keys that a panel uses.
 ///
-/// Uses the character on the key instead of its position, which differs between keyboard layouts.
+/// Reads the character on the key instead of the key's position, which differs between keyboard layouts.
 fn read(
     mut presses: MessageReader<KeyboardInput>,
     mut held: Local<Held>,
@@ -59,20 +59,20 @@ struct Held {
 }
 
 impl Held {
-    /// Whether a panel uses a key: a text field, or a list or slider that has the keyboard focus. F1 and F11 work
-    /// everywhere, characters wherever they are not typed.
+    /// Returns whether a panel uses a key: a text field, or a list or slider with the keyboard focus. F1, F5 and F11
+    /// always are shortcuts, and so are characters while nothing is typed.
     fn is_for_panel(self, key: &Key, is_typing: bool, is_steering: bool) -> bool {
         match key {
             Key::F1 | Key::F5 | Key::F11 => false,
-            // With Ctrl it types no character.
+            // A key that is pressed with Ctrl types no character.
             key if is_typing => !self.is_command(key),
-            // Lists, sliders and buttons with the focus use arrows, Enter, Space and the like, but no characters.
+            // Lists, sliders and buttons with the focus use keys such as arrows, Enter and Space, but no characters.
             Key::Character(_) => false,
             _ => is_steering && !self.control,
         }
     }
 
-    /// Whether it is a shortcut with Ctrl that text fields do not use.
+    /// Returns whether a key is a shortcut with Ctrl that text fields do not use.
     fn is_command(self, key: &Key) -> bool {
         let is_theirs =
             |text: &str| ["a", "c", "v", "x", "z", "y"].contains(&text.to_lowercase().as_str());
@@ -80,14 +80,14 @@ impl Held {
     }
 }
 
-/// The command of a key in the presenting mode: those that a presenter's clicker sends lead through the champions, and
+/// Returns the command of a key in the presenting mode. The keys of a presenter's clicker go through the champions, and
 /// every other key returns to the window.
 fn of_presenter(key: &Key) -> Option<Command> {
     let turn = |turn: Turn| Some(Command::Stage(StageCommand::TakeTurn(turn)));
     match key {
         Key::PageDown | Key::ArrowRight | Key::ArrowDown | Key::Enter => turn(Turn::Next),
         Key::PageUp | Key::ArrowLeft | Key::ArrowUp | Key::Backspace => turn(Turn::Previous),
-        // A clicker's button begins a presentation with F5; a key with it begins one again.
+        // A clicker sends F5 to begin a presentation; the key begins it again.
         Key::F5 | Key::Home => turn(Turn::First),
         Key::Space => Some(Command::Player(PlayerCommand::Toggle)),
         Key::Character(text) if matches!(text.as_str(), "b" | "B" | ".") => {
@@ -98,7 +98,7 @@ fn of_presenter(key: &Key) -> Option<Command> {
     }
 }
 
-/// Whether a key only changes others, or the machine: sound, light, pictures of the screen.
+/// Returns whether a key only modifies other keys, or controls the computer: sound, light, pictures of the screen.
 fn is_of_keyboard_itself(key: &Key) -> bool {
     matches!(
         key,
@@ -127,7 +127,7 @@ fn is_of_keyboard_itself(key: &Key) -> bool {
     )
 }
 
-/// Name of the shortcut, such as `Ctrl Shift Z`.
+/// Returns the name of a shortcut, such as `Ctrl Shift Z`; `None` for a key without a name.
 fn name_of(key: &Key, held: Held) -> Option<String> {
     let (name, is_letter) = match key {
         Key::Space => ("Space".to_owned(), true),
@@ -143,12 +143,12 @@ fn name_of(key: &Key, held: Held) -> Option<String> {
         _ => return None,
     };
     let control = if held.control { "Ctrl " } else { "" };
-    // Keyboards differ in which characters need Shift, so Shift is ignored for them.
+    // Keyboards differ in which characters need Shift, so Shift is ignored for characters.
     let shift = if held.shift && is_letter { "Shift " } else { "" };
     Some(format!("{control}{shift}{name}"))
 }
 
-/// The command of a key press.
+/// Returns the command of a key press.
 fn command(key: &Key, held: Held, situation: Situation) -> Option<Command> {
     let name = name_of(key, held)?;
     let digit = name.parse().ok().filter(|digit| *digit > 0);
@@ -170,7 +170,7 @@ mod tests {
         Key::Character(text.into())
     }
 
-    /// The key press for a shortcut's name.
+    /// Returns the key press of a shortcut, from its name.
     fn pressed(name: &str) -> (Key, Held) {
         let control = name.contains("Ctrl ");
         let shift = name.contains("Shift ");

@@ -16,27 +16,27 @@ use crate::studio::workspace::Workspace;
 use crate::studio::workspace::layout::Layout;
 use snakes_core::save::{Preferences, PreferencesFile};
 
-/// The stored preferences and their file.
+/// The stored preferences and the file in which they are stored.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct StoredPreferences {
     file: PreferencesFile,
-    /// Last known contents of the file.
+    /// Last known contents of the preferences file.
     stored: Preferences,
-    /// Preferences at the last check. A change is written once it has settled.
+    /// Preferences at the last check. A change is written when it has not changed further until the next check.
     seen: Preferences,
-    /// Error of reading or writing the file, until it is shown.
+    /// Error message from reading the file, until it is displayed.
     problem: Option<String>,
-    /// Time of the last check, in seconds.
+    /// Time of the last check for changes, in seconds.
     polled_s: f32,
-    /// Default for anti-aliasing.
+    /// Whether anti-aliasing was on before the preferences were applied.
     was_smooth: Option<bool>,
 }
 
-/// Polling interval for changed preferences, in seconds.
+/// Interval between checks for changed preferences, in seconds.
 const POLL_S: f32 = 0.5;
 
 impl StoredPreferences {
-    /// Reads the preferences. An unreadable file is renamed as a backup.
+    /// Reads the preferences. If the file is unreadable, uses the defaults and renames the file as a backup.
     pub fn read(file: &PreferencesFile) -> Self {
         let (stored, problem) = match file.load() {
             Ok(stored) => (stored.unwrap_or_default(), None),
@@ -55,13 +55,13 @@ impl StoredPreferences {
         Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0, was_smooth: None }
     }
 
-    /// Disables writing.
+    /// Returns the preferences without their file, so that changes are not stored.
     pub fn only_read(mut self) -> Self {
         self.file = PreferencesFile::nowhere();
         self
     }
 
-    /// The stored preferences.
+    /// Returns the stored preferences.
     pub fn chosen(&self) -> &Preferences {
         &self.stored
     }
@@ -71,7 +71,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(PostStartup, restore).add_systems(Last, remember);
 }
 
-/// Everything that preferences cover, in its current state.
+/// Current state of everything that preferences cover.
 #[derive(SystemParam)]
 struct Chosen<'w, 's> {
     workspace: ResMut<'w, Workspace>,
@@ -132,7 +132,7 @@ fn restore(
     }
 }
 
-/// Writes preferences after a change has settled, and when the window closes.
+/// Writes changed preferences when they have settled, and when the window closes.
 fn remember(
     mut remembered: ResMut<StoredPreferences>,
     chosen: Chosen,
@@ -149,7 +149,7 @@ fn remember(
     let rests = now == remembered.seen;
     remembered.seen = now.clone();
     if (rests || ends) && now != remembered.stored {
-        // Report a failure only once; the next attempt would fail too.
+        // A failure is reported only once, because the next attempt would probably fail too.
         if let Err(error) = remembered.file.store(&now) {
             notices.problem(format!("The window preferences could not be saved: {error}"));
         }
@@ -159,15 +159,15 @@ fn remember(
 
 fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let before = &remembered.stored;
-    // Window sizes are requested in logical pixels. With physical pixels the window would grow at every start on a
-    // display with a scale factor above one.
+    // The window's size is stored in logical pixels, in which it is also requested. Physical pixels would enlarge the
+    // window at every start on a display with a scale factor above one.
     let logical = |length: f32| length.round() as u32;
     let window_size = chosen
         .window
         .iter()
         .next()
         .map(|window| (logical(window.width()), logical(window.height())));
-    // The presenting mode has a size of its own, and loops.
+    // In the presenting mode, the window's size and the loop are not the user's choice.
     let presents = chosen.workspace.is_presenting();
     let is_smooth = chosen.is_smooth();
     let has_chosen = before.smooth_edges.is_some() || is_smooth != remembered.was_smooth;
@@ -186,7 +186,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
         server: chosen.machines.address().to_owned(),
     };
-    // A closing window can have size zero; ignore that.
+    // A closing window can have size zero, which is ignored.
     if now.check().is_ok() { now } else { before.clone() }
 }
 

@@ -1,5 +1,5 @@
-//! The presenting mode outside the panels: the full screen, a camera that follows, repetition, and a pointer that hides
-//! while it rests. Its end brings everything back as it was.
+//! The presenting mode outside the panels: full screen, a following camera, looping playback, and a hidden pointer
+//! while the mouse rests. Its end restores the previous state.
 
 use std::time::Duration;
 
@@ -16,10 +16,10 @@ use crate::studio::state::turns::Turns;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
-/// Time after which a resting pointer is hidden.
+/// Time after which a resting mouse pointer is hidden.
 const POINTER_RESTS: Duration = Duration::from_secs(2);
 
-/// State from before the presenting mode, which changes it.
+/// State before the presenting mode, which its end restores.
 #[derive(Debug)]
 struct BeforePresenting {
     window_mode: WindowMode,
@@ -72,12 +72,12 @@ fn present(
     }
 }
 
-/// Greatest turn of the slow camera to each side, in radians. Further round, the stairs would hide the snake.
+/// Maximum rotation of the slowly swaying camera to each side, in radians. Further round, the stairs would hide the snake.
 const SWAY_RAD: f32 = 0.4;
-/// Time in which the slow camera goes to both sides and back, in seconds.
+/// Period of the camera's sway to both sides and back, in seconds.
 const SWAY_S: f32 = 48.0;
 
-/// Lets the camera go slowly around the snake, from side to side, while it moves.
+/// Sways the camera slowly around the snake, from side to side, while the playback runs.
 fn sway(
     workspace: Res<Workspace>,
     playback: Res<Playback>,
@@ -96,12 +96,12 @@ fn sway(
     }
 }
 
-/// Turn of the slow camera at a time, in radians.
+/// Returns the rotation of the swaying camera at a time, in radians.
 fn sway_rad(time_s: f32) -> f32 {
     SWAY_RAD * libm::sinf(time_s / SWAY_S * std::f32::consts::TAU)
 }
 
-/// Position of the pointer at its last move, and the time since then.
+/// Position of the pointer at its last move, and the time since the move.
 #[derive(Debug, Default)]
 struct RestingPointer {
     at: Option<Vec2>,
@@ -109,7 +109,7 @@ struct RestingPointer {
 }
 
 impl RestingPointer {
-    /// Whether the pointer at `at` has rested long enough to be hidden. `passed` is the time since the last call.
+    /// Returns whether the pointer at `at` has rested long enough to be hidden. `passed` is the time since the last call.
     fn is_to_hide(&mut self, at: Option<Vec2>, passed: Duration) -> bool {
         self.rested = if self.at == at { self.rested + passed } else { Duration::ZERO };
         self.at = at;
@@ -154,7 +154,7 @@ mod tests {
         app.update();
     }
 
-    /// The window's mode, the camera's mode, and whether playback loops.
+    /// Returns the window's mode, the camera's mode, and whether playback loops.
     fn state(app: &mut App) -> (WindowMode, CameraMode, bool) {
         let mut windows = app.world_mut().query::<&Window>();
         let mode = windows.single(app.world()).expect("one window").mode;

@@ -1,4 +1,4 @@
-//! Ends the program once the pictures that the user asked for are saved.
+//! Ends the program when the pictures that the user requested are saved.
 
 use std::time::Duration;
 
@@ -6,20 +6,20 @@ use bevy::prelude::*;
 
 use crate::studio::pictures::screenshot::AwaitedPictures;
 
-/// Whether the user asked for the end of the program.
+/// Whether the user has requested the end of the program.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct QuitRequest(pub bool);
 
-/// Time after which a picture is given up that has not come for [`FRAMES`] either. A window that is not drawn, for
-/// example because it is minimised, gives none.
+/// Time after which the program ends without an unsaved picture, provided that more than [`FRAMES`] frames have passed.
+/// A window that is not drawn, for example because it is minimised, yields no picture.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Frames that a picture may take. Where the processor draws, each can take seconds.
+/// Minimum number of frames to wait for a picture. With software rendering, each can take seconds.
 const FRAMES: u32 = 10;
-/// Time after which a picture is given up, however few frames were drawn.
+/// Time after which the program ends without an unsaved picture, however few frames have passed.
 const LAST_PATIENCE: Duration = Duration::from_secs(30);
 
 pub(crate) fn plugin(app: &mut App) {
-    // Before the preferences are saved for the last time.
+    // The program ends before the preferences are stored for the last time.
     app.init_resource::<QuitRequest>().add_systems(PostUpdate, end);
 }
 
@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(app.should_exit(), Some(AppExit::Success));
     }
 
-    /// Number of frames of this length after which a program that waits for a picture ends.
+    /// Counts the frames of this length until a program that waits for a picture ends.
     fn frames_to_the_end(frame: Duration) -> usize {
         let mut app = App::new();
         app.init_resource::<Time<Real>>().add_message::<AppExit>().add_plugins(plugin);

@@ -1,4 +1,4 @@
-//! The window's title shows the state of the run and the stage, for taskbars, screen readers and scripts.
+//! The window's title: the state of the run and the stage, for taskbars, screen readers and scripts.
 
 use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
@@ -74,7 +74,7 @@ fn update(
     }
 }
 
-/// The copies of a what-if: " with a what-if copy, from 5.20 s on".
+/// Describes the copies of a what-if: " with a what-if copy, from 5.20 s on".
 fn copies_in_words(lanes: &Query<&Lane>) -> String {
     let copies = match lanes.iter().len() {
         ..=2 => "a what-if copy".to_owned(),

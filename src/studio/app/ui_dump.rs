@@ -1,5 +1,5 @@
 //! Writes all controls of the panels to a file for scripts and tests: role, label, rectangle and value, as a screen
-//! reader gets them.
+//! reader receives them.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use bevy_egui::{EguiContext, EguiOutput, EguiPostUpdateSet, PrimaryEguiContext};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::store_text;
 
-/// The output file, if any.
+/// File to which the controls are written; `None` to write nothing.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct UiDumpFile(pub Option<PathBuf>);
 
@@ -25,7 +25,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Writes one line per control, separated by tabs: role; left, top, right, bottom in logical pixels; label; value. The
-/// first line has the number of the frame as its value, so that a script can wait for the frames after its input.
+/// value in the first line is the number of the frame, so that a script can wait for the frames after its input.
 fn describe(
     mut places: ResMut<UiDumpFile>,
     mut contexts: Query<(&mut EguiContext, &EguiOutput), With<PrimaryEguiContext>>,
@@ -48,13 +48,13 @@ fn describe(
     }
 }
 
-/// One line for each node with a name or a value. `scale` is the number of logical pixels per point.
+/// Lists each node with a name or a value in a line. `scale` is the number of logical pixels per point.
 fn listed(nodes: &[(NodeId, Node)], scale: f64) -> String {
     let by_id: BTreeMap<NodeId, &Node> = nodes.iter().map(|(id, node)| (*id, node)).collect();
     let mut lines = Vec::new();
     for (_, node) in nodes {
         let (role, label, value) = (node.role(), label_of(node, &by_id), value_of(node));
-        // The parent label or field already contains this text.
+        // A text run is skipped, because its parent's label or value already contains the text.
         let is_named = !(label.is_empty() && value.is_empty()) && role != Role::TextRun;
         let Some(place) = node.bounds().filter(|_| is_named) else { continue };
         let ends = [place.x0, place.y0, place.x1, place.y1].map(|end| (end * scale).round() as i64);
@@ -62,20 +62,20 @@ fn listed(nodes: &[(NodeId, Node)], scale: f64) -> String {
         let line = format!("{role:?}\t{left}\t{top}\t{right}\t{bottom}\t{label}\t{value}\n");
         lines.push(([top, left], line));
     }
-    // The nodes are in reading order already.
+    // Sorts the lines by position, from top to bottom.
     lines.sort();
     lines.into_iter().map(|(_, line)| line).collect()
 }
 
-/// Its own label, or that of the node that labels it.
+/// Returns the node's own label, or that of the node that labels it.
 fn label_of(node: &Node, by_id: &BTreeMap<NodeId, &Node>) -> String {
     let beside = || node.labelled_by().iter().find_map(|id| by_id.get(id)?.value());
-    // The text of a label that names no other control is its value.
+    // The text of a label that does not label another control is its value.
     let label = node.label().or_else(beside).or(node.value());
     in_one_line(label.unwrap_or_default())
 }
 
-/// Its text or number, or whether it is on.
+/// Returns the node's number or text, or whether it is on.
 fn value_of(node: &Node) -> String {
     match (node.numeric_value(), node.toggled()) {
         (Some(number), _) => number.to_string(),

@@ -22,7 +22,7 @@ use crate::studio::state::what_if::{another_beside, kept};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::plain_name;
 
-/// State of the stage.
+/// System parameters that make up the state of the stage.
 #[derive(SystemParam)]
 pub(crate) struct StageParams<'w, 's> {
     lanes: Query<'w, 's, &'static Lane>,
@@ -34,11 +34,11 @@ pub(crate) struct StageParams<'w, 's> {
     turns: ResMut<'w, Turns>,
 }
 
-/// Shown when the user leaves a what-if without discarding the change.
+/// Message for a user who leaves a what-if without discarding the change.
 const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel.";
 
 impl StageParams<'_, '_> {
-    /// A name for a file with the champions on the stage, without its ending.
+    /// Suggests a file name for the champions on the stage, without an extension.
     pub fn name_for_file(&self) -> String {
         match self.champions_to_share().as_slice() {
             [only] => plain_name(only.label()),
@@ -46,7 +46,7 @@ impl StageParams<'_, '_> {
         }
     }
 
-    /// The champions on the stage that a file gets: all, but of a whole generation its best.
+    /// Returns the champions on the stage that are written to a file: all of them, or only the best of a whole generation.
     pub fn champions_to_share(&self) -> Vec<StagedChampion> {
         let mut champions = self.champions();
         if matches!(*self.mode, StageMode::Generation { .. }) {
@@ -55,15 +55,15 @@ impl StageParams<'_, '_> {
         champions
     }
 
-    /// The champions on the stage, by lane.
+    /// Returns the champions on the stage, in the order of their lanes.
     fn champions(&self) -> Vec<StagedChampion> {
         let mut lanes: Vec<&Lane> = self.lanes.iter().collect();
         lanes.sort_by_key(|lane| lane.number());
         lanes.into_iter().map(|lane| lane.staged().clone()).collect()
     }
 
-    /// The champions on the stage; in a race, the one of the selected lane first, because a change of the world applies
-    /// to the first.
+    /// Returns the champions on the stage. In a race, the champion of the selected lane is first, because a change of
+    /// the world applies to the first.
     pub fn champions_to_change(&self) -> Vec<StagedChampion> {
         let mut champions = self.champions();
         if *self.mode == StageMode::Race && self.selection.lane < champions.len() {
@@ -72,7 +72,7 @@ impl StageParams<'_, '_> {
         champions
     }
 
-    /// The champion of the selected lane, or else of the first one.
+    /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
     pub fn selected(&self) -> Option<StagedChampion> {
         let lanes = || self.lanes.iter();
         let selected = lanes().find(|lane| lane.number() == self.selection.lane);
@@ -80,13 +80,13 @@ impl StageParams<'_, '_> {
         lane.map(|lane| lane.staged().clone())
     }
 
-    /// The champions on the stage and their mode.
+    /// Returns a request that would show the present champions again in the present mode.
     pub fn on_show(&self) -> Show {
         Show { champions: self.champions(), mode: self.mode.clone() }
     }
 
-    /// Shows other champions from their start, which stay until the user chooses again. A pause command later in the
-    /// same frame applies to them.
+    /// Shows other champions from their start until the user chooses again. A pause command later in the same frame
+    /// applies to them.
     pub fn present(&mut self, show: Option<Show>) {
         if show.is_some() {
             self.following.stop();
@@ -94,7 +94,7 @@ impl StageParams<'_, '_> {
         self.present_for_now(show);
     }
 
-    /// Shows other champions from their start, until evolution has something better to show.
+    /// Shows other champions from their start, until evolution finds a better champion.
     pub fn present_for_now(&mut self, show: Option<Show>) {
         if let Some(show) = show {
             self.playback.begin();
@@ -102,7 +102,7 @@ impl StageParams<'_, '_> {
         }
     }
 
-    /// Shows other champions. Reminds the user of the change if that leaves a what-if.
+    /// Shows other champions. If this ends a what-if, reminds the user of the change.
     pub fn present_others(&mut self, show: Option<Show>, notices: &mut Notices) {
         if show.is_some() && matches!(*self.mode, StageMode::WhatIf { .. }) {
             notices.info(CHANGE_STAYS.to_owned());
@@ -110,7 +110,7 @@ impl StageParams<'_, '_> {
         self.present(show);
     }
 
-    /// The current show with the champion of the selected lane replaced.
+    /// Returns a request for the present champions, with that of the selected lane replaced.
     fn in_place(&self, replace: impl Fn(&StagedChampion) -> StagedChampion) -> Show {
         let mut champions = self.champions();
         if let Some(focused) = champions.get_mut(self.selection.lane) {
@@ -119,20 +119,20 @@ impl StageParams<'_, '_> {
         Show { champions, mode: self.mode.clone() }
     }
 
-    /// Keeps the change of a what-if when a run starts, because that run uses it.
+    /// Keeps the change of a what-if when a run starts, because the run uses it.
     pub fn settle(&mut self) {
         let kept = kept(&self.champions(), &self.mode);
         self.present_for_now(kept);
     }
 
-    /// The change of a what-if that is on the stage, in words.
+    /// Describes the change of the what-if on the stage; returns `None` if there is none.
     pub fn tried_change(&self) -> Option<String> {
         let kept = kept(&self.champions(), &self.mode)?;
         let changed = kept.champions.iter().find(|staged| staged.is_changed());
         changed.map(|staged| staged.label().to_owned())
     }
 
-    /// Executes a command to the lanes.
+    /// Executes a command to the lanes of the stage.
     pub fn apply(
         &mut self,
         command: &StageCommand,
@@ -141,12 +141,12 @@ impl StageParams<'_, '_> {
         notices: &mut Notices,
     ) -> Result<(), String> {
         let show = match command {
-            // The individual may have been replaced since the click; then do nothing.
+            // The individual may have been replaced since the click. Then nothing happens.
             StageCommand::Show(pick) => champion_of(pick, run, opening).map(Show::solo),
             StageCommand::Join(pick) => {
                 let mut on_show = self.champions();
                 if matches!(*self.mode, StageMode::WhatIf { .. } | StageMode::Generation { .. }) {
-                    // The lanes of a what-if show one champion, and a generation has no room beside it.
+                    // The lanes of a what-if show a single champion, and there is no space beside a generation.
                     on_show.truncate(1);
                 }
                 let staged = champion_of(pick, run, opening);
@@ -208,7 +208,7 @@ impl StageParams<'_, '_> {
                 None
             }
             StageCommand::TryAnother => {
-                // The clock runs on: nothing on the stage changes.
+                // The clock continues, because nothing on the stage changes.
                 self.show.write(another_beside(run, self.champions(), &self.mode)?);
                 None
             }
@@ -229,7 +229,7 @@ impl StageParams<'_, '_> {
         Ok(())
     }
 
-    /// Executes a command to the clock.
+    /// Executes a command to the clock of the stage.
     pub fn apply_to_player(&mut self, command: &PlayerCommand) {
         let focused = self.lanes.iter().find(|lane| lane.number() == self.selection.lane);
         let step_s = focused.map_or(1.0, Lane::step_s);

@@ -19,7 +19,7 @@ use crate::studio::ui::theme::Theme;
 use snakes_core::save::library::SavePlace;
 use snakes_core::save::shipped_champion;
 
-/// An app that executes commands, with an empty stage.
+/// Creates an app that executes commands, with an empty stage.
 fn app() -> App {
     let loaded = shipped_champion().expect("well formed");
     let mut app = App::new();
@@ -54,7 +54,7 @@ fn app() -> App {
     app
 }
 
-/// Sets the friction of the next run.
+/// Creates a command that sets the friction of the next run.
 fn set(friction: &str) -> Command {
     let (field, text) = ("trial.surface.friction".to_owned(), friction.to_owned());
     Command::Plan(PlanCommand::SetField { field, text })
@@ -73,7 +73,7 @@ fn friction_after(app: &mut App, commands: &[Command]) -> f32 {
 fn settings_are_undone_and_redone_drag_by_drag() {
     let mut app = app();
     let first = friction_after(&mut app, &[]);
-    // A drag that pauses twice.
+    // A drag of a slider with a pause.
     assert_eq!(friction_after(&mut app, &[set("0.5"), set("0.4"), set("0.3")]), 0.3);
     app.world_mut().resource_mut::<UndoHistory>().settle();
     assert_eq!(friction_after(&mut app, &[set("0.2")]), 0.2);
@@ -202,7 +202,7 @@ fn a_save_is_shown_and_a_missing_one_is_reported() {
     assert_eq!(app.world().resource::<Notices>().len(), 1, "the other is not there");
 }
 
-/// Puts champions on the stage, side by side, and returns the last show that a command asks for.
+/// Puts champions on the stage, side by side, and executes a command. Returns the last request that it sends to the stage.
 fn show_after(app: &mut App, show: Show, command: Command) -> Option<Show> {
     let old: Vec<Entity> =
         app.world_mut().query_filtered::<Entity, With<Lane>>().iter(app.world()).collect();

@@ -1,7 +1,7 @@
-//! Changes of the next run's plan and their effect on the stage.
+//! Changes of the next run's plan, and their effect on the stage.
 //!
-//! A change of the world is tried from a moment on. The first change takes the moment that the clock shows; the changes
-//! after it take the same, so that their effects can be compared, until the user goes to another moment.
+//! A change of the world is tried from a certain time on. The first change uses the time of the clock. Later changes
+//! use the same time until the user goes to another one, so that their effects can be compared.
 
 use super::StageParams;
 use crate::studio::commands::PlanCommand;
@@ -16,16 +16,16 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::score::Rollout;
 use snakes_lab::run::caught;
 
-/// The moment from which a change is tried.
+/// State of the original from which a change is tried.
 struct TriedMoment {
-    /// Time of the moment, in simulated seconds.
+    /// Time of the change, in simulated seconds.
     time_s: f64,
-    /// The rollout of the original at that moment; `None` at its start.
+    /// Rollout of the original at that time; `None` at the start.
     rollout: Option<Rollout>,
 }
 
 impl StageParams<'_, '_> {
-    /// Executes a command to the plan of the next run, and shows its effect.
+    /// Executes a command to the plan of the next run, and shows its effect on the stage.
     pub fn apply_to_plan(
         &mut self,
         command: &PlanCommand,
@@ -45,7 +45,7 @@ impl StageParams<'_, '_> {
         let show = apply_to_plan(command, run, saves, stage, notices)?;
         match (command, moment) {
             (_, Some(moment)) => self.present_change(show, &moment),
-            // The lanes that stay go on.
+            // The lanes that are kept continue.
             (PlanCommand::DropChange, _) => {
                 self.following.stop();
                 self.show.write_batch(show);
@@ -80,14 +80,14 @@ impl StageParams<'_, '_> {
         Ok(())
     }
 
-    /// The moment from which a change is tried now.
+    /// Returns the time and state from which a change is tried now.
     fn moment(&self, history: &UndoHistory) -> TriedMoment {
         let at_start = TriedMoment { time_s: 0.0, rollout: None };
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
         let Some(lane) = self.lanes.iter().find(|lane| lane.number() == original) else {
             return at_start;
         };
-        // A drag that passes the original value ends the what-if and begins it again.
+        // A drag of a slider across the original value ends the what-if and begins it again.
         let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || history.is_open();
         let tried_s = self.playback.tried_from_s().filter(|_| goes_on);
         let time_s = tried_s.unwrap_or(self.playback.time_s());
@@ -96,19 +96,19 @@ impl StageParams<'_, '_> {
         if step == 0 || is_over {
             return at_start;
         }
-        // A genome whose simulation panics is tried from the start, where the stage reports that.
+        // A genome whose simulation panics is tried from the start; the stage then reports the panic.
         let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
         TriedMoment { time_s: f64::from(step) * lane.step_s(), rollout: Some(rollout) }
     }
 
-    /// Shows the effect of a change from its moment on.
+    /// Shows the effect of a change from the time of the change on.
     fn present_change(&mut self, show: Option<Show>, moment: &TriedMoment) {
         let Some(show) = show else { return };
         let current = match show.mode {
             StageMode::WhatIf { current, .. } => show.champions.get(current),
-            // The original stays alone.
+            // Only the original remains on the stage.
             _ if matches!(*self.mode, StageMode::WhatIf { .. }) => show.champions.first(),
-            // A kept copy gets another world.
+            // A copy that was kept gets another world.
             _ => return self.present(Some(show)),
         };
         self.following.stop();
