@@ -15,10 +15,10 @@ pub enum StudioError {
         "no picture can be drawn ({0}); drawing needs a graphics driver; a software driver is enough"
     )]
     NoPicture(String),
-    /// A champion cannot be built.
+    /// A champion cannot be simulated: its body or world is unfit.
     #[error("{0}")]
     Unfit(String),
-    /// The champion to open with could not be read.
+    /// The champion with which to open the studio could not be read.
     #[error(transparent)]
     Champion(#[from] SaveError),
     /// The program panicked while the window was open.
@@ -27,9 +27,9 @@ pub enum StudioError {
         None => "no run was in progress".to_owned(),
     })]
     Crashed {
-        /// The panic's message.
+        /// Message of the panic.
         message: String,
-        /// Folder of the current run, if any.
+        /// Folder of the current run, if it is saved.
         run: Option<PathBuf>,
     },
     /// The window closed with an error.

@@ -95,7 +95,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(UiDumpFile(options.places.clone()))
         .insert_resource(Workspace::new(tour_is_over, options.presents))
         .insert_resource(OpeningChampions(saved))
-        // Champions that the studio was opened with stay on the stage.
+        // If the studio was opened with champions, they stay on the stage; otherwise it follows the run.
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))

@@ -1,11 +1,11 @@
-//! The order of the systems within a frame, and the rate at which results are taken in.
+//! The order of the systems within a frame, and the rate at which results of evolution are processed.
 
 use bevy::prelude::*;
 
 /// Sets of systems in a frame, in this order.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum FrameSet {
-    /// Read keys and dropped files, and take in what was read from the saves folder.
+    /// Read keys and dropped files, and process what was read from the saves folder.
     TakeIn,
     /// Apply the commands of keys and of the last frame's panels.
     Apply,
@@ -15,6 +15,5 @@ pub(crate) enum FrameSet {
     Draw,
 }
 
-/// Rate of `FixedUpdate`, in hertz. Results of evolution are taken in there, so that neither the frame rate nor a slow
-/// panel decides when.
+/// Rate of `FixedUpdate`, in hertz. Results of evolution are processed at this rate, independently of the frame rate.
 pub(crate) const RESULTS_HZ: f64 = 20.0;
