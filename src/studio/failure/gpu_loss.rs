@@ -24,7 +24,7 @@ use crate::studio::ui::notifications::Notices;
 pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
 
 impl Failure {
-    /// Returns the reason why drawing ended, or `None` while it works.
+    /// Returns the reason why drawing ended, or `None` while drawing works.
     pub fn message(&self) -> Option<String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -51,7 +51,7 @@ impl SurfaceMaterials {
     }
 }
 
-/// Applies the colours of the theme.
+/// Applies the theme's colours to the materials of surfaces.
 fn dress(
     theme: Res<Theme>,
     surfaces: Res<SurfaceMaterials>,

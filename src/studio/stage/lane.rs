@@ -137,7 +137,7 @@ impl Lane {
         self.staged.trial()
     }
 
-    /// Returns length of a physics step, in seconds.
+    /// Returns the length of a physics step, in seconds.
     pub fn step_s(&self) -> f64 {
         self.step_s
     }

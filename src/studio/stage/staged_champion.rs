@@ -289,7 +289,7 @@ impl StagedChampion {
         }
     }
 
-    /// Returns origin of the champion.
+    /// Returns the origin of the champion.
     pub fn source(&self) -> ChampionSource {
         self.source
     }

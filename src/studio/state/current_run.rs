@@ -164,7 +164,7 @@ impl CurrentRun {
         &self.source.folder
     }
 
-    /// Returns seed of the current run.
+    /// Returns the seed of the current run.
     pub fn seed(&self) -> u64 {
         self.source.plan.seed
     }
@@ -174,7 +174,7 @@ impl CurrentRun {
         &self.plan_now.settings
     }
 
-    /// Returns stopped runs that can be resumed; `None` until the runs are listed.
+    /// Returns the stopped runs that can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
         let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
         Some(self.others.runs()?.iter().filter(is_other))

@@ -158,7 +158,7 @@ impl Notices {
         text.into_iter().for_each(|text| self.problem(text));
     }
 
-    /// Returns number of displayed messages.
+    /// Returns the number of displayed messages.
     #[cfg(test)]
     pub fn len(&self) -> usize {
         self.list.len()

@@ -47,12 +47,12 @@ impl StageArea {
         self.context = context.clone();
     }
 
-    /// Returns rectangle of the stage, in egui points.
+    /// Returns the rectangle of the stage, in egui points.
     pub fn rect(&self) -> egui::Rect {
         self.rect
     }
 
-    /// Returns rectangle of the stage in the window, in logical pixels.
+    /// Returns the rectangle of the stage in the window, in logical pixels.
     pub fn in_window(&self) -> Rect {
         let (min, max, scale) = (self.rect.min, self.rect.max, self.context.zoom_factor());
         Rect::new(min.x * scale, min.y * scale, max.x * scale, max.y * scale)

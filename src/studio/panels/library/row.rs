@@ -85,7 +85,7 @@ fn text_rect(rect: Rect) -> Rect {
     rect.with_min_x(left).with_max_x(rect.right() - theme::GAP).shrink2(egui::vec2(0.0, 4.0))
 }
 
-/// Returns rectangle of a column within a row.
+/// Returns the rectangle of a column within a row.
 pub fn column(row: Rect, key: SortKey) -> Rect {
     let text = text_rect(row);
     let place = SortKey::ALL.iter().position(|of| *of == key).unwrap_or(0);

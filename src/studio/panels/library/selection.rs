@@ -21,7 +21,7 @@ impl ChosenSaves {
         self.chosen.contains(place)
     }
 
-    /// Returns selected saves.
+    /// Returns the selected saves.
     pub fn places(&self) -> impl ExactSizeIterator<Item = &SavePlace> {
         self.chosen.iter()
     }

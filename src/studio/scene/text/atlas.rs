@@ -63,17 +63,17 @@ impl Atlas {
         (atlas, all.into_image(SIZES, TextureFormat::Rgba8UnormSrgb, sampler, pixel))
     }
 
-    /// Returns advance width of a character, in pixels.
+    /// Returns the advance width of a character, in pixels.
     pub fn advance(&self, letter: char) -> f32 {
         self.advances[index_of(letter)]
     }
 
-    /// Returns height of a digit, in pixels.
+    /// Returns the height of a digit, in pixels.
     pub fn digit_height(&self) -> f32 {
         self.digit_height
     }
 
-    /// Returns rectangle of a character's cell, in texture coordinates.
+    /// Returns the rectangle of a character's cell, in texture coordinates.
     pub fn cell(&self, letter: char) -> Rect {
         cell(index_of(letter))
     }

@@ -91,7 +91,7 @@ impl CurrentRun {
         }
     }
 
-    /// Returns number of evaluation threads.
+    /// Returns the number of evaluation threads.
     pub fn threads(&self) -> usize {
         self.context.evaluator.workers()
     }
@@ -133,12 +133,12 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Returns name of the current run's founder, if any.
+    /// Returns the name of the current run's founder, if any.
     pub fn founder(&self) -> Option<&str> {
         self.source.plan.founder.as_ref().map(|founder| founder.name())
     }
 
-    /// Returns name of the next run's founder, if any.
+    /// Returns the name of the next run's founder, if any.
     pub fn next_founder(&self) -> Option<&str> {
         self.plan_next.founder.as_ref().map(|founder| founder.name())
     }

@@ -9,7 +9,7 @@ use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_eng
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
-    /// Returns seed of the next run.
+    /// Returns the seed of the next run.
     pub fn next_seed(&self) -> u64 {
         self.plan_next.seed
     }

@@ -264,7 +264,7 @@ impl Palette {
         Color32::from_rgba_premultiplied(r, g, b, linear_u8_from_linear_f32(1.0 - left))
     }
 
-    /// Returns colour of a chart series by its role.
+    /// Returns the colour of a chart series by its role.
     pub fn role(&self, role: Role) -> Color32 {
         match role {
             Role::First => self.accent,
