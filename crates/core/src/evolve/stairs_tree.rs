@@ -186,7 +186,7 @@ impl StairsCount {
     }
 }
 
-/// Greatest score that a file may have. A share of the way is at most 1.1.
+/// Greatest score that a file may have. Scores that the program writes are at most 1.1.
 const MOST_SCORE: f32 = 10.0;
 
 /// Checks a share of the way that was read from a file.

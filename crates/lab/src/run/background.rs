@@ -24,7 +24,7 @@ pub enum RunEvent {
     Opened(Box<OpenedRun>),
     /// A setting was changed. The change takes effect with the generation that begins next.
     SettingChanged {
-        /// The change.
+        /// Change of a setting that the run makes with its next generation.
         change: SettingChange,
         /// The plan that includes this change and all earlier ones.
         plan_now: Box<RunPlan>,

@@ -70,6 +70,12 @@ impl Study {
             demand.arms.iter().try_for_each(|name| self.named("demands.arms", name).map(drop))?;
             demand.against.iter().try_for_each(|of| self.named("demands.against", of).map(drop))?;
             demand.measure.check(self)?;
+            let is_yes_or_no =
+                matches!(demand.measure, Measure::Apart { .. } | Measure::Overlap { .. });
+            if demand.at_most && is_yes_or_no {
+                let allowed = "false, because the measure is 1 for yes and 0 for no";
+                return Err(Invalid::new("demands.at_most", true, allowed));
+            }
         }
         Ok(())
     }

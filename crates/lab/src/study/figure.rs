@@ -131,7 +131,9 @@ fn generation_charts(results: &Results<'_>) -> Vec<Chart> {
         let all = || series.iter().flat_map(|series| series.shape.points());
         let (last, y) = (all().map(|[x, _]| *x).fold(1.0, f64::max), range(all().map(|[_, y]| *y)));
         let x = Axis::count("Generation", 0.7..=last + 0.3);
-        Chart::new(x, Axis::new(&info.title, "m", y), series)
+        // Published means are a fitness in metres, which other fitnesses need not be.
+        let unit = if study.references.contains_key(&info.name) { "m" } else { info.unit };
+        Chart::new(x, Axis::new(&info.title, unit, y), series)
     };
     values().iter().filter(is_shown).map(chart).collect()
 }

@@ -122,6 +122,11 @@ fn what_a_definition_must_not_say_is_refused_with_the_allowed_values() {
         ),
         ("seeds: 2", "seeds: 0", "seeds is 0; allowed: 1 to 10000"),
         (
+            "Difference(of: \"fitness\")",
+            "Overlap(of: \"fitness\"), at_most: true",
+            "demands.at_most is true; allowed: false",
+        ),
+        (
             "\"generation_means\"]",
             "\"exam_shove\"]",
             "show is \"exam_shove\"; allowed: other values, or suites with \"shove\"",
@@ -288,6 +293,22 @@ fn of_evaluations_and_probabilities_less_is_better_and_a_higher_baseline_has_no_
     assert_eq!((found.measured.expect("measured").value, found.meets_must), (1.0, Some(false)));
     let higher = runs(&[("a", &[("fitness", high)]), ("b", &[("fitness", low)])]);
     assert_eq!(met("measure: SignTest(of: \"fitness\"), must: 0.01", &higher), Some(true));
+}
+
+#[test]
+fn an_upper_bound_is_printed_as_one_for_every_measure() {
+    for (measure, bound) in [
+        ("Median(of: \"fitness\")", "≤ 2"),
+        ("Difference(of: \"fitness\")", "≤ +2"),
+        ("Ratio(of: \"fitness\")", "≤ 2 times"),
+        ("TotalRatio(of: \"steps_climbed\")", "≤ 2 times"),
+    ] {
+        let demand = format!("(measure: {measure}, at_most: true, must: 2)");
+        let study = defined(&format!(
+            "(name: \"t\", title: \"T\", arms: [(name: \"a\")], demands: [{demand}])"
+        ));
+        assert_eq!(study.demands[0].bound(study.demands[0].must), bound, "{measure}");
+    }
 }
 
 #[test]

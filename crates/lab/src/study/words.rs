@@ -53,8 +53,8 @@ impl Demand {
             Measure::Share { .. } | Measure::Newborns | Measure::BuiltInChampions { .. } => {
                 format!("{sign} {} %", number(bound * 100.0, 1))
             }
-            Measure::Difference { .. } => format!("≥ {bound:+}"),
-            Measure::Ratio { .. } | Measure::TotalRatio { .. } => format!("≥ {bound} times"),
+            Measure::Difference { .. } => format!("{sign} {bound:+}"),
+            Measure::Ratio { .. } | Measure::TotalRatio { .. } => format!("{sign} {bound} times"),
             Measure::Apart { .. } | Measure::Overlap { .. } => "yes".to_owned(),
             Measure::Median { of, .. } => {
                 let unit = info_of(of).map_or("", |info| info.unit);

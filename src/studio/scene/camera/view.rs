@@ -372,7 +372,7 @@ mod tests {
                 .map(|at| view.share_of_picture(target + view.offset, *at, aspect))
                 .collect()
         };
-        // The cover extends from the snake's head to the lower right corner.
+        // The rectangle that hides the snake extends from its head to the lower right corner.
         let head = places(&view)[4];
         let over_it = Rect::new(head.x - 0.1, head.y - 0.1, 1.0, 1.0);
         let aside = view.beside(target, &snake, aspect, &[over_it]);

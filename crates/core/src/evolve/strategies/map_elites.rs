@@ -45,7 +45,7 @@ impl MapElites {
         if wanted < 4.0 { 0 } else { wanted as usize }
     }
 
-    /// Returns the cell of an agent. None if the agent was disqualified, or not observed.
+    /// Returns the cell of the archive to which an evaluation belongs. None if the agent was disqualified, or not observed.
     fn cell(&self, evaluation: &Evaluation) -> Option<u32> {
         if evaluation.disqualified.is_some() {
             return None;

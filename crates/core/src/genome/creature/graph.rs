@@ -83,7 +83,7 @@ impl Graph {
         self.nodes.iter().map(|node| node.body.clone()).collect()
     }
 
-    /// Replaces the plans of the parts of all nodes.
+    /// Replaces the plans of the parts of all nodes of the graph.
     pub fn take_bodies(&mut self, bodies: Vec<BodyNode>) {
         self.nodes.iter_mut().zip(bodies).for_each(|(node, body)| node.body = body);
     }

@@ -24,7 +24,7 @@ pub struct NeatPopulation {
     pub(super) rules: NeatRules,
     pub(super) innovations: Innovations,
     pub(super) next_species: u32,
-    /// Threshold of the distance between members of a species. It differs from that of the rules if it is adjusted.
+    /// Threshold of the distance between members of a species. Differs from the initial threshold of the rules if it is adjusted.
     pub(super) threshold: f64,
     pub(super) progress: FitnessProgress,
     /// Species of this generation, in ascending order of id. Each has members.

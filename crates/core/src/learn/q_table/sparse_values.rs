@@ -18,7 +18,7 @@ pub const MOST_PAIRS: usize = 1 << 20;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SparseValues {
-    /// Number of states of the whole table.
+    /// Number of states of the table, visited or not.
     pub states: usize,
     /// Number of actions in each state.
     pub actions: usize,

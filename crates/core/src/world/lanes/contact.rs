@@ -62,7 +62,7 @@ pub(crate) struct Contact {
     count: usize,
     /// Friction on the part in the last substep, in N·s, in the world.
     pub friction_ns: Vector,
-    /// Torque of the friction on the part about the normal in the last substep, in N·m·s.
+    /// Angular impulse of the friction on the part about the normal in the last substep, in N·m·s.
     pub twist_nms: f32,
 }
 
