@@ -16,6 +16,7 @@ use super::SaveError;
 use super::files::{
     LARGEST_FILE_MIB, UTF_16, is_utf_16, read_bytes, refuse_link, single_line, without_mark,
 };
+use super::replaced::refuse_protected;
 
 /// A log that is open for writing.
 #[derive(Debug)]
@@ -38,6 +39,7 @@ impl Log {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false).open(path);
         let file = file.map_err(unwritable)?;
+        file.metadata().and_then(|about| refuse_protected(&about)).map_err(unwritable)?;
         let end = if kept == 0 {
             0
         } else {
@@ -215,6 +217,18 @@ mod tests {
         fs::write(&path, text.replace('\n', " \n")).expect("written");
         let error = read_log::<TestLine>(&path).expect_err("damaged").to_string();
         assert!(error.ends_with("the line does not match its checksum"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn f6_a_write_protected_log_is_refused_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(&folder);
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o444);
+        fs::set_permissions(&path, mode).expect("changed");
+        let error = Log::open(&path, 1).expect_err("refused").to_string();
+        assert!(error.contains("log.jsonl: cannot be written: "), "{error}");
+        assert_eq!(read_log::<TestLine>(&path).expect("read"), entries());
     }
 
     #[test]

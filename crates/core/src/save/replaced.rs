@@ -52,10 +52,10 @@ impl Replaced {
 
     fn at(path: &Path) -> Result<Self> {
         let about = match fs::metadata(path) {
-            Ok(about) if about.permissions().readonly() => {
-                return Err(Error::other("it is write-protected"));
+            Ok(about) => {
+                refuse_protected(&about)?;
+                Some(about)
             }
-            Ok(about) => Some(about),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
@@ -90,6 +90,14 @@ impl Replaced {
         let _ = (&self.about, new);
         Ok(())
     }
+}
+
+/// Refuses what is marked as write-protected, which administrators could write all the same.
+pub fn refuse_protected(about: &Metadata) -> Result<()> {
+    if about.permissions().readonly() {
+        return Err(Error::other("it is write-protected"));
+    }
+    Ok(())
 }
 
 /// Returns the folder that contains a file.
