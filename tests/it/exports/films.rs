@@ -321,6 +321,31 @@ fn f12_the_next_export_removes_what_a_kill_left() {
     assert_eq!(names_in(folder.path()), ["climber.urdf"]);
 }
 
+#[test]
+fn f12_the_interrupt_key_ends_the_drawing_of_figures() {
+    use std::os::unix::process::ExitStatusExt;
+    if lacks("figures", false) {
+        return;
+    }
+    let folder = folder();
+    let order = "run --population 4 --generations 300 --duration 0.1 --threads 1 --saves saves";
+    stdout_of(folder.path(), order);
+    let mut runs = fs::read_dir(folder.path().join("saves")).expect("a folder");
+    let path = runs.next().expect("a run").expect("a run").path();
+    let order = format!("export {} --figures", path.display());
+    let mut process = snakes(folder.path(), &order)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // The renderer, which could catch the signal, has begun by then, and most pictures are still to be drawn.
+    std::thread::sleep(Duration::from_secs(5));
+    assert!(process.try_wait().expect("a process").is_none(), "it has ended too early");
+    let id = process.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+    assert_eq!(ended(process).status.signal(), Some(2));
+}
+
 /// Waits at most a minute for the end of a process, and returns its output.
 fn ended(mut process: Child) -> Output {
     let begin = Instant::now();
