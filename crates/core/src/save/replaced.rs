@@ -140,12 +140,10 @@ pub fn create_copy(path: &Path, original: &Path) -> Result<File> {
 /// Returns the mode of a file or folder. None on systems without modes.
 fn mode_of(about: &Metadata) -> Option<u32> {
     #[cfg(unix)]
-    return Some(std::os::unix::fs::MetadataExt::mode(about) & 0o777);
+    let mode = Some(std::os::unix::fs::MetadataExt::mode(about) & 0o777);
     #[cfg(not(unix))]
-    {
-        let _ = about;
-        None
-    }
+    let (mode, _) = (None, about);
+    mode
 }
 
 #[cfg(all(test, unix))]
