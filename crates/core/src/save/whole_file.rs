@@ -172,7 +172,8 @@ pub fn remove_unfinished(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let (name, kind) = (entry.file_name(), entry.file_type());
         let random = name.to_str().and_then(|name| name.strip_prefix(UNFINISHED)).unwrap_or("");
-        let is_own = random.len() == RANDOM_CHARS && random.chars().all(char::is_alphanumeric);
+        let is_own =
+            random.len() == RANDOM_CHARS && random.bytes().all(|byte| byte.is_ascii_alphanumeric());
         let Ok(kind) = kind else { continue };
         if !is_own || !(kind.is_file() || kind.is_dir()) {
             continue;
