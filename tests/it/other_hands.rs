@@ -102,7 +102,7 @@ fn f12_every_request_to_end_stops_a_run_after_its_generation_but_nohup_ignores_h
         assert!(next().contains("\"generation\":1"));
         let id = child.id().to_string();
         for (number, signal) in signals.iter().enumerate() {
-            let sent = Command::new("kill").args([signal, &id]).status();
+            let sent = Command::new("kill").args([*signal, &id]).status();
             assert!(sent.expect("kill").success(), "{signal}");
             if number + 1 < signals.len() {
                 // The run goes on.
