@@ -7,7 +7,9 @@ use super::error::CliError;
 use super::output::print;
 use crate::studio::figures;
 use snakes_core::evolve::Champion;
-use snakes_core::save::{LoadedChampion, Picture, SavesFolder, load_run, store_picture};
+use snakes_core::save::{
+    LoadedChampion, Picture, SavesFolder, load_run, store_picture, within_run,
+};
 use snakes_lab::plot;
 use snakes_lab::run::progress_bar::bar_of;
 
@@ -19,13 +21,13 @@ const SIZE: (u32, u32) = (1280, 720);
 pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
     let (numbers, champions): (Vec<u32>, Vec<LoadedChampion>) = load_run(run)?.into_iter().unzip();
     let folder = match named {
-        Some(named) => SavesFolder::find(Some(named)),
-        None => SavesFolder::within_run(run, "figures")?,
+        Some(named) => named.to_owned(),
+        None => within_run(run, "figures")?,
     };
-    folder.prepare()?;
+    SavesFolder::find(Some(&folder)).prepare()?;
     let mut said = String::from("saved to\n");
     let mut keep = |name: String, picture: &Picture| -> Result<(), CliError> {
-        let path = folder.path().join(name);
+        let path = if named.is_some() { folder.join(name) } else { within_run(&folder, &name)? };
         store_picture(&path, picture)?;
         said += &format!("  {}\n", path.display());
         Ok(())

@@ -1,6 +1,8 @@
-//! Standard output, and the interrupt key.
+//! Standard output, and requests to end the program.
 
 use std::io::{self, Write};
+#[cfg(unix)]
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::{Value, json};
@@ -32,21 +34,50 @@ pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Re
     print(&things.iter().map(line).collect::<String>())
 }
 
-/// Control that the interrupt key cancels; `None` before the first.
-static CANCELLED_BY_KEY: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
+/// Control that a request to end the program cancels; `None` before the first.
+static CANCELLED_AT_END: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
 
-/// Returns a control that the interrupt key cancels. It replaces any earlier control.
+/// Returns a control that a request to end the program cancels: the interrupt key, or a signal of the system. It replaces any earlier
+/// control.
 pub fn cancel_on_interrupt() -> Arc<RunControl> {
-    let current = || CANCELLED_BY_KEY.lock().unwrap_or_else(PoisonError::into_inner);
+    let current = || CANCELLED_AT_END.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
     let is_first = current().replace(Arc::clone(&control)).is_none();
     if is_first {
-        // If the handler cannot be set, the key ends the program at once, and files written so far are complete.
-        let _ = ctrlc::set_handler(move || {
+        // If the handler cannot be set, such a request ends the program at once, and files written so far are complete.
+        let _ = at_requests_to_end(move || {
             if let Some(control) = current().as_ref() {
                 control.cancel();
             }
         });
     }
     control
+}
+
+/// Calls `act` at each request to end the program: the interrupt key, SIGTERM and, when the terminal is closed, SIGHUP.
+#[cfg(unix)]
+fn at_requests_to_end(mut act: impl FnMut() + Send + 'static) -> io::Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let mut requests = vec![SIGINT, SIGTERM];
+    if !is_ignored(SIGHUP) {
+        requests.push(SIGHUP);
+    }
+    let mut signals = signal_hook::iterator::Signals::new(requests)?;
+    snakes_lab::run::BackgroundTask::start(move || signals.forever().for_each(|_| act())).map(drop)
+}
+
+/// Returns whether the program ignores a signal, as `nohup` makes it ignore SIGHUP. Where the system does not tell, it may.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = snakes_core::save::load_text(Path::new("/proc/self/status")).unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
+    ignored.is_none_or(|bits| bits >> (signal - 1) & 1 == 1)
+}
+
+/// Calls `act` at each request to end the program: Ctrl-C and Ctrl-Break. When the console is closed, Windows ends the program soon after
+/// the request.
+#[cfg(windows)]
+fn at_requests_to_end(act: impl FnMut() + Send + 'static) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(act)
 }

@@ -4,23 +4,38 @@ use std::path::Path;
 
 use super::error::CliError;
 use super::output::print;
-use snakes_core::save::{RunSummary, SavesFolder};
+use snakes_core::save::{RunSummary, SaveError, SavesFolder, is_run};
 use snakes_lab::run::RunSource;
 
-/// Returns the run in `folder`, or the only run in a folder within it. Several runs are listed, one per line, and cause an error.
+/// Returns the run in `folder`, or the only run in a folder within it. Several runs are listed, one per line, and cause an error; damaged
+/// runs count, too.
 pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
-    let is_run = folder.join("run.ron").symlink_metadata().is_ok();
-    let runs = if is_run { Vec::new() } else { SavesFolder::find(Some(folder)).runs() };
-    match &runs[..] {
-        // If there is no run, the error of this call names what is missing.
-        [] => Ok(RunSource::in_folder(folder)?),
-        [run] => Ok(RunSource::in_folder(&run.folder)?),
-        several => {
-            let lines = several.iter().map(|run| line(run, json));
-            print(&lines.collect::<String>())?;
-            Err(CliError::SeveralRuns { folder: folder.to_owned(), count: several.len() })
-        }
+    let runs = if is_run(folder) { Vec::new() } else { SavesFolder::find(Some(folder)).all_runs() };
+    if runs.len() > 1 {
+        let lines = runs.iter().map(|(folder, run)| match run {
+            Ok(run) => line(run, json),
+            Err(problem) => line_of_damaged(folder, problem, json),
+        });
+        print(&lines.collect::<String>())?;
+        return Err(CliError::SeveralRuns { folder: folder.to_owned(), count: runs.len() });
     }
+    match runs.into_iter().next() {
+        // If there is no run, the error of this call names what is missing.
+        None => Ok(RunSource::in_folder(folder)?),
+        Some((_, run)) => Ok(RunSource::in_folder(&run?.folder)?),
+    }
+}
+
+/// Describes a run that cannot be read in a line: its folder and the reason.
+fn line_of_damaged(folder: &Path, problem: &SaveError, json: bool) -> String {
+    let problem = problem.to_string().replace(char::is_control, " ");
+    if json {
+        let line = serde_json::json!({
+            "type": "run", "folder": folder, "resumable": false, "problem": problem,
+        });
+        return format!("{line}\n");
+    }
+    format!("{}  cannot be resumed: {problem}\n", folder.display())
 }
 
 /// Describes a run in a line: its folder, the name that the user gave it, and its state.
@@ -72,6 +87,33 @@ mod tests {
         assert_eq!(refused.exit_code(), 2);
         assert!(refused.to_string().contains("holds 2 runs"), "{refused}");
         assert!(run_in(&only, false).is_ok());
+    }
+
+    #[test]
+    fn f5_a_damaged_run_is_named_with_its_reason_and_counts() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let damaged = add_run(&saves, 1);
+        std::fs::write(damaged.join("run.ron"), "(").expect("written");
+        let reason =
+            format!("{}: damaged or incomplete at line 1", damaged.join("run.ron").display());
+        for given in [folder.path(), &damaged] {
+            let refused = run_in(given, false).expect_err("damaged").to_string();
+            assert!(refused.starts_with(&reason), "{refused}");
+        }
+        add_run(&saves, 2);
+        let refused = run_in(folder.path(), true).expect_err("two runs").to_string();
+        assert!(refused.contains("holds 2 runs"), "{refused}");
+        let runs = saves.all_runs();
+        let problems = runs.iter().filter_map(|(of, run)| Some((of, run.as_ref().err()?)));
+        let lines: Vec<[String; 2]> = problems
+            .map(|(of, problem)| [false, true].map(|json| line_of_damaged(of, problem, json)))
+            .collect();
+        let [[text, json]] = &lines[..] else { panic!("{lines:?}") };
+        assert!(text.contains(&format!("cannot be resumed: {reason}")), "{text}");
+        let json: serde_json::Value = serde_json::from_str(json).expect("JSON");
+        assert_eq!(json["folder"], damaged.display().to_string());
+        assert!(json["problem"].as_str().is_some_and(|text| text.starts_with(&reason)), "{json}");
     }
 
     #[test]

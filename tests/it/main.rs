@@ -18,6 +18,8 @@ mod hostile;
 mod keep;
 mod learned_files;
 mod opening;
+#[cfg(unix)]
+mod other_hands;
 mod program;
 mod same_bits;
 mod soak;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use bevy::app::{SubApp, TaskPoolOptions, TaskPoolPlugin};
+use bevy::app::{SubApp, TaskPoolOptions, TaskPoolPlugin, TerminalCtrlCHandlerPlugin};
 use bevy::camera::RenderTarget;
 use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
 use bevy::image::Image;
@@ -93,6 +93,8 @@ impl Offscreen {
                     .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
                     .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
                     .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
+                    // Its handler of the interrupt key would ask an event loop to end, which does not run here.
+                    .disable::<TerminalCtrlCHandlerPlugin>()
                     .disable::<WinitPlugin>()
                     .disable::<PipelinedRenderingPlugin>(),
             )

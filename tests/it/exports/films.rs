@@ -248,12 +248,18 @@ fn a_film_that_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
 }
 
 #[test]
-fn the_interrupt_key_and_the_end_of_the_input_cancel_a_film_and_end_ffmpeg() {
+fn f12_every_request_to_end_cancels_a_film_and_ends_ffmpeg() {
     if lacks("cancel", true) {
         return;
     }
-    for (name, ends_input) in [("a.mp4", false), ("b.mp4", true), ("c.gif", true), ("d.png", false)]
-    {
+    for (name, signal) in [
+        ("a.mp4", Some("-INT")),
+        ("b.mp4", Some("-TERM")),
+        ("c.mp4", Some("-HUP")),
+        ("d.mp4", None),
+        ("e.gif", None),
+        ("f.png", Some("-TERM")),
+    ] {
         let folder = folder();
         let order =
             format!("export {CLIMBER} -o {name} --size 160x90 --fps 50 --json --until-input-ends");
@@ -272,12 +278,14 @@ fn the_interrupt_key_and_the_end_of_the_input_cancel_a_film_and_end_ffmpeg() {
         assert!(lines.any(|line| is_in_the_middle(&line.expect("a line"))), "{name}");
         let begun = names_in(folder.path());
         assert!(begun.len() == 1 && begun[0].starts_with(".unfinished-"), "{name}: {begun:?}");
-        if ends_input {
-            drop(process.stdin.take());
-        } else {
-            let id = process.id().to_string();
-            let sent = Command::new("kill").args(["-INT", &id]).status();
-            assert!(sent.is_ok_and(|sent| sent.success()));
+        match signal {
+            Some(signal) => {
+                let id = process.id().to_string();
+                let sent = Command::new("kill").args([signal, &id]).status();
+                assert!(sent.is_ok_and(|sent| sent.success()));
+            }
+            // The end of the input.
+            None => drop(process.stdin.take()),
         }
         // A pipe without a reader must not keep the process from ending.
         drop(lines);
@@ -288,6 +296,54 @@ fn the_interrupt_key_and_the_end_of_the_input_cancel_a_film_and_end_ffmpeg() {
         let left = Command::new("pgrep").args(["-f", &path]).output().expect("pgrep");
         assert!(left.stdout.is_empty(), "{name}: ffmpeg goes on");
     }
+}
+
+#[test]
+fn f12_the_next_export_removes_what_a_kill_left() {
+    if lacks("tidy", true) {
+        return;
+    }
+    let folder = folder();
+    for name in ["a.mp4", "b.png"] {
+        let order = format!("export {CLIMBER} -o {name} --size 160x90 --fps 50 --json");
+        let mut process = snakes(folder.path(), &order).stdout(Stdio::piped()).spawn();
+        let process = process.as_mut().expect("it starts");
+        let said = process.stdout.take().expect("its output");
+        let mut lines = std::io::BufRead::lines(BufReader::new(said));
+        assert!(lines.any(|line| line.expect("a line").contains("progress\":0.02")), "{name}");
+        process.kill().expect("killed");
+        process.wait().expect("ended");
+    }
+    let left = names_in(folder.path());
+    assert!(left.len() == 2 && left.iter().all(|of| of.starts_with(".unfinished-")), "{left:?}");
+    let exported = stdout_of(folder.path(), &format!("export {CLIMBER} -o climber.urdf"));
+    assert_eq!(exported, "saved to climber.urdf\n");
+    assert_eq!(names_in(folder.path()), ["climber.urdf"]);
+}
+
+#[test]
+fn f12_the_interrupt_key_ends_the_drawing_of_figures() {
+    use std::os::unix::process::ExitStatusExt;
+    if lacks("figures", false) {
+        return;
+    }
+    let folder = folder();
+    let order = "run --population 4 --generations 300 --duration 0.1 --threads 1 --saves saves";
+    stdout_of(folder.path(), order);
+    let mut runs = fs::read_dir(folder.path().join("saves")).expect("a folder");
+    let path = runs.next().expect("a run").expect("a run").path();
+    let order = format!("export {} --figures", path.display());
+    let mut process = snakes(folder.path(), &order)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    // The renderer, which could catch the signal, has begun by then, and most pictures are still to be drawn.
+    std::thread::sleep(Duration::from_secs(5));
+    assert!(process.try_wait().expect("a process").is_none(), "it has ended too early");
+    let id = process.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+    assert_eq!(ended(process).status.signal(), Some(2));
 }
 
 /// Waits at most a minute for the end of a process, and returns its output.

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::SaveError;
 use super::champion::{LoadedChampion, parse_champion, write_champion};
 use super::files::read_text;
+use super::replaced::Replaced;
 use crate::Engine;
 use crate::check::Invalid;
 use crate::schema::Choices;
@@ -40,13 +41,14 @@ pub fn store_exam(
     write_champion(path, &own, &present.champion, present.recording.as_ref(), &all)
 }
 
-/// Checks that the file of a champion may get results of an exam: this engine must have recorded the champion.
+/// Checks that the file of a champion may get results of an exam: this engine must have recorded the champion, and the file must not be
+/// write-protected.
 ///
 /// # Errors
-/// Fails if another engine recorded the champion.
+/// Fails if another engine recorded the champion, or if the file is write-protected.
 pub fn check_examinable(path: &Path, loaded: &LoadedChampion) -> Result<(), SaveError> {
     if loaded.is_of_this_engine() {
-        return Ok(());
+        return Replaced::file_at(path).map(drop).map_err(SaveError::unwritable(path));
     }
     let allowed = format!("{}, to write results of an exam beside its record", Engine::THIS);
     let source = Invalid::new("engine", loaded.engine.to_string(), allowed);

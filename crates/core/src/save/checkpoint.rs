@@ -1,12 +1,13 @@
 //! The state of a search after a generation: `checkpoint-N.ron`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, numbered, parse, read_bytes, refuse_link, store_ron, text_of};
+use super::folder::within_run;
 use super::run_name::fingerprint;
 use super::same_engine::check_engine;
 use crate::check::{Invalid, hash_of, quoted, within};
@@ -69,7 +70,7 @@ pub fn store_checkpoint(
         strategy: knowledge.strategy.clone(),
         front: knowledge.front.members().cloned().collect(),
     };
-    store_ron(&checkpoint_path(folder, generation), &checkpoint)
+    store_ron(&within_run(folder, &checkpoint_name(generation))?, &checkpoint)
 }
 
 /// Returns the generations of a folder's checkpoints, in no particular order.
@@ -82,7 +83,7 @@ pub fn remove_old_checkpoints(folder: &Path, finished: u32) {
     // Errors are ignored, because an old checkpoint does no harm.
     for generation in checkpoints(folder).unwrap_or_default() {
         if !is_kept(generation, finished) {
-            let _ = fs::remove_file(checkpoint_path(folder, generation));
+            let _ = fs::remove_file(folder.join(checkpoint_name(generation)));
         }
     }
 }
@@ -94,8 +95,8 @@ fn is_kept(generation: u32, finished: u32) -> bool {
     is_latest || (generation < finished && generation.is_power_of_two())
 }
 
-fn checkpoint_path(folder: &Path, generation: u32) -> PathBuf {
-    folder.join(format!("checkpoint-{generation}.ron"))
+fn checkpoint_name(generation: u32) -> String {
+    format!("checkpoint-{generation}.ron")
 }
 
 /// Reads the checkpoint of a generation, which must belong to the finished generations `records`.
@@ -105,7 +106,7 @@ pub fn load_checkpoint(
     records: &[GenerationRecord],
     plan: &RunPlan,
 ) -> Result<SearchState, SaveError> {
-    let path = checkpoint_path(folder, generation);
+    let path = folder.join(checkpoint_name(generation));
     refuse_link(&path).map_err(SaveError::unreadable(&path))?;
     let text = text_of(&path, read_bytes(&path, LARGEST_MIB)?)?;
     let (found, found_hash, state) = parse_checkpoint(&path, &text, plan)?;

@@ -9,6 +9,7 @@ use directories::ProjectDirs;
 use super::change::load_changed_plan;
 use super::files::{modified, numbered, refuse_link};
 use super::notes::{EntryNotes, notes_in_run};
+use super::plan::is_run;
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::whole_file::prepare_folder;
@@ -33,19 +34,6 @@ impl SavesFolder {
         }
         let data = ProjectDirs::from("", "", "snakes-and-stairs");
         Self(data.map_or(here, |data| data.data_dir().join("saves")))
-    }
-
-    /// Returns a folder within a run's folder. Links are not followed, because a run's folder may come from anyone.
-    ///
-    /// # Errors
-    /// Fails if the folder is a link.
-    pub fn within_run(run: &Path, name: &str) -> Result<Self, SaveError> {
-        let path = run.join(name);
-        if path.is_symlink() {
-            let source = std::io::Error::other("it is a link");
-            return Err(SaveError::Unwritable { path, source });
-        }
-        Ok(Self(path))
     }
 
     /// Returns the folder of screenshots within this folder.
@@ -77,34 +65,43 @@ impl SavesFolder {
         self.0.join(run_name(plan))
     }
 
-    /// Returns the runs in this folder that this engine can read, in the order of their folders' names; unreadable runs are omitted.
+    /// Returns the runs in this folder that this engine can read, in the order of their folders' names.
     pub fn runs(&self) -> Vec<RunSummary> {
+        self.all_runs().into_iter().filter_map(|(_, run)| run.ok()).collect()
+    }
+
+    /// Returns the folders of all runs in this folder, in the order of their names, each with the run or with the reason why this engine
+    /// cannot read it.
+    pub fn all_runs(&self) -> Vec<(PathBuf, Result<RunSummary, SaveError>)> {
         let Ok(entries) = fs::read_dir(&self.0) else { return Vec::new() };
         let folders = entries.flatten().filter(|entry| entry.file_type().is_ok_and(|t| t.is_dir()));
-        let mut folders: Vec<PathBuf> = folders.map(|entry| entry.path()).collect();
-        folders.sort();
-        let summary = |folder: PathBuf| {
-            let plan = load_changed_plan(&folder).ok()?;
-            let finished = count_records(&folder).ok()?;
-            let evolution = &plan.settings.evolution;
-            let mut is_stopped = finished < evolution.generations;
-            if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
-                is_stopped = !plan.has_ended(&read_records(&folder, &plan).ok()?);
-            }
-            // A run whose notes cannot be read can still be resumed.
-            let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
-            let name = notes.own_name().map(str::to_owned);
-            let log = fs::metadata(folder.join("log.jsonl"));
-            let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
-            Some(RunSummary { folder, plan, finished, name, saved_at, is_stopped })
-        };
-        folders.into_iter().filter_map(summary).collect()
+        // Names of incomplete and deleted runs begin with a dot.
+        let folders =
+            folders.filter(|entry| !entry.file_name().as_encoded_bytes().starts_with(b"."));
+        let folders = folders.map(|entry| entry.path()).filter(|folder| is_run(folder));
+        let mut runs: Vec<_> = folders.map(|of| (of.clone(), RunSummary::read(of))).collect();
+        runs.sort_by(|(a, _), (b, _)| a.cmp(b));
+        runs
     }
 
     /// Checks that files can be written into the folder, and creates it if it does not exist.
     pub fn prepare(&self) -> Result<(), SaveError> {
         prepare_folder(&self.0)
     }
+}
+
+/// Returns the path of a file or folder to be written within a run's folder. Links are not followed, because a run's folder may come from
+/// anyone.
+///
+/// # Errors
+/// Fails if the path is that of a link.
+pub fn within_run(run: &Path, name: &str) -> Result<PathBuf, SaveError> {
+    let path = run.join(name);
+    if path.is_symlink() {
+        let source = std::io::Error::other("it is a link");
+        return Err(SaveError::Unwritable { path, source });
+    }
+    Ok(path)
 }
 
 /// A run in a folder of saves.
@@ -125,6 +122,22 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
+    fn read(folder: PathBuf) -> Result<Self, SaveError> {
+        let plan = load_changed_plan(&folder)?;
+        let finished = count_records(&folder)?;
+        let evolution = &plan.settings.evolution;
+        let mut is_stopped = finished < evolution.generations;
+        if is_stopped && finished > 0 && evolution.strategy.info().is_budget_driven {
+            is_stopped = !plan.has_ended(&read_records(&folder, &plan)?);
+        }
+        // A run whose notes cannot be read can still be resumed.
+        let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
+        let name = notes.own_name().map(str::to_owned);
+        let log = fs::metadata(folder.join("log.jsonl"));
+        let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
+        Ok(Self { folder, plan, finished, name, saved_at, is_stopped })
+    }
+
     /// Returns whether generations are left to evolve.
     pub fn is_stopped(&self) -> bool {
         self.is_stopped
@@ -169,6 +182,28 @@ pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion,
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn f5_a_damaged_run_is_listed_with_its_reason() {
+        use super::*;
+        use crate::save::library::fixtures::{run_in, saves};
+        let (_folder, saves) = saves();
+        let [good, bad] = [1, 2].map(|seed| run_in(&saves, seed).path().expect("one").to_owned());
+        for (file, reason) in [
+            ("changes.jsonl", "changes.jsonl: damaged or incomplete at line 1"),
+            ("run.ron", "run.ron: damaged or incomplete at line 1"),
+        ] {
+            fs::write(bad.join(file), "(\n").expect("written");
+            let runs = saves.all_runs();
+            let reasons: Vec<String> =
+                runs.iter().filter_map(|(_, run)| Some(run.as_ref().err()?.to_string())).collect();
+            assert!(reasons.len() == 1 && reasons[0].contains(reason), "{reasons:?}");
+            let folders: Vec<&PathBuf> = runs.iter().map(|(folder, _)| folder).collect();
+            assert!(folders.len() == 2 && folders.contains(&&bad), "{folders:?}");
+            let readable: Vec<PathBuf> = saves.runs().into_iter().map(|run| run.folder).collect();
+            assert_eq!(readable, [good.clone()]);
+        }
+    }
+
     #[cfg(unix)]
     #[test]
     fn links_in_a_runs_folder_are_not_followed() {
@@ -180,8 +215,8 @@ mod tests {
         let error = load_run(folder.path()).expect_err("refused").to_string();
         assert!(error.contains("generation-1.ron: cannot be read: it is a link"), "{error}");
         symlink("/tmp", folder.path().join("figures")).expect("linked");
-        let error = SavesFolder::within_run(folder.path(), "figures").expect_err("refused");
+        let error = within_run(folder.path(), "figures").expect_err("refused");
         assert!(error.to_string().contains("figures: cannot be written: it is a link"), "{error}");
-        assert!(SavesFolder::within_run(folder.path(), "other").is_ok());
+        assert!(within_run(folder.path(), "other").is_ok());
     }
 }

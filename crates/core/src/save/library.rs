@@ -32,7 +32,7 @@ pub use transfer::{EXPORTS, export, import, run_of_plan};
 
 /// Folders of saves for tests.
 #[cfg(test)]
-mod fixtures {
+pub(in crate::save) mod fixtures {
     use tempfile::TempDir;
 
     use super::{LibraryEntry, SavePlace};

@@ -1,7 +1,8 @@
 //! An append-only log: lines of JSON, each with its own checksum.
 //!
 //! The checksum (XXH3, 64 bits) is the last field of a line and covers everything before it. A kill, a full disk or a power cut can only
-//! leave an incomplete last line, which is ignored. A complete line with a wrong checksum is an error.
+//! leave an incomplete last line, which is ignored. A complete line with a wrong checksum is an error. Line ends and a byte order mark, which
+//! other programs convert, are not covered.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -12,7 +13,10 @@ use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::SaveError;
-use super::files::{LARGEST_FILE_MIB, read_bytes, refuse_link, single_line};
+use super::files::{
+    LARGEST_FILE_MIB, UTF_16, is_utf_16, read_bytes, refuse_link, single_line, without_mark,
+};
+use super::replaced::refuse_protected;
 
 /// A log that is open for writing.
 #[derive(Debug)]
@@ -35,6 +39,7 @@ impl Log {
         let mut options = OpenOptions::new();
         let file = options.read(true).write(true).create(true).truncate(false).open(path);
         let file = file.map_err(unwritable)?;
+        file.metadata().and_then(|about| refuse_protected(&about)).map_err(unwritable)?;
         let end = if kept == 0 {
             0
         } else {
@@ -92,12 +97,13 @@ pub fn read_log_bytes(path: &Path) -> Result<Vec<u8>, SaveError> {
 /// Fails if a complete line is damaged.
 pub fn parse_log<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<Vec<T>, SaveError> {
     let mut entries = Vec::new();
-    for (index, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
+    for (index, line) in without_mark(bytes).split_inclusive(|byte| *byte == b'\n').enumerate() {
         match entry_of(line) {
             Ok(entry) => entries.push(entry),
             // An incomplete last line: the program was stopped while it wrote the line.
             Err(_) if !line.ends_with(b"\n") => break,
             Err(problem) => {
+                let problem = if is_utf_16(bytes) { UTF_16.to_owned() } else { problem };
                 let path = path.to_owned();
                 return Err(SaveError::Damaged { path, line: index + 1, column: 1, problem });
             }
@@ -117,7 +123,8 @@ fn line_of(entry: &impl Serialize) -> serde_json::Result<String> {
 
 fn entry_of<T: DeserializeOwned>(line: &[u8]) -> Result<T, String> {
     let checked = || {
-        let line = std::str::from_utf8(line).ok()?.strip_suffix('\n')?.strip_suffix(AFTER_SUM)?;
+        let line = std::str::from_utf8(line).ok()?.strip_suffix('\n')?;
+        let line = line.strip_suffix('\r').unwrap_or(line).strip_suffix(AFTER_SUM)?;
         let (line, sum) = line.split_at_checked(line.len().checked_sub(SUM_DIGITS)?)?;
         let line = line.strip_suffix(BEFORE_SUM)?;
         (u64::from_str_radix(sum, 16) == Ok(xxh3_64(line.as_bytes()))).then_some(line)
@@ -185,6 +192,43 @@ mod tests {
         let values = text.lines().map(|line| serde_json::from_str(line).expect("JSON"));
         let values: Vec<serde_json::Value> = values.collect();
         assert_eq!(values[1]["number"], 2);
+    }
+
+    #[test]
+    fn f4_a_log_with_other_line_ends_is_read_and_continued() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(&folder);
+        let text = fs::read_to_string(&path).expect("read");
+        for mark in ["", "\u{feff}"] {
+            fs::write(&path, format!("{mark}{}", text.replace('\n', "\r\n"))).expect("written");
+            assert_eq!(read_log::<TestLine>(&path).expect("read"), entries());
+            let mut log = Log::open(&path, 2).expect("opened");
+            log.append(&entries()[2]).expect("written");
+            assert_eq!(read_log::<TestLine>(&path).expect("read"), entries());
+        }
+        let utf_16 = "\u{feff}".encode_utf16().chain(text.encode_utf16());
+        fs::write(&path, utf_16.flat_map(u16::to_le_bytes).collect::<Vec<u8>>()).expect("written");
+        let error = read_log::<TestLine>(&path).expect_err("damaged").to_string();
+        assert!(
+            error.ends_with("line 1, column 1: the text is UTF-16; save it as UTF-8"),
+            "{error}"
+        );
+        // Other changes of a line, such as blanks at its end, are damage as before.
+        fs::write(&path, text.replace('\n', " \n")).expect("written");
+        let error = read_log::<TestLine>(&path).expect_err("damaged").to_string();
+        assert!(error.ends_with("the line does not match its checksum"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn f6_a_write_protected_log_is_refused_and_stays() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = written(&folder);
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o444);
+        fs::set_permissions(&path, mode).expect("changed");
+        let error = Log::open(&path, 1).expect_err("refused").to_string();
+        assert!(error.contains("log.jsonl: cannot be written: "), "{error}");
+        assert_eq!(read_log::<TestLine>(&path).expect("read"), entries());
     }
 
     #[test]

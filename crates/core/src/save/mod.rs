@@ -26,6 +26,7 @@ mod poses;
 mod preferences;
 mod preset;
 mod record;
+mod replaced;
 mod run;
 mod run_name;
 mod same_engine;
@@ -44,12 +45,12 @@ pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
 pub use copies::ChampionCopies;
 pub use files::{SaveError, load_text};
-pub use folder::{RunSummary, SavesFolder, load_generation, load_run};
+pub use folder::{RunSummary, SavesFolder, load_generation, load_run, within_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_files::{KnownFiles, OwnFile, OwnKind};
 pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
-pub use plan::{load_plan, parse_plan};
+pub use plan::{is_run, load_plan, parse_plan};
 pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
 pub use preferences::{
     LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,

@@ -62,7 +62,7 @@ pub(super) fn load_named<T: OwnKind>(name_or_path: &str) -> Result<T, SaveError>
     let path = Path::new(name_or_path);
     match built_in {
         Some(built_in) => Ok(built_in),
-        None if path.exists() => T::parse(path, &read_text(path)?),
+        None if path.exists() || path.is_symlink() => T::parse(path, &read_text(path)?),
         None => {
             let allowed = format!("{}, or a file", T::built_in_names().join(", "));
             let unknown = Invalid::new(T::FIELD, format!("{name_or_path:?}"), allowed);

@@ -1,5 +1,6 @@
 //! The plan of a run as it began: `run.ron`.
 
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -39,13 +40,19 @@ struct FounderV4 {
     genome: Genome,
 }
 
+/// Returns whether a folder has a run, be it readable or damaged.
+pub fn is_run(folder: &Path) -> bool {
+    let plan = folder.join(RUN_FILE).symlink_metadata();
+    plan.map_or_else(|error| error.kind() != ErrorKind::NotFound, |_| true)
+}
+
 /// Reads the plan of the run in a folder.
 ///
 /// # Errors
 /// Fails if the folder has no run, if another engine recorded the run, or if the file is damaged.
 pub fn load_plan(folder: &Path) -> Result<RunPlan, SaveError> {
     let path = folder.join(RUN_FILE);
-    if !path.is_symlink() && !path.exists() {
+    if !is_run(folder) {
         let source = std::io::Error::other("it contains no run.ron; give a run's folder");
         return Err(SaveError::Unreadable { path: folder.to_owned(), source });
     }

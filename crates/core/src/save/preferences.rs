@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SaveError;
 use super::files::{Header, parse, read_text, store_ron};
+use super::replaced::followed;
 use super::whole_file::prepare_folder;
 use crate::check::{Invalid, quoted, within};
 
@@ -147,11 +148,11 @@ impl PreferencesFile {
         Ok(Some(preferences))
     }
 
-    /// Renames an unreadable file, so that it is not overwritten. Returns its new path.
+    /// Renames an unreadable file, so that it is not overwritten. Links to it stay. Returns its new path.
     pub fn put_aside(&self) -> Option<PathBuf> {
-        let path = self.0.as_deref()?;
+        let path = followed(self.0.as_deref()?).ok()?;
         let aside = path.with_extension("ron.unreadable");
-        fs::rename(path, &aside).ok().map(|()| aside)
+        fs::rename(&path, &aside).ok().map(|()| aside)
     }
 
     /// Writes the preferences atomically.

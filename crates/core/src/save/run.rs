@@ -28,14 +28,14 @@ use super::checkpoint::{
     SearchState, checkpoints, load_checkpoint, remove_old_checkpoints, store_checkpoint,
 };
 use super::files::refuse_link;
-use super::folder::champion_file_name;
+use super::folder::{champion_file_name, within_run};
 use super::lineage::{LINEAGE_FILE, LineageRecord, read_lineage};
 use super::lock::Lock;
 use super::log::Log;
 use super::plan::{RUN_FILE, load_plan, store_plan};
 use super::record::{EVALUATIONS_FILE, EvaluationRecord, LOG_FILE, read_evaluations, read_records};
 use super::run_name::fingerprint;
-use super::whole_file::{prepare_folder, remove_unfinished};
+use super::whole_file::prepare_folder;
 use crate::evolve::{Champion, GenerationRecord, RunPlan, SettingChange};
 use crate::score::{Evaluation, Recording};
 
@@ -105,7 +105,6 @@ impl RunFolder {
     ) -> Result<(Self, SavedProgress), SaveError> {
         prepare_folder(path)?;
         let lock = Lock::take(path, owner)?;
-        remove_unfinished(path);
         let file = path.join(RUN_FILE);
         refuse_link(&file).map_err(SaveError::unreadable(&file))?;
         // A run that starts over replaces the plan without reading the old one.
@@ -205,7 +204,7 @@ impl RunFolder {
         knowledge: &SearchState,
         run_hash: u64,
     ) -> Result<Option<PathBuf>, SaveError> {
-        let champion_path = self.champion_path(record.generation);
+        let champion_path = within_run(&self.path, &champion_file_name(record.generation))?;
         if let Some((champion, recording)) = champion {
             store_champion(&champion_path, champion, Some(recording))?;
         }
@@ -263,7 +262,7 @@ impl RunFolder {
             let enough = format!("it already contains {MAX_CRASHED} crashed genomes");
             return Err(unwritable(std::io::Error::other(enough)));
         }
-        let path = self.path.join(name);
+        let path = within_run(&self.path, &name)?;
         store_champion(&path, crashed, None)?;
         Ok(path)
     }

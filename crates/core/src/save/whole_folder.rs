@@ -1,6 +1,6 @@
 //! Atomic writing of folders: a folder gets its name only when all of its files are complete.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,34 +8,60 @@ use tempfile::TempDir;
 
 use super::SaveError;
 use super::picture::{Picture, encoded};
-use super::whole_file::{UNFINISHED, folder_of, without_temporary_name};
+use super::replaced::{ANYONES_FOLDER, Replaced, folder_of};
+use super::whole_file::{remove_unfinished, temporary_of, without_temporary_name};
+
+/// A folder under a temporary name, which is removed when this value is dropped.
+#[derive(Debug)]
+pub(super) struct TemporaryFolder {
+    pub folder: TempDir,
+    /// Lock of the folder, so that no other program takes it for one that a kill left. None where folders cannot be opened as files; nobody
+    /// removes them there either.
+    lock: Option<File>,
+}
+
+impl TemporaryFolder {
+    /// Makes a folder with a mode within the folder `around`. Incomplete files and folders that a kill left there are removed.
+    pub fn within(around: &Path, mode: u32) -> io::Result<Self> {
+        remove_unfinished(around);
+        loop {
+            let folder = temporary_of(mode).tempdir_in(around)?;
+            let lock = File::open(folder.path()).ok();
+            lock.iter().for_each(|lock| drop(lock.lock()));
+            // Another program may have removed the folder before it was locked.
+            if folder.path().exists() {
+                return Ok(Self { folder, lock });
+            }
+        }
+    }
+}
 
 /// A folder that is filled file by file, and gets its name only when it is complete. If this value is dropped before, nothing remains.
 #[derive(Debug)]
 pub struct UnfinishedFolder {
-    folder: TempDir,
+    temporary: TemporaryFolder,
+    /// Path that the user named.
     path: PathBuf,
+    /// Path to which links lead.
+    target: PathBuf,
 }
 
 impl UnfinishedFolder {
-    /// Begins the folder that will have the path `path`.
+    /// Begins the folder that will have the path `path`. Links at the path are followed, and the new folder gets the mode and the owner of
+    /// an earlier one.
     ///
     /// # Errors
-    /// Fails if something other than an empty folder has the path, or if the folder around it cannot be written.
+    /// Fails if something other than an empty folder has the path, if that is write-protected, or if the folder around it cannot be
+    /// written.
     pub fn create(path: &Path) -> Result<Self, SaveError> {
-        let unwritable = SaveError::unwritable(path);
-        if !is_free(path) {
-            let taken = "it exists already and is not empty; name another, or remove it";
-            return Err(unwritable(io::Error::other(taken)));
-        }
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(UNFINISHED);
-        // Others may read the folder as far as the user's umask allows; the default of the library is private.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        let made = builder.tempdir_in(folder_of(path));
-        let folder = made.map_err(|error| unwritable(without_temporary_name(error)))?;
-        Ok(Self { folder, path: path.to_owned() })
+        let begin = || {
+            let replaced = Replaced::folder_at(path)?;
+            let mode = replaced.mode(ANYONES_FOLDER);
+            let temporary = TemporaryFolder::within(folder_of(&replaced.path), mode)?;
+            temporary.lock.iter().try_for_each(|folder| replaced.hand_on(folder))?;
+            Ok(Self { temporary, path: path.to_owned(), target: replaced.path })
+        };
+        begin().map_err(|error| SaveError::unwritable(path)(without_temporary_name(error)))
     }
 
     /// Adds a picture as a PNG file with a name.
@@ -43,8 +69,8 @@ impl UnfinishedFolder {
     /// # Errors
     /// Fails if the file cannot be written.
     pub fn store_picture(&self, name: &str, picture: &Picture) -> Result<(), SaveError> {
-        let written =
-            encoded(picture).and_then(|bytes| fs::write(self.folder.path().join(name), bytes));
+        let written = encoded(picture)
+            .and_then(|bytes| fs::write(self.temporary.folder.path().join(name), bytes));
         written.map_err(SaveError::unwritable(&self.path.join(name)))
     }
 
@@ -53,13 +79,13 @@ impl UnfinishedFolder {
     /// # Errors
     /// Fails if the folder cannot be renamed, or if something other than an empty folder has the name by now.
     pub fn finish(self) -> Result<(), SaveError> {
-        let Self { folder, path } = self;
+        let Self { temporary: TemporaryFolder { folder, .. }, path, target } = self;
         let finish = || -> io::Result<()> {
             // On Unix a rename replaces an empty folder; on other systems the empty folder must be removed before.
-            if path.is_dir() {
-                fs::remove_dir(&path)?;
+            if target.is_dir() {
+                fs::remove_dir(&target)?;
             }
-            fs::rename(folder.path(), &path)
+            fs::rename(folder.path(), &target)
         };
         let finished = finish().map_err(SaveError::unwritable(&path));
         if finished.is_ok() {
@@ -67,14 +93,6 @@ impl UnfinishedFolder {
             let _ = folder.keep();
         }
         finished
-    }
-}
-
-/// Returns whether the path is free, or that of an empty folder.
-fn is_free(path: &Path) -> bool {
-    match fs::read_dir(path) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(_) => path.symlink_metadata().is_err(),
     }
 }
 

@@ -12,7 +12,7 @@ use super::place::SavePlace;
 use crate::check::Invalid;
 use crate::save::lock::Lock;
 use crate::save::whole_file::prepare_folder;
-use crate::save::{EntryNotes, SaveError, SavesFolder};
+use crate::save::{EntryNotes, SaveError, SavesFolder, within_run};
 
 /// Name of the folder for deleted entries within a folder of saves.
 pub const DELETED: &str = ".deleted";
@@ -147,12 +147,12 @@ fn move_away(saves: &SavesFolder, path: &Path) -> Result<FileStep, SaveError> {
 fn put_into_bin(folder: &Path, path: &Path) -> Result<FileStep, SaveError> {
     let is_folder = fs::symlink_metadata(path).map_err(SaveError::unreadable(path))?.is_dir();
     let lock = if is_folder { Some(Lock::take(path, "the library")?) } else { None };
-    let bin = SavesFolder::within_run(folder, DELETED)?;
+    let bin = within_run(folder, DELETED)?;
     // The folder is tested only when it is created. If it cannot be written later, the move itself fails.
-    if !bin.path().is_dir() {
-        prepare_folder(bin.path())?;
+    if !bin.is_dir() {
+        prepare_folder(&bin)?;
     }
-    let kept = free_path_like(path, is_folder, bin.path());
+    let kept = free_path_like(path, is_folder, &bin);
     if cfg!(windows) {
         // Windows cannot move a folder in which a file is open, so the lock is released first.
         drop(lock);

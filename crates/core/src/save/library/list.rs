@@ -10,7 +10,7 @@ use super::notes::read_notes;
 use super::place::SavePlace;
 use super::shipped::SHIPPED;
 use crate::save::files::modified;
-use crate::save::plan::RUN_FILE;
+use crate::save::plan::is_run;
 use crate::save::record::LOG_FILE;
 use crate::save::{EntryNotes, SaveError, SavesFolder};
 
@@ -69,7 +69,7 @@ fn entry_of(found: &DirEntry, notes: &BTreeSet<PathBuf>) -> Option<LibraryEntry>
     }
     let kind = found.file_type().ok()?;
     if kind.is_dir() {
-        path.join(RUN_FILE).symlink_metadata().ok()?;
+        is_run(&path).then_some(())?;
         let own = found.metadata().ok()?;
         // The time of the folder changes only with the names in it, the time of the log with every generation.
         let log = path.join(LOG_FILE).symlink_metadata();

@@ -8,7 +8,7 @@ use super::place::SavePlace;
 use crate::check::Invalid;
 use crate::save::SaveError;
 use crate::save::notes::{EntryNotes, notes_in_run};
-use crate::save::whole_file::write_new;
+use crate::save::whole_file::write_copy;
 
 /// Returns the path of an entry's notes. None for a part of the program.
 fn notes_path(place: &SavePlace) -> Option<PathBuf> {
@@ -63,13 +63,13 @@ pub fn set_notes_text(place: &SavePlace, text: &str) -> Result<FileStep, SaveErr
     set_notes(place, &EntryNotes { name, text: text.to_owned() })
 }
 
-/// Writes a copy of a champion's file, and of the notes beside the original if the original is a file. Notes that cannot be read are not
-/// copied.
+/// Writes a copy of a champion's file, as private as the original, and of the notes beside the original if the original is a file. Notes that
+/// cannot be read are not copied.
 ///
 /// # Errors
 /// Fails if the path is taken, or if the copy cannot be written.
 pub fn add_copy(text: &str, original: Option<&Path>, path: PathBuf) -> Result<FileStep, SaveError> {
-    write_new(&path, text.as_bytes())?;
+    write_copy(&path, text.as_bytes(), original)?;
     let noted = original.map(|from| read_notes(&SavePlace::Champion(from.to_owned())));
     let notes = noted.and_then(Result::ok).unwrap_or_default();
     if !notes.is_empty() {

@@ -1,6 +1,7 @@
 //! Exports and imports: copies out of and into the folder of saves that never overwrite a file.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::change::FileStep;
@@ -12,7 +13,9 @@ use super::place::SavePlace;
 use crate::save::files::read_bytes;
 use crate::save::lock::{LOCK_FILE, Lock, OWNER_FILE};
 use crate::save::plan::{RUN_FILE, load_plan};
-use crate::save::whole_file::{UNFINISHED, prepare_folder};
+use crate::save::replaced::{ANYONES_FOLDER, create_copy, mode_of_copy};
+use crate::save::whole_file::prepare_folder;
+use crate::save::whole_folder::TemporaryFolder;
 use crate::save::{
     KnownFiles, NamedStairs, SaveError, SavedProgress, SavesFolder, is_stairs_file, parse_champion,
     parse_stairs, run_name,
@@ -119,28 +122,25 @@ fn import_run(saves: &SavesFolder, from: &Path) -> Result<FileStep, SaveError> {
     saves.prepare()?;
     let copied = copy_folder(from, saves.path())?;
     // The copy is checked, because the original may have changed meanwhile.
-    let plan = load_plan(copied.path())?;
-    SavedProgress::read(copied.path(), &plan)?;
+    let plan = load_plan(copied.folder.path())?;
+    SavedProgress::read(copied.folder.path(), &plan)?;
     rename_copy(copied, &path)
 }
 
 /// Gives a completely copied folder its final name.
-fn rename_copy(copied: tempfile::TempDir, path: &Path) -> Result<FileStep, SaveError> {
-    move_new(copied.path(), path)?;
+fn rename_copy(copied: TemporaryFolder, path: &Path) -> Result<FileStep, SaveError> {
+    move_new(copied.folder.path(), path)?;
     // The temporary folder has been renamed, so dropping it removes nothing.
     drop(copied);
     Ok(FileStep::Added { path: path.to_owned() })
 }
 
-/// Copies a run's folder into another folder under a temporary name. The copy is removed when dropped. Links, hidden files and the lock are
-/// omitted.
-fn copy_folder(from: &Path, into: &Path) -> Result<tempfile::TempDir, SaveError> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(UNFINISHED);
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let copy = builder.tempdir_in(into).map_err(SaveError::unwritable(into))?;
-    copy_files(from, copy.path(), DEEPEST)?;
+/// Copies a run's folder into another folder under a temporary name. The copy is as private as the original, and is removed when dropped.
+/// Links, hidden files and the lock are omitted.
+fn copy_folder(from: &Path, into: &Path) -> Result<TemporaryFolder, SaveError> {
+    let copy = TemporaryFolder::within(into, mode_of_copy(Some(from), ANYONES_FOLDER));
+    let copy = copy.map_err(SaveError::unwritable(into))?;
+    copy_files(from, copy.folder.path(), DEEPEST)?;
     Ok(copy)
 }
 
@@ -157,7 +157,8 @@ fn copy_files(from: &Path, to: &Path, deeper: u32) -> Result<(), SaveError> {
         }
         if kind.is_file() {
             let bytes = read_bytes(&found.path(), LARGEST_MIB)?;
-            fs::write(&copy, bytes).map_err(unwritable)?;
+            let created = create_copy(&copy, &found.path());
+            created.and_then(|mut file| file.write_all(&bytes)).map_err(unwritable)?;
         } else if kind.is_dir() && deeper > 0 {
             fs::create_dir(&copy).map_err(unwritable)?;
             copy_files(&found.path(), &copy, deeper - 1)?;
