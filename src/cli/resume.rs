@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::CliError;
-use super::output::print;
+use super::output::print_line;
 use snakes_core::save::{RunSummary, SavesFolder};
 use snakes_lab::run::RunSource;
 
@@ -16,8 +16,7 @@ pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
         [] => Ok(RunSource::in_folder(folder)?),
         [run] => Ok(RunSource::in_folder(&run.folder)?),
         several => {
-            let lines = several.iter().map(|run| line(run, json));
-            print(&lines.collect::<String>())?;
+            several.iter().try_for_each(|run| print_line(&line(run, json)))?;
             Err(CliError::SeveralRuns { folder: folder.to_owned(), count: several.len() })
         }
     }
@@ -32,12 +31,12 @@ fn line(run: &RunSummary, json: bool) -> String {
         let line = serde_json::json!({
             "type": "run", "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
         });
-        return format!("{line}\n");
+        return line.to_string();
     }
     let folder = folder.display();
     let name = name.as_ref().map(|name| format!("  \"{name}\"")).unwrap_or_default();
     let state = if is_stopped { "can be resumed" } else { "finished" };
-    format!("{folder}{name}  {finished} of {generations} generations, {state}\n")
+    format!("{folder}{name}  {finished} of {generations} generations, {state}")
 }
 
 #[cfg(test)]
@@ -85,7 +84,7 @@ mod tests {
         assert_eq!(
             line(&runs[0], false),
             format!(
-                "{}  \"The icy one\"  0 of {generations} generations, can be resumed\n",
+                "{}  \"The icy one\"  0 of {generations} generations, can be resumed",
                 run.display()
             )
         );
