@@ -117,3 +117,64 @@ fn story(wanted: &ExportArgs) -> Result<Vec<FilmPart>, CliError> {
     };
     Ok(champions.map(part).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Parsed, Task, parse};
+
+    /// Returns the film that flags describe, or the error.
+    fn film(ending: &str, flags: &str) -> Result<FilmOrder, String> {
+        let climber = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+        let words = format!("snakes export {climber} -o a.{ending} {flags}");
+        let Ok(Parsed::Run(_, task)) = parse(words.split_whitespace().map(Into::into)) else {
+            return Err(format!("{words} is no command"));
+        };
+        let Task::Export(wanted) = *task else { return Err(format!("{words} is no export")) };
+        let path = Path::new("a").with_extension(ending);
+        let format = ExportFormat::of_path("--output", &path).map_err(|error| error.to_string())?;
+        ordered(&wanted, format, &path).map(|film| film.order).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn f14_the_errors_and_the_help_of_a_flag_name_the_numbers_that_it_takes() {
+        for (flag, ending) in [
+            ("--fps", "mp4"),
+            ("--fps", "gif"),
+            ("--speed", "mp4"),
+            ("--start", "mp4"),
+            ("--end", "mp4"),
+        ] {
+            let refusal =
+                |value: &str| film(ending, &format!("{flag} {value}")).expect_err("refused");
+            let told = refusal("many");
+            let (_, range) = told.split_once("allowed: ").expect("what is allowed");
+            let range = range.trim_start_matches("a whole number from ");
+            let (least, most) = range.split_once(" to ").expect("a range");
+            assert!(film(ending, &format!("{flag} {most}")).is_ok(), "{flag} {most}");
+            // A film that ends where it begins has no moment.
+            assert_eq!(
+                film(ending, &format!("{flag} {least}")).is_ok(),
+                flag != "--end",
+                "{flag} {least}"
+            );
+            for beyond in [format!("-{most}"), format!("{most}0")] {
+                assert!(refusal(&beyond).ends_with(range), "{}", refusal(&beyond));
+            }
+            if flag == "--fps" {
+                assert!(
+                    ["0.5", "1e1"].iter().all(|text| refusal(text) == told.replace("many", text))
+                );
+            }
+        }
+        let Ok(Parsed::Print(help)) = parse(["snakes", "export", "--help"].map(Into::into)) else {
+            unreachable!("there is help")
+        };
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let (least, most) = FPS.into_inner();
+        let of_gif = crate::studio::film::GIF_FPS.into_inner().1;
+        assert!(help.contains(&format!("{least} to {most}, for .gif up to {of_gif}")), "{help}");
+        let (least, most) = SPEED.into_inner();
+        assert!(help.contains(&format!("{least} to {most} [default: 1]")), "{help}");
+    }
+}

@@ -30,7 +30,7 @@ pub fn number<T: FromStr + PartialOrd + Display>(
         let allowed = format!("{kind}{} to {}", range.start(), range.end());
         Invalid::new(flag, format!("{text:?}"), allowed)
     })?;
-    within(flag, value, range.clone())?;
+    within(flag, value, range)?;
     Ok(value)
 }
 
