@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::Builder;
 use std::time::Duration;
 
 use pyo3::prelude::*;
@@ -48,18 +49,21 @@ pub fn score_all(
             *place = Some(scored);
         }
     };
-    let interrupted = py.detach(|| {
+    let failed = py.detach(|| {
         std::thread::scope(|scope| {
             let (done, finished) = channel::<()>();
             let (control, pool, store) = (&control, &pool, &store);
-            scope.spawn(move || {
+            let score = move || {
                 let jobs: Vec<&Genome> = genomes.iter().collect();
                 // Only an interrupt cancels the control.
                 let _ = pool.evaluate_batch(trial, &jobs, control, &|index, result| {
                     store(index, result.unwrap_or_else(|_| void()));
                 });
                 drop(done);
-            });
+            };
+            if let Err(error) = Builder::new().spawn_scoped(scope, score) {
+                return Some(no_threads(error.into()));
+            }
             loop {
                 match finished.recv_timeout(PATIENCE) {
                     Err(RecvTimeoutError::Timeout) => {
@@ -73,8 +77,8 @@ pub fn score_all(
             }
         })
     });
-    if let Some(interrupt) = interrupted {
-        return Err(interrupt);
+    if let Some(error) = failed {
+        return Err(error);
     }
     // An interrupt may also have come during the last wait.
     py.check_signals()?;

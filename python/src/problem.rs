@@ -181,6 +181,7 @@ impl Problem {
         }
         let changes = changes.iter().map(|(path, text)| (path.as_str(), text.as_str()));
         let settings = with_fields(&preset.settings, changes).map_err(invalid)?;
+        settings.check_start().map_err(invalid)?;
         Ok(Self { preset: preset.name, settings })
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::json;
+use serde_json::{Value, json};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::args::{Args, CredentialFlags};
@@ -57,7 +57,7 @@ pub fn worker(args: &Args) -> Result<(), CliError> {
     ));
     let options =
         WorkerOptions { name: name.clone(), threads, proof, compute: Arc::new(Simulator) };
-    let evaluations = work(broker, options, &cancel_on_interrupt())?;
+    let evaluations = work(broker, options, &cancel_on_interrupt()?)?;
     say(&format!("worker {name}: stopped; {evaluations} evaluations"));
     Ok(())
 }
@@ -75,10 +75,13 @@ pub fn list(args: &Args, purged: Option<&str>) -> Result<(), CliError> {
         return print(&format!("{run}: removed {batches} batches and {results} results\n"));
     }
     let machines = machines(&broker)?;
-    print(&if args.json { as_json(&machines) } else { as_text(&machines) })
+    if args.json {
+        return as_json(&machines).try_for_each(|line| print_json(&line));
+    }
+    print(&as_text(&machines))
 }
 
-fn as_json(machines: &Machines) -> String {
+fn as_json(machines: &Machines) -> impl Iterator<Item = Value> {
     let workers =
         machines.workers.values().map(|worker| json!({"type": "worker", "worker": worker}));
     let runs = machines.runs.values().map(|run| json!({"type": "run", "run": run}));
@@ -86,7 +89,7 @@ fn as_json(machines: &Machines) -> String {
         .queues
         .iter()
         .map(|(run, queue)| json!({"type": "queue", "queue": run, "waiting": queue}));
-    workers.chain(runs).chain(queues).map(|line| format!("{line}\n")).collect()
+    workers.chain(runs).chain(queues)
 }
 
 /// The legend below the table of [`as_text`].

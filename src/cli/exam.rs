@@ -47,7 +47,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     // On a server, the name of the first file identifies the command.
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     let mut mujoco = if asks_mujoco { Some(Mujoco::start()?) } else { None };
     let mut rows = Vec::new();
     let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {

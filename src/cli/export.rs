@@ -4,7 +4,6 @@ use std::cell::Cell;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 use serde_json::json;
 
@@ -12,13 +11,13 @@ use super::args::{Args, ExportArgs};
 use super::error::CliError;
 #[cfg(feature = "studio")]
 use super::film;
-use super::output::{cancel_on_interrupt, print, print_json};
+use super::output::{cancel_on_interrupt, print_json, print_line};
 use super::replay::equals_record;
 use snakes_core::check::Invalid;
 use snakes_lab::export::{ExportFormat, ExportOrder, ExportProgress, ExportSource};
 use snakes_lab::run::headless::{HeadlessError, say};
-use snakes_lab::run::progress_bar::bar_of;
-use snakes_lab::run::{BackgroundTask, RunControl};
+use snakes_lab::run::progress_bar::{bar_of, beneath_bar};
+use snakes_lab::run::{BackgroundTask, RunControl, WorkersError};
 
 /// Number of positions of the progress bar.
 const PER_MILLE: f64 = 1000.0;
@@ -102,9 +101,10 @@ fn with_progress(
     wanted: &ExportArgs,
     work: impl FnOnce(&ExportProgress) -> Result<PathBuf, CliError>,
 ) -> Result<(), CliError> {
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     if wanted.until_input_ends {
-        cancel_at_end_of_input(&control).map_err(HeadlessError::from)?;
+        let watched = cancel_at_end_of_input(&control).map_err(WorkersError::from);
+        watched.map_err(HeadlessError::from)?;
     }
     let saved = if args.json {
         let told = Cell::new(None);
@@ -119,17 +119,14 @@ fn with_progress(
         work(&ExportProgress::new(&show, &control))?
     } else {
         let bar = bar_of(PER_MILLE as u64, "‰");
-        bar.enable_steady_tick(Duration::from_millis(200));
         let show = |share: f64| bar.set_position((share * PER_MILLE) as u64);
-        let result = work(&ExportProgress::new(&show, &control));
-        bar.finish_and_clear();
-        result?
+        beneath_bar(&bar, || work(&ExportProgress::new(&show, &control)))?
     };
     let path = saved.display();
     if args.json {
         return print_json(&json!({"type": "done", "saved": path.to_string()}));
     }
-    print(&format!("saved to {path}\n"))
+    print_line(&format!("saved to {path}"))
 }
 
 /// Cancels at the end of standard input, so that a program that started this one can end it, even by its own end.

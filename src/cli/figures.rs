@@ -1,17 +1,16 @@
 //! `snakes export RUN --figures`: a picture of each generation's champion, and a plot of a torque signal.
 
 use std::path::Path;
-use std::time::Duration;
 
 use super::error::CliError;
-use super::output::print;
+use super::output::print_line;
 use crate::studio::figures;
 use snakes_core::evolve::Champion;
 use snakes_core::save::{
     LoadedChampion, Picture, SavesFolder, load_run, store_picture, within_run,
 };
 use snakes_lab::plot;
-use snakes_lab::run::progress_bar::bar_of;
+use snakes_lab::run::progress_bar::{bar_of, beneath_bar};
 
 /// Width and height of the pictures, in pixels.
 const SIZE: (u32, u32) = (1280, 720);
@@ -25,11 +24,11 @@ pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
         None => within_run(run, "figures")?,
     };
     SavesFolder::find(Some(&folder)).prepare()?;
-    let mut said = String::from("saved to\n");
+    let mut saved = Vec::new();
     let mut keep = |name: String, picture: &Picture| -> Result<(), CliError> {
         let path = if named.is_some() { folder.join(name) } else { within_run(&folder, &name)? };
         store_picture(&path, picture)?;
-        said += &format!("  {}\n", path.display());
+        saved.push(path);
         Ok(())
     };
     if let (Some(last), Some(number)) = (champions.last(), numbers.last()) {
@@ -37,10 +36,7 @@ pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
         keep("signal.png".to_owned(), &plot::signal(&last.champion, &title)?)?;
     }
     let bar = bar_of(champions.len() as u64, "pictures");
-    // Drawing the first picture takes seconds to begin.
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let pictures = figures::draw(&champions, SIZE, |_| bar.inc(1));
-    bar.finish_and_clear();
+    let pictures = beneath_bar(&bar, || figures::draw(&champions, SIZE, |_| bar.inc(1)));
     for ((number, loaded), (mut picture, evaluation)) in
         numbers.iter().zip(&champions).zip(pictures?)
     {
@@ -61,5 +57,6 @@ pub fn draw(run: &Path, named: Option<&Path>) -> Result<(), CliError> {
         plot::caption(&mut picture, &text)?;
         keep(format!("generation-{number}.png"), &picture)?;
     }
-    print(&said)
+    print_line("saved to")?;
+    saved.iter().try_for_each(|path| print_line(&format!("  {}", path.display())))
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{ExportArgs, FilmArgs, number, number_or, size};
+use super::args::{ExportArgs, FPS, FilmArgs, SPEED, number_if, size};
 use super::error::CliError;
 use super::replay::{champions_to_draw, longest_s};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
-use snakes_core::check::{Invalid, within};
+use snakes_core::check::Invalid;
 use snakes_core::save::{LoadedChampion, load_run};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
@@ -14,10 +14,6 @@ use snakes_lab::export::{ExportFormat, ExportProgress};
 const LARGEST_PIXELS: u32 = 4096;
 /// Minimum width and height of frames, in pixels.
 const LEAST_PIXELS: (u32, u32) = (64, 64);
-/// Allowed frames per second, except for GIF.
-const FPS: std::ops::RangeInclusive<u32> = 1..=120;
-/// Allowed speeds, in simulated seconds per second of the film.
-const SPEED: std::ops::RangeInclusive<f64> = 0.1..=16.0;
 
 /// A film to be drawn, as the flags describe it.
 pub struct OrderedFilm {
@@ -38,24 +34,24 @@ pub fn ordered(
     let text = flags.size.as_deref().unwrap_or(default);
     let size = size("--size", text, LEAST_PIXELS, LARGEST_PIXELS)?;
     check_film_size(format, size)?;
-    let fps = number_or("--fps", &flags.fps, if is_gif { 25 } else { 30 }, "a number")?;
-    within("--fps", fps, if is_gif { crate::studio::film::GIF_FPS } else { FPS })?;
-    let speed = number_or("--speed", &flags.speed, 1.0, "a number")?;
-    within("--speed", speed, SPEED)?;
-    let end_s = flags.end.as_deref().map(|text| number("--end", text, "a number"));
+    let (fps, default_fps) = if is_gif { (crate::studio::film::GIF_FPS, 25) } else { (FPS, 30) };
+    let fps = number_if("--fps", &flags.fps, fps)?;
+    let speed = number_if("--speed", &flags.speed, SPEED)?;
+    let parts = parts(wanted, format)?;
+    let [start_s, end_s] =
+        moments(flags, longest_s(parts.iter().flat_map(|part| &part.champions)))?;
     let order = FilmOrder {
-        parts: parts(wanted, format)?,
-        start_s: number_or("--start", &flags.start, 0.0, "a number")?,
-        end_s: end_s.transpose()?,
-        speed,
-        fps,
+        parts,
+        start_s: start_s.unwrap_or(0.0),
+        end_s,
+        speed: speed.unwrap_or(1.0),
+        fps: fps.unwrap_or(default_fps),
         size,
         camera: flags.camera()?,
         theme: flags.theme()?,
         overlays: flags.overlays()?,
         has_captions: !flags.no_captions,
     };
-    check_moments(flags, &order)?;
     Ok(OrderedFilm { order, format, path: path.to_owned() })
 }
 
@@ -71,17 +67,16 @@ impl OrderedFilm {
     }
 }
 
-/// Checks that the film begins before it ends, within the longest trial.
-fn check_moments(flags: &FilmArgs, order: &FilmOrder) -> Result<(), Invalid> {
-    let longest_s = longest_s(order.parts.iter().flat_map(|part| &part.champions));
-    within("--start", order.start_s, 0.0..=longest_s)?;
-    let Some(end_s) = order.end_s else { return Ok(()) };
-    within("--end", end_s, order.start_s..=longest_s)?;
-    if end_s > order.start_s {
-        return Ok(());
+/// Returns the first and the last moment of a film, if they are given: the film begins before it ends, within the longest trial.
+fn moments(flags: &FilmArgs, longest_s: f64) -> Result<[Option<f64>; 2], Invalid> {
+    let start_s = number_if("--start", &flags.start, 0.0..=longest_s)?;
+    let from_s = start_s.unwrap_or(0.0);
+    let end_s = number_if("--end", &flags.end, from_s..=longest_s)?;
+    if end_s.is_some_and(|end_s| end_s <= from_s) {
+        let given = flags.end.as_deref().unwrap_or_default();
+        return Err(Invalid::new("--end", given, format!("more than --start, {from_s}")));
     }
-    let given = flags.end.as_deref().unwrap_or_default();
-    Err(Invalid::new("--end", given, format!("more than --start, {}", order.start_s)))
+    Ok([start_s, end_s])
 }
 
 /// Returns the parts of the film: all champions side by side or, as a story, some generations in turn.
@@ -121,4 +116,65 @@ fn story(wanted: &ExportArgs) -> Result<Vec<FilmPart>, CliError> {
         FilmPart { title: Some((title, below)), champions }
     };
     Ok(champions.map(part).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Parsed, Task, parse};
+
+    /// Returns the film that flags describe, or the error.
+    fn film(ending: &str, flags: &str) -> Result<FilmOrder, String> {
+        let climber = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+        let words = format!("snakes export {climber} -o a.{ending} {flags}");
+        let Ok(Parsed::Run(_, task)) = parse(words.split_whitespace().map(Into::into)) else {
+            return Err(format!("{words} is no command"));
+        };
+        let Task::Export(wanted) = *task else { return Err(format!("{words} is no export")) };
+        let path = Path::new("a").with_extension(ending);
+        let format = ExportFormat::of_path("--output", &path).map_err(|error| error.to_string())?;
+        ordered(&wanted, format, &path).map(|film| film.order).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn f14_the_errors_and_the_help_of_a_flag_name_the_numbers_that_it_takes() {
+        for (flag, ending) in [
+            ("--fps", "mp4"),
+            ("--fps", "gif"),
+            ("--speed", "mp4"),
+            ("--start", "mp4"),
+            ("--end", "mp4"),
+        ] {
+            let refusal =
+                |value: &str| film(ending, &format!("{flag} {value}")).expect_err("refused");
+            let told = refusal("many");
+            let (_, range) = told.split_once("allowed: ").expect("what is allowed");
+            let range = range.trim_start_matches("a whole number from ");
+            let (least, most) = range.split_once(" to ").expect("a range");
+            assert!(film(ending, &format!("{flag} {most}")).is_ok(), "{flag} {most}");
+            // A film that ends where it begins has no moment.
+            assert_eq!(
+                film(ending, &format!("{flag} {least}")).is_ok(),
+                flag != "--end",
+                "{flag} {least}"
+            );
+            for beyond in [format!("-{most}"), format!("{most}0")] {
+                assert!(refusal(&beyond).ends_with(range), "{}", refusal(&beyond));
+            }
+            if flag == "--fps" {
+                assert!(
+                    ["0.5", "1e1"].iter().all(|text| refusal(text) == told.replace("many", text))
+                );
+            }
+        }
+        let Ok(Parsed::Print(help)) = parse(["snakes", "export", "--help"].map(Into::into)) else {
+            unreachable!("there is help")
+        };
+        let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        let (least, most) = FPS.into_inner();
+        let of_gif = crate::studio::film::GIF_FPS.into_inner().1;
+        assert!(help.contains(&format!("{least} to {most}, for .gif up to {of_gif}")), "{help}");
+        let (least, most) = SPEED.into_inner();
+        assert!(help.contains(&format!("{least} to {most} [default: 1]")), "{help}");
+    }
 }

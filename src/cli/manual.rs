@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args;
 use super::error::CliError;
-use super::output::print;
+use super::output::{print, print_line};
 use snakes_core::save::{SavesFolder, store_text};
 
 /// Prints the program's manual page, or writes the pages of all commands into the folder `named`.
@@ -18,5 +18,5 @@ pub fn manual(named: Option<&Path>) -> Result<(), CliError> {
     for page in &pages {
         store_text(&folder.path().join(&page.file), &page.text)?;
     }
-    print(&format!("saved to {}\n", folder.path().display()))
+    print_line(&format!("saved to {}", folder.path().display()))
 }

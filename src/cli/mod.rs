@@ -38,9 +38,11 @@ use output::{cancel_on_interrupt, print};
 
 use snakes_core::save::run_name;
 use snakes_lab::run::headless::{self, say};
+use snakes_lab::run::report_panics;
 
 /// Runs the program with these arguments, of which the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    report_panics();
     let result = args::parse(arguments).and_then(|parsed| match parsed {
         args::Parsed::Run(args, task) => dispatch(*args, &task),
         args::Parsed::Print(text) => print(&text),
@@ -48,8 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            let line = error.to_string().replace(char::is_control, " ");
-            say(&format!("error: {line}"));
+            say(&format!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
     }
@@ -102,7 +103,7 @@ fn perform(args: &Args, task: &Task) -> Result<(), CliError> {
 fn evolve(args: &Args) -> Result<(), CliError> {
     let source = args.run_source()?;
     let evaluator = evaluators::evaluator(args, &run_name(&source.plan), &source.folder)?;
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     let mut out = io::stdout();
     let result = headless::evolve(source, &*evaluator, args.json, &control, &mut out);
     evaluators::trusted(&*evaluator, result)

@@ -1,6 +1,6 @@
 //! Standard output, and requests to end the program.
 
-use std::io::{self, Write};
+use std::io;
 #[cfg(unix)]
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,20 +8,31 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::{Value, json};
 
 use super::error::CliError;
-use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::HeadlessError;
+use snakes_lab::run::terminal::{write_line, write_text};
+use snakes_lab::run::{RunControl, WorkersError};
 
-/// Writes to standard output. A reader that stops early (`snakes show presets | head -1`) causes no error.
+/// Writes a text of several lines to standard output.
 pub fn print(text: &str) -> Result<(), CliError> {
-    match io::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other.map_err(HeadlessError::from)?),
-    }
+    written(write_text(&mut io::stdout(), text))
+}
+
+/// Writes a line to standard output, which stays one line whatever is in it.
+pub fn print_line(line: &str) -> Result<(), CliError> {
+    written(write_line(&mut io::stdout(), line))
 }
 
 /// Writes a line of JSON to standard output.
 pub fn print_json(line: &Value) -> Result<(), CliError> {
-    print(&format!("{line}\n"))
+    print_line(&line.to_string())
+}
+
+/// Returns the result of writing. A reader that stops early (`snakes show presets | head -1`) causes no error.
+fn written(result: io::Result<()>) -> Result<(), CliError> {
+    match result {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other.map_err(HeadlessError::from)?),
+    }
 }
 
 /// Prints a list of things of one kind, each with its name and a sentence about it.
@@ -39,19 +50,23 @@ static CANCELLED_AT_END: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
 
 /// Returns a control that a request to end the program cancels: the interrupt key, or a signal of the system. It replaces any earlier
 /// control.
-pub fn cancel_on_interrupt() -> Arc<RunControl> {
+///
+/// # Errors
+/// Fails if the system refuses the thread that waits for such a request, which would then have no effect.
+pub fn cancel_on_interrupt() -> Result<Arc<RunControl>, CliError> {
     let current = || CANCELLED_AT_END.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
     let is_first = current().replace(Arc::clone(&control)).is_none();
     if is_first {
-        // If the handler cannot be set, such a request ends the program at once, and files written so far are complete.
-        let _ = at_requests_to_end(move || {
+        let cancel = move || {
             if let Some(control) = current().as_ref() {
                 control.cancel();
             }
-        });
+        };
+        at_requests_to_end(cancel)
+            .map_err(|error| HeadlessError::from(WorkersError::from(error)))?;
     }
-    control
+    Ok(control)
 }
 
 /// Calls `act` at each request to end the program: the interrupt key, SIGTERM and, when the terminal is closed, SIGHUP.
@@ -78,6 +93,9 @@ fn is_ignored(signal: i32) -> bool {
 /// Calls `act` at each request to end the program: Ctrl-C and Ctrl-Break. When the console is closed, Windows ends the program soon after
 /// the request.
 #[cfg(windows)]
-fn at_requests_to_end(act: impl FnMut() + Send + 'static) -> Result<(), ctrlc::Error> {
-    ctrlc::set_handler(act)
+fn at_requests_to_end(act: impl FnMut() + Send + 'static) -> io::Result<()> {
+    ctrlc::set_handler(act).map_err(|error| match error {
+        ctrlc::Error::System(error) => error,
+        other => io::Error::other(other),
+    })
 }

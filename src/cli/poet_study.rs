@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::{Args, StudyArgs, WHOLE, number_or};
+use super::args::{Args, StudyArgs, number_if};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print, print_json};
+use super::output::{cancel_on_interrupt, print, print_json, print_line};
 use snakes_core::check::Invalid;
 use snakes_core::evolve::RunPlan;
 use snakes_core::save::{
@@ -16,10 +16,10 @@ use snakes_core::save::{
 };
 use snakes_core::world::PhysicsEngine;
 use snakes_lab::run::headless::{HeadlessError, say};
-use snakes_lab::run::progress_bar::bar_of;
+use snakes_lab::run::progress_bar::{bar_of, beneath_bar};
 use snakes_lab::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
 use snakes_lab::study::poet::{
-    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
+    ControlRun, hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
 };
 
 /// Default seed of the run. No setting was chosen with this seed or with the seeds of the direct searches, which follow it.
@@ -41,13 +41,15 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
         ("--suite", !wanted.suite.is_empty()),
         ("--preset", args.run.settings.preset.is_some()),
         ("--stairs", args.run.settings.stairs.is_some()),
-        ("--duration", args.duration_s()?.is_some()),
-        ("--set, --population, --generations or --fitness", !args.changes()?.is_empty()),
+        (
+            "--set, --population, --generations, --duration or --fitness",
+            !args.changes()?.is_empty(),
+        ),
     ];
     if let Some((flag, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
         return Err(CliError::Usage(format!("{flag} has no effect with snakes study poet")));
     }
-    let rounds = number_or("--rounds", &wanted.rounds, ROUNDS, WHOLE)?;
+    let rounds = number_if("--rounds", &wanted.rounds, 1..=u32::MAX)?.unwrap_or(ROUNDS);
     let mut settings = load_preset("poet")?.settings;
     // The published run was computed with this engine.
     settings.trial.physics.engine = PhysicsEngine::Rapier;
@@ -70,7 +72,7 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
         }
         study = earlier;
     }
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     let evaluator = evaluator(args, "study-poet", &ron)?;
     if study.rounds < rounds {
         let earlier = if args.run.restart { ExistingRun::Discard } else { ExistingRun::Keep };
@@ -82,25 +84,16 @@ pub fn poet_study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let left = planned_controls(&study, &plan);
     say(&format!("{} direct searches left", left.len()));
     let bar = bar_of(left.iter().map(|of| of.plan.budget()).sum(), "evaluations");
-    let result = run_controls(
-        &left,
-        &*evaluator,
-        &control,
-        |spent| bar.inc(spent),
-        |run| {
-            let share = run.share.map_or("–".to_owned(), |share| format!("{share:.3}"));
-            let (node, seed, evaluations) = (run.node + 1, run.seed, run.evaluations);
-            bar.suspend(|| {
-                say(&format!(
-                    "stairs {node:<3} seed {seed}: share {share} in {evaluations} evaluations"
-                ));
-            });
-            study.controls.push(run);
-            // The study is stored after each run, so that a kill loses no finished run.
-            Ok(store_poet_study(&ron, &study)?)
-        },
-    );
-    bar.finish_and_clear();
+    let done = |run: ControlRun| {
+        let share = run.share.map_or("–".to_owned(), |share| format!("{share:.3}"));
+        let (node, seed, evaluations) = (run.node + 1, run.seed, run.evaluations);
+        say(&format!("stairs {node:<3} seed {seed}: share {share} in {evaluations} evaluations"));
+        study.controls.push(run);
+        // The study is stored after each run, so that a kill loses no finished run.
+        Ok(store_poet_study(&ron, &study)?)
+    };
+    let spend = |spent| bar.inc(spent);
+    let result = beneath_bar(&bar, || run_controls(&left, &*evaluator, &control, spend, done));
     trusted(&*evaluator, result.map_err(|error| error.keeping(&ron)))?;
     report(args, &study, &ron, &csv)
 }
@@ -114,8 +107,9 @@ fn report(args: &Args, study: &PoetStudy, ron: &Path, csv: &Path) -> Result<(), 
             "challenges": study.challenges.last(), "searches": study.controls.len(), "files": [ron, csv],
         }));
     }
-    let [ron, csv] = [ron, csv].map(|file| file.display().to_string());
-    print(&format!("{}\nsaved to  {ron}\n          {csv}\n", poet_claims(study)))
+    print(&format!("{}\n", poet_claims(study)))?;
+    print_line(&format!("saved to  {}", ron.display()))?;
+    print_line(&format!("          {}", csv.display()))
 }
 
 /// Continues a run of POET up to its last round, and finds its hardest stairs.

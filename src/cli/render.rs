@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args::{ExportArgs, number, size};
 use super::error::CliError;
-use super::output::print;
+use super::output::print_line;
 use super::replay::{champions_to_draw, longest_s};
 use crate::studio::MAX_LANES;
 use crate::studio::render::{RenderedScene, render};
@@ -35,11 +35,10 @@ pub fn draw(wanted: &ExportArgs, at: &str, path: &Path) -> Result<(), CliError> 
     let (mut picture, tags) = render(&scene)?;
     plot::tags(&mut picture, &tags)?;
     store_picture(path, &picture)?;
-    print(&format!("saved to {}\n", path.display()))
+    print_line(&format!("saved to {}", path.display()))
 }
 
 fn moment(text: &str, longest_s: f64) -> Result<f64, Invalid> {
-    let at_s = number("--at", text, "a number, or end")?;
-    within("--at", at_s, 0.0..=longest_s)?;
-    Ok(at_s)
+    number("--at", text, 0.0..=longest_s)
+        .map_err(|invalid| Invalid { allowed: invalid.allowed + ", or end", ..invalid })
 }

@@ -4,7 +4,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::error::CliError;
-use super::output::print;
+use super::output::print_line;
+use snakes_core::check::printable;
 use snakes_core::save::LoadedChampion;
 #[cfg(feature = "studio")]
 use snakes_core::save::load_champion;
@@ -15,7 +16,7 @@ use snakes_lab::run::headless::say;
 pub fn replay(files: &[PathBuf], json: bool) -> Result<(), CliError> {
     let replay = |file: &PathBuf| {
         if files.len() > 1 && !json {
-            print(&format!("{}\n", file.display()))?;
+            print_line(&file.display().to_string())?;
         }
         Ok(run::replay(file, json, &mut io::stdout().lock())?)
     };
@@ -33,9 +34,9 @@ pub fn equals_record(file: &Path, loaded: &LoadedChampion) -> Result<bool, CliEr
     Ok(difference.is_none())
 }
 
-/// Returns the name of a champion, which is the stem of its file.
+/// Returns the name of a champion for people, which is the stem of its file.
 pub fn name_of(file: &Path) -> String {
-    file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    printable(&file.file_stem().unwrap_or_default().to_string_lossy()).into_owned()
 }
 
 /// Loads a saved champion with its name.

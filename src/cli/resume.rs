@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::CliError;
-use super::output::print;
+use super::output::print_line;
 use snakes_core::save::{RunSummary, SaveError, SavesFolder, is_run};
 use snakes_lab::run::RunSource;
 
@@ -12,11 +12,11 @@ use snakes_lab::run::RunSource;
 pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
     let runs = if is_run(folder) { Vec::new() } else { SavesFolder::find(Some(folder)).all_runs() };
     if runs.len() > 1 {
-        let lines = runs.iter().map(|(folder, run)| match run {
+        let mut lines = runs.iter().map(|(folder, run)| match run {
             Ok(run) => line(run, json),
             Err(problem) => line_of_damaged(folder, problem, json),
         });
-        print(&lines.collect::<String>())?;
+        lines.try_for_each(|line| print_line(&line))?;
         return Err(CliError::SeveralRuns { folder: folder.to_owned(), count: runs.len() });
     }
     match runs.into_iter().next() {
@@ -28,14 +28,13 @@ pub fn run_in(folder: &Path, json: bool) -> Result<RunSource, CliError> {
 
 /// Describes a run that cannot be read in a line: its folder and the reason.
 fn line_of_damaged(folder: &Path, problem: &SaveError, json: bool) -> String {
-    let problem = problem.to_string().replace(char::is_control, " ");
     if json {
         let line = serde_json::json!({
-            "type": "run", "folder": folder, "resumable": false, "problem": problem,
+            "type": "run", "folder": folder, "resumable": false, "problem": problem.to_string(),
         });
-        return format!("{line}\n");
+        return line.to_string();
     }
-    format!("{}  cannot be resumed: {problem}\n", folder.display())
+    format!("{}  cannot be resumed: {problem}", folder.display())
 }
 
 /// Describes a run in a line: its folder, the name that the user gave it, and its state.
@@ -47,12 +46,12 @@ fn line(run: &RunSummary, json: bool) -> String {
         let line = serde_json::json!({
             "type": "run", "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
         });
-        return format!("{line}\n");
+        return line.to_string();
     }
     let folder = folder.display();
     let name = name.as_ref().map(|name| format!("  \"{name}\"")).unwrap_or_default();
     let state = if is_stopped { "can be resumed" } else { "finished" };
-    format!("{folder}{name}  {finished} of {generations} generations, {state}\n")
+    format!("{folder}{name}  {finished} of {generations} generations, {state}")
 }
 
 #[cfg(test)]
@@ -127,7 +126,7 @@ mod tests {
         assert_eq!(
             line(&runs[0], false),
             format!(
-                "{}  \"The icy one\"  0 of {generations} generations, can be resumed\n",
+                "{}  \"The icy one\"  0 of {generations} generations, can be resumed",
                 run.display()
             )
         );

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use super::args::{Args, StudyArgs, WHOLE, number, number_or};
+use super::args::{Args, StudyArgs, number_if};
 use super::error::{CliError, of_flag};
 use super::evaluators::{evaluator, trusted};
-use super::output::{cancel_on_interrupt, print, print_names};
+use super::output::{cancel_on_interrupt, print, print_json, print_line, print_names};
 use super::poet_study;
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 use snakes_core::schema::Choices;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::study::{
-    DURATION, Plain, Results, Study, StudyFiles, built_in_studies, json_lines, perform,
+    EVALUATIONS, Plain, Results, SEEDS, Study, StudyFiles, built_in_studies, json_lines, perform,
     suites_named, tables, values_as_markdown,
 };
 
@@ -34,7 +34,7 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     folder.prepare()?;
     let files = StudyFiles::within(folder.path(), &study);
     let evaluator = evaluator(args, &format!("study-{}", study.name), &files.ron)?;
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     let performed = perform(&study, &files, args.run.restart, &*evaluator, &control);
     let performed = performed.map_err(|error| match error {
         HeadlessError::Save(SaveError::Study(invalid)) => {
@@ -52,11 +52,11 @@ pub fn study(args: &Args, wanted: &StudyArgs) -> Result<(), CliError> {
     let (runs, findings) = trusted(&*evaluator, performed)?;
     let results = Results { study: &study, runs: &runs, findings: &findings };
     if args.json {
-        let lines = json_lines(&results, &files).into_iter().map(|line| format!("{line}\n"));
-        return print(&lines.collect::<String>());
+        return json_lines(&results, &files).iter().try_for_each(print_json);
     }
-    let saved = files.all().map(|file| format!("saved to  {}\n", file.display())).concat();
-    print(&format!("{}\n{saved}", tables(&results)))
+    print(&format!("{}\n", tables(&results)))?;
+    let saved = |file: &Path| print_line(&format!("saved to  {}", file.display()));
+    files.all().into_iter().try_for_each(saved)
 }
 
 /// Returns an error about a setting of an arm with the name of the flag that gave the value, if there is one.
@@ -87,15 +87,11 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
         study.preset.clone_from(preset);
     }
     study.first_seed = args.seed_or(study.first_seed)?;
-    study.seeds = number_or("--seeds", &wanted.seeds, study.seeds, WHOLE)?;
-    if let Some(text) = &wanted.evaluations {
-        study.evaluations = Some(number("--evaluations", text, WHOLE)?);
-    }
+    study.seeds = number_if("--seeds", &wanted.seeds, SEEDS)?.unwrap_or(study.seeds);
+    let evaluations = number_if("--evaluations", &wanted.evaluations, EVALUATIONS)?;
+    study.evaluations = evaluations.or(study.evaluations);
     study.stairs = args.run.settings.stairs.clone().or(study.stairs);
-    let mut changes = args.changes()?;
-    if let Some(duration_s) = args.duration_s()? {
-        changes.push((DURATION, duration_s.to_string()));
-    }
+    let changes = args.changes()?;
     if study.evaluations.is_some() && changes.iter().any(|(name, _)| name.ends_with("generations"))
     {
         let problem = "--generations has no effect with this study; --evaluations sets the budget";

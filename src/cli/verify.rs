@@ -13,7 +13,7 @@ use snakes_lab::run::verify::Trajectories;
 pub fn verify(args: &Args) -> Result<(), CliError> {
     let reference = Trajectories::reference()?;
     let evaluator = args.local_evaluator()?;
-    let control = cancel_on_interrupt();
+    let control = cancel_on_interrupt()?;
     let bar = ProgressBar::new(1);
     let computed = Trajectories::computed(&*evaluator, &control, |done, all| {
         bar.set_length(all as u64);

@@ -234,9 +234,12 @@ fn no_two_types_share_a_name() {
 }
 
 /// Words that may be used only in certain modules: word, modules, reason. Packages on which a crate does not depend need no row.
-const RESTRICTED_WORDS: [(&str, &[&str], &str); 9] = [
+const RESTRICTED_WORDS: [(&str, &[&str], &str); 12] = [
     ("rapier3d", &["world", "run", "studio"], "only the world knows the physics engine"),
     ("std::thread", &["run", "cluster"], "results could depend on threads"),
+    ("thread::spawn", &[], "it panics if the system refuses a thread; Builder returns an error"),
+    ("scope.spawn(", &[], "it panics if the system refuses a thread; Builder returns an error"),
+    ("enable_steady_tick", &[], "it panics if the system refuses a thread"),
     ("std::net", &["cluster"], "only an evaluator connects to other machines"),
     (
         "process::Command",

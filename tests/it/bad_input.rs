@@ -74,11 +74,11 @@ fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
     let folder = folder();
     let climber = concat!("export ", env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron -o a.png");
     for (arguments, message) in [
-        ("--at 99", "--at is 99; allowed: 0 to 15"),
-        ("--at -1", "--at is -1; allowed: 0 to 15"),
-        ("--at soon", "--at is \"soon\"; allowed: a number, or end"),
+        ("--at 99", "--at is 99; allowed: 0 to 15, or end"),
+        ("--at -1", "--at is -1; allowed: 0 to 15, or end"),
+        ("--at soon", "--at is \"soon\"; allowed: 0 to 15, or end"),
         ("--at 3 --size 0x0", "--size width is 0; allowed: 64 to 8192"),
-        ("--at 3 --size big", "--size is \"big\"; allowed: WIDTHxHEIGHT, such as 1280x720"),
+        ("--at 3 --size big", "--size is \"big\"; allowed: WIDTHxHEIGHT, 64x64 to 8192x8192"),
         ("--at 3 --camera foo", "--camera is \"foo\"; allowed: follow, side or top"),
         ("--at 3 --show ghosts", "--show is \"ghosts\"; allowed: contacts, torques, trail or line"),
         ("--at end --theme dim", "--theme is \"dim\"; allowed: light or dark"),

@@ -12,11 +12,15 @@ mod docs;
 mod exports;
 #[cfg(feature = "studio")]
 mod features;
+#[cfg(target_os = "linux")]
+mod few_threads;
 mod fuzz;
 mod headless;
 mod hostile;
 mod keep;
 mod learned_files;
+#[cfg(unix)]
+mod names;
 mod opening;
 #[cfg(unix)]
 mod other_hands;

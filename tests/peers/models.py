@@ -68,7 +68,8 @@ def structure(checks, model, expected):
     inertias = [principal(model, body) for body in range(1, model.nbody)]
     checks.relative("inertias", inertias, [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
     checks.relative("total mass", model.body_mass.sum(), sum(limb["kg"] for limb in expected["limbs"]), 1e-6)
-    limits = [joint[f"{axis}_limit_rad"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    # A locked axis needs a range that is not empty.
+    limits = [max(joint[f"{axis}_limit_rad"], 1e-4) for joint in expected["joints"] for axis in ("bend", "twist")]
     checks.near("limits", model.jnt_range[1:, 1], limits, 1e-6)
     checks.near("limits", -model.jnt_range[1:, 0], limits, 1e-6)
     checks.relative("dampings", model.dof_damping[6:], [joint["damping"] for joint in expected["joints"] for _ in axes[:2]], 1e-6)
@@ -256,6 +257,8 @@ def freed(text):
     place = re.search(rf"Start of limb_1 in the world: xyz {number} {number} {number}, rpy 0 0 {number} -->", text)
     x, y, z, turn = (float(part) for part in place.groups())
     spec = mujoco.MjSpec.from_string(text)
+    # Links behind fixed joints stay links of their own.
+    spec.compiler.fusestatic = False
     root = spec.body("limb_1")
     root.pos, root.quat = [x, y, z], [math.cos(turn / 2), 0, 0, math.sin(turn / 2)]
     root.add_freejoint()
@@ -267,24 +270,29 @@ def urdf(checks, model, expected):
     limbs, joints = len(expected["limbs"]), len(expected["joints"])
     order = ["world", "limb_1"]
     order += [name for joint in range(1, joints + 1) for name in (f"joint_{joint}", f"limb_{joint + 1}")]
-    axes = [f"{axis}_{joint + 1}" for joint in range(joints) for axis in ("bend", "twist")]
+    # An axis with a limit of 0 is fixed; every other has its limit, which no program ignores.
+    turning = [(joint, axis) for joint in range(joints) for axis in ("bend", "twist") if expected["joints"][joint][f"{axis}_limit_rad"] > 0.0]
+    axes = [f"{axis}_{joint + 1}" for joint, axis in turning]
     # The links of a creature are ordered branch by branch.
     sort = sorted if "start_rad" in expected else list
     checks.equal("URDF: links", sort(names(model.body, model.nbody)), sort(order))
     checks.equal("URDF: joints", sort(names(model.joint, model.njnt)), sort(["", *axes]))
-    checks.equal("URDF: degrees of freedom", model.nv, 6 + 2 * joints)
+    checks.equal("URDF: degrees of freedom", model.nv, 6 + len(axes))
     bodies = [model.body(f"limb_{limb + 1}").id for limb in range(limbs)]
     checks.relative("URDF: masses", model.body_mass[bodies], [limb["kg"] for limb in expected["limbs"]], 1e-6)
     inertias = [principal(model, body) for body in bodies]
     checks.relative("URDF: inertias", inertias, [limb["kg_m2"] for limb in expected["limbs"]], 1e-6)
-    limits = [joint[f"{axis}_limit_rad"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    limits = [expected["joints"][joint][f"{axis}_limit_rad"] for joint, axis in turning]
     hinges = [model.joint(axis).id for axis in axes]
+    checks.equal("URDF: joints have limits", bool(numpy.all(model.jnt_limited[hinges])), True)
     checks.near("URDF: limits", model.jnt_range[hinges, 1], limits, 1e-6)
-    torques = [joint[f"{axis}_nm"] for joint in expected["joints"] for axis in ("bend", "twist")]
+    torques = [expected["joints"][joint][f"{axis}_nm"] for joint, axis in turning]
     strong = numpy.maximum(torques, 1e-9)
     checks.relative("URDF: torques", numpy.maximum(model.jnt_actfrcrange[hinges, 1], 1e-9), strong, 1e-6)
     data = mujoco.MjData(model)
     for joint, bend_rad in enumerate(expected.get("start_rad", [])):
+        if f"bend_{joint + 1}" not in axes:
+            continue
         data.qpos[model.joint(f"bend_{joint + 1}").qposadr[0]] = bend_rad
     mujoco.mj_forward(model, data)
     centres = data.xipos[bodies]

@@ -18,6 +18,7 @@ use super::names::{
     WORK_SUBJECTS, WORKER_NOTICES, result_subject, work_subject, worker_consumer,
 };
 use snakes_core::save::load_text;
+use snakes_lab::run::with_threads;
 
 /// A connection to a NATS server. It reconnects whenever it is lost.
 #[derive(Debug)]
@@ -54,13 +55,15 @@ impl Broker {
     /// The server cannot be reached, refuses the credentials, or has no JetStream.
     pub fn connect(options: &BrokerOptions, name: &str) -> Result<Self, ClusterError> {
         options.check()?;
-        let runtime = Builder::new_multi_thread()
-            .worker_threads(1)
-            .thread_name("cluster")
-            .enable_all()
-            .build()?;
         let connection = Arc::new(ServerConnection::new(&options.url));
-        let (client, jetstream) = runtime.block_on(connect(options, name, &connection))?;
+        let mut runtime = Builder::new_multi_thread();
+        runtime.worker_threads(1).thread_name("cluster").enable_all();
+        let begin = || -> Result<_, ClusterError> {
+            let runtime = runtime.build()?;
+            let (client, jetstream) = runtime.block_on(connect(options, name, &connection))?;
+            Ok((runtime, client, jetstream))
+        };
+        let (runtime, client, jetstream) = with_threads(begin)??;
         let handle = runtime.handle().clone();
         let broker = Self {
             options: options.clone(),

@@ -244,10 +244,17 @@ impl Evaluator for Coordinator {
             match calls {
                 &[call] => evaluate(call)?,
                 calls => thread::scope(|scope| {
-                    let running: Vec<_> =
-                        calls.iter().map(|&call| scope.spawn(move || evaluate(call))).collect();
-                    // A call that panicked may have reported nothing. Its caller then evaluates the missing genomes.
-                    running.into_iter().try_for_each(|call| call.join().unwrap_or(Ok(())))
+                    let start = |&call| {
+                        let named = thread::Builder::new().name("call".to_owned());
+                        named.spawn_scoped(scope, move || evaluate(call)).map_err(|_| call)
+                    };
+                    let running: Vec<_> = calls.iter().map(start).collect();
+                    running.into_iter().try_for_each(|call| match call {
+                        // A call that panicked may have reported nothing. Its caller then evaluates the missing genomes.
+                        Ok(call) => call.join().unwrap_or(Ok(())),
+                        // The system refused the call a thread of its own.
+                        Err(call) => evaluate(call),
+                    })
                 })?,
             }
         }

@@ -3,6 +3,7 @@
 //! Input (a flag, a preset, a save, a field of a panel) is checked where it enters. The error message always has three parts: the field,
 //! its value, and the allowed range.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
@@ -98,6 +99,33 @@ pub mod hex_hash {
     }
 }
 
+/// Returns a text from outside, such as the name of a file, as one line that a terminal only shows. A line break becomes a space. Other
+/// control characters, which would move the cursor or change colours, and characters that turn the direction of writing, which would hide
+/// the end of a name, become escapes such as `\u001b`. JSON reads such an escape as the character.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let turns_writing = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let acts = |c: char| c != '\t' && (c.is_control() || turns_writing(c));
+    if !text.contains(acts) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |c: char| match c {
+        '\n' | '\r' => " ".to_owned(),
+        c if acts(c) => format!("\\u{:04x}", u32::from(c)),
+        c => c.to_string(),
+    };
+    Cow::Owned(text.chars().map(shown).collect())
+}
+
+/// Returns a text as a cell of CSV that no spreadsheet computes: a text that begins as a formula does gets an apostrophe in front. Numbers
+/// stay as they are.
+pub fn no_formula(text: &str) -> Cow<'_, str> {
+    if text.starts_with(['=', '+', '-', '@', '\t']) && text.parse::<f64>().is_err() {
+        Cow::Owned(format!("'{text}"))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
 /// Quotes a text from outside for an error message: at most 60 characters, with control characters escaped.
 pub fn quoted(text: &str) -> String {
     format!("{:?}", text.chars().take(60).collect::<String>())
@@ -106,6 +134,32 @@ pub fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn f9_characters_that_act_on_a_terminal_become_escapes_that_json_reads_back() {
+        for plain in ["climber", "Schlange ü", "蛇\tثعبان", "a|b \\ c"] {
+            assert!(matches!(printable(plain), Cow::Borrowed(same) if same == plain), "{plain}");
+        }
+        assert_eq!(printable("\u{1b}[31mred\u{7f}"), "\\u001b[31mred\\u007f");
+        assert_eq!(printable("a\nb\rc"), "a b c");
+        assert_eq!(printable("nor.\u{202e}gpj\u{2066}"), "nor.\\u202egpj\\u2066");
+        // In a line of JSON only these are left as they are.
+        let name = "a\u{9b}2J\u{7f}\u{202e}b";
+        let line = serde_json::to_string(name).expect("a text");
+        assert!(line.contains('\u{9b}'), "{line}");
+        let read: String = serde_json::from_str(&printable(&line)).expect("JSON");
+        assert_eq!(read, name);
+    }
+
+    #[test]
+    fn f13_a_name_that_a_spreadsheet_would_compute_gets_an_apostrophe_and_a_number_none() {
+        for formula in ["=1+1", "+A1", "-x", "@SUM(A1)", "=cmd|' /C calc'!A0", "-"] {
+            assert_eq!(no_formula(formula), format!("'{formula}"));
+        }
+        for plain in ["climber", "-3.25", "+1e-3", "1=1", "NA", "", "-inf", "generation 2"] {
+            assert_eq!(no_formula(plain), plain);
+        }
+    }
 
     #[test]
     fn names_of_devices_are_refused_in_any_case_and_with_any_extension() {

@@ -1,5 +1,7 @@
 //! The flags of `snakes export` that only pictures and films have.
 
+use std::ops::RangeInclusive;
+
 #[cfg(feature = "studio")]
 use crate::cli::error::{CliError, of_flag};
 #[cfg(feature = "studio")]
@@ -13,8 +15,7 @@ pub struct FilmArgs {
     /// Size, in pixels [default: 1280x720; for .gif 640x360; with --at 1920x1080]
     #[arg(long, value_name = "WIDTHxHEIGHT", help_heading = FILMS)]
     pub size: Option<String>,
-    /// Frames per second of a film [default: 30; for .gif 25]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = FILMS)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = FILMS, help = fps_help())]
     pub fps: Option<String>,
     /// Camera: follow, side or top [default: follow]
     #[arg(long, value_name = "NAME", help_heading = FILMS)]
@@ -25,8 +26,7 @@ pub struct FilmArgs {
     /// Leave out names, results and the time
     #[arg(long, help_heading = FILMS)]
     pub no_captions: bool,
-    /// Simulated seconds per second of a film, from 0.1 to 16 [default: 1]
-    #[arg(long, value_name = "X", allow_negative_numbers = true, help_heading = FILMS)]
+    #[arg(long, value_name = "X", allow_negative_numbers = true, help_heading = FILMS, help = speed_help())]
     pub speed: Option<String>,
     /// First moment of a film, in simulated seconds [default: 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS)]
@@ -47,6 +47,24 @@ pub struct FilmArgs {
 
 /// Heading of the flags of pictures and films in the help.
 const FILMS: &str = "Pictures and films";
+/// Allowed frames per second, except for GIF.
+pub const FPS: RangeInclusive<u32> = 1..=120;
+/// Allowed speeds, in simulated seconds per second of the film.
+pub const SPEED: RangeInclusive<f64> = 0.1..=16.0;
+
+/// Returns the help of `--fps`.
+fn fps_help() -> String {
+    let (least, most) = FPS.into_inner();
+    format!(
+        "Frames per second of a film, {least} to {most}, for .gif up to 50 [default: 30; for .gif 25]"
+    )
+}
+
+/// Returns the help of `--speed`.
+fn speed_help() -> String {
+    let (least, most) = SPEED.into_inner();
+    format!("Simulated seconds per second of a film, {least} to {most} [default: 1]")
+}
 
 impl FilmArgs {
     /// Returns the colour theme.

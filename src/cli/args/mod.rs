@@ -16,7 +16,7 @@ mod values;
 pub use completions::completions;
 pub use export::ExportArgs;
 #[cfg(feature = "studio")]
-pub use film::FilmArgs;
+pub use film::{FPS, FilmArgs, SPEED};
 #[cfg(feature = "cluster")]
 pub use groups::CredentialFlags;
 pub use manual::manual;
@@ -26,4 +26,4 @@ pub use study::StudyArgs;
 pub use task::{Args, Task};
 #[cfg(feature = "studio")]
 pub use values::size;
-pub use values::{WHOLE, number, number_or};
+pub use values::{number, number_if};

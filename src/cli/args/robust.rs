@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use snakes_core::schema::Choices;
+use crate::cli::error::of_flag;
+use snakes_core::check::Invalid;
+use snakes_core::schema::{self, Choices};
 use snakes_core::score::{ExamSuite, PerturbationRange};
 use snakes_lab::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
 
@@ -33,32 +35,37 @@ pub struct PerturbationArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, requires = "trials")]
     pub seed: Option<String>,
     /// Maximum relative change of friction: 0.2 is 20 % up or down
-    #[arg(long, value_name = "SHARE", requires = "trials", default_value_t = PerturbationRange::default().friction)]
-    off_friction: f32,
+    #[arg(long, value_name = "SHARE", requires = "trials", allow_negative_numbers = true, default_value_t = PerturbationRange::default().friction.to_string())]
+    off_friction: String,
     /// Maximum relative change of the steps' height
-    #[arg(long, value_name = "SHARE", requires = "trials", default_value_t = PerturbationRange::default().rise)]
-    off_rise: f32,
+    #[arg(long, value_name = "SHARE", requires = "trials", allow_negative_numbers = true, default_value_t = PerturbationRange::default().rise.to_string())]
+    off_rise: String,
     /// Maximum relative change of the limbs' density
-    #[arg(long, value_name = "SHARE", requires = "trials", default_value_t = PerturbationRange::default().density)]
-    off_density: f32,
+    #[arg(long, value_name = "SHARE", requires = "trials", allow_negative_numbers = true, default_value_t = PerturbationRange::default().density.to_string())]
+    off_density: String,
     /// Maximum shift of the start, along and across the stairs, in metres
-    #[arg(long, value_name = "M", requires = "trials", default_value_t = PerturbationRange::default().start_m)]
-    off_start: f32,
+    #[arg(long, value_name = "M", requires = "trials", allow_negative_numbers = true, default_value_t = PerturbationRange::default().start_m.to_string())]
+    off_start: String,
     /// Maximum turn of the snake at the start, to either side, in degrees
-    #[arg(long, value_name = "DEG", requires = "trials", default_value_t = PerturbationRange::default().turn_deg)]
-    off_turn: f32,
+    #[arg(long, value_name = "DEG", requires = "trials", allow_negative_numbers = true, default_value_t = PerturbationRange::default().turn_deg.to_string())]
+    off_turn: String,
 }
 
-impl From<&PerturbationArgs> for PerturbationRange {
-    fn from(args: &PerturbationArgs) -> Self {
-        Self {
-            friction: args.off_friction,
-            rise: args.off_rise,
-            density: args.off_density,
-            start_m: args.off_start,
-            turn_deg: args.off_turn,
-            ..Self::default()
+impl PerturbationArgs {
+    /// Returns how much the conditions of trials vary. The errors name the flags.
+    pub fn range(&self) -> Result<PerturbationRange, Invalid> {
+        let mut range = PerturbationRange::default();
+        for (flag, name, text) in [
+            ("--off-friction", "friction", &self.off_friction),
+            ("--off-rise", "rise", &self.off_rise),
+            ("--off-density", "density", &self.off_density),
+            ("--off-start", "start_m", &self.off_start),
+            ("--off-turn", "turn_deg", &self.off_turn),
+        ] {
+            let set = schema::set_text(&mut range, name, text);
+            set.and_then(|()| schema::check(&range)).map_err(of_flag(flag))?;
         }
+        Ok(range)
     }
 }
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::task::Args;
-use super::values::{WHOLE, number};
 use crate::cli::error::{CliError, of_flag};
 use crate::cli::replay::name_of;
 use crate::cli::resume::run_in;
@@ -98,23 +97,23 @@ impl Args {
         Ok((preset, settings))
     }
 
-    /// Refuses `--set` for a setting without an effect on a run with these settings.
+    /// Refuses `--set` for a setting without an effect on a run with these settings, and a start inside the stairs.
     fn check_effects(&self, settings: &Settings) -> Result<(), Invalid> {
+        settings.check_start()?;
         let paths =
             self.run.settings.set.iter().filter_map(|text| Some(text.split_once('=')?.0.trim()));
         check_effects(settings, paths)
     }
 
-    /// Returns the settings that `--population`, `--generations`, `--fitness` and `--set` change: names and values.
+    /// Returns the settings that `--population`, `--generations`, `--duration`, `--fitness` and `--set` change: names and values.
     pub fn changes(&self) -> Result<Vec<(&str, String)>, CliError> {
         let mut changes = Vec::new();
-        for (flag, name, text) in [
-            ("--population", "evolution.population", &self.run.settings.population),
-            ("--generations", "evolution.generations", &self.run.settings.generations),
+        for (name, text) in [
+            ("evolution.population", &self.run.settings.population),
+            ("evolution.generations", &self.run.settings.generations),
+            ("trial.duration_s", &self.run.settings.duration),
         ] {
-            if let Some(text) = text {
-                changes.push((name, number::<u32>(flag, text, WHOLE)?.to_string()));
-            }
+            changes.extend(text.iter().map(|text| (name, text.clone())));
         }
         if let Some(text) = &self.run.settings.fitness {
             changes.push(("trial.fitness", Fitness::named("--fitness", text)?.to_string()));
@@ -129,9 +128,6 @@ impl Args {
     fn flags_over(&self, preset: Preset) -> Result<(String, Settings), CliError> {
         let mut settings = preset.settings;
         let changes = self.changes()?;
-        if let Some(duration_s) = self.duration_s()? {
-            settings.trial.duration_s = duration_s;
-        }
         if let Some(named) = &self.run.settings.stairs {
             settings.trial.stairs = load_stairs(named)?.stairs;
         }
@@ -223,9 +219,9 @@ mod tests {
     fn wrong_values_are_refused_with_field_value_and_range() {
         for (words, message) in [
             ("--population 0", "--population is 0; allowed: 1 to 100000"),
-            ("--population -3", "--population is \"-3\"; allowed: a whole number from 0 up"),
+            ("--population -3", "--population is \"-3\"; allowed: 1 to 100000, whole numbers"),
             ("--duration -1", "--duration is -1; allowed: 0.1 to 600"),
-            ("--duration NaN", "--duration is NaN; allowed: 0.1 to 600"),
+            ("--duration NaN", "--duration is \"NaN\"; allowed: 0.1 to 600 s"),
             (
                 "--seed twelve",
                 "--seed is \"twelve\"; allowed: a whole number from 0 to 18446744073709551615",

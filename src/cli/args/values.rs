@@ -18,45 +18,44 @@ use snakes_lab::run::evaluators::EVALUATORS;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
-/// Words for the allowed values of a whole number without an upper limit.
-pub const WHOLE: &str = "a whole number from 0 up";
-
-/// Reads a number; `allowed` describes the allowed values in an error.
-pub fn number<T: FromStr>(flag: &str, text: &str, allowed: &str) -> Result<T, Invalid> {
-    text.parse().map_err(|_| Invalid::new(flag, format!("{text:?}"), allowed))
-}
-
-/// Reads the number of a flag, or returns `default` if the flag is not given; `allowed` describes the allowed values in an error.
-pub fn number_or<T: FromStr>(
+/// Reads the number of a flag, which is in `range`. The errors of all wrong texts name the same range.
+pub fn number<T: FromStr + PartialOrd + Display>(
     flag: &str,
-    text: &Option<String>,
-    default: T,
-    allowed: &str,
+    text: &str,
+    range: RangeInclusive<T>,
 ) -> Result<T, Invalid> {
-    text.as_deref().map_or(Ok(default), |text| number(flag, text, allowed))
+    let value = text.parse().map_err(|_| {
+        let is_whole = "0.5".parse::<T>().is_err();
+        let kind = if is_whole { "a whole number from " } else { "" };
+        let allowed = format!("{kind}{} to {}", range.start(), range.end());
+        Invalid::new(flag, format!("{text:?}"), allowed)
+    })?;
+    within(flag, value, range)?;
+    Ok(value)
 }
 
-/// Reads the whole number of a flag; `None` if the flag is not given.
-fn whole<T: FromStr + PartialOrd + Display + Copy>(
+/// Reads the number of a flag, which is in `range`; `None` if the flag is not given.
+pub fn number_if<T: FromStr + PartialOrd + Display + Copy>(
     flag: &str,
     text: &Option<String>,
     range: RangeInclusive<T>,
 ) -> Result<Option<T>, Invalid> {
-    let Some(text) = text else { return Ok(None) };
-    let allowed = format!("a whole number from {} to {}", range.start(), range.end());
-    let value = number(flag, text, &allowed)?;
-    within(flag, value, range).map(|()| Some(value))
+    text.as_deref().map(|text| number(flag, text, range)).transpose()
 }
 
 /// Reads a size in pixels, such as 1280x720.
 #[cfg(feature = "studio")]
 pub fn size(flag: &str, text: &str, least: (u32, u32), most: u32) -> Result<(u32, u32), Invalid> {
-    let allowed = "WIDTHxHEIGHT, such as 1280x720";
-    let wrong = || Invalid::new(flag, format!("{text:?}"), allowed);
+    let (least_width, least_height) = least;
+    let wrong = || {
+        let allowed = format!("WIDTHxHEIGHT, {least_width}x{least_height} to {most}x{most}");
+        Invalid::new(flag, format!("{text:?}"), allowed)
+    };
     let (width, height) = text.split_once('x').ok_or_else(wrong)?;
-    let (width, height) = (number(flag, width, allowed)?, number(flag, height, allowed)?);
-    within(&format!("{flag} width"), width, least.0..=most)?;
-    within(&format!("{flag} height"), height, least.1..=most)?;
+    let pixels = |text: &str| text.parse().map_err(|_| wrong());
+    let (width, height) = (pixels(width)?, pixels(height)?);
+    within(&format!("{flag} width"), width, least_width..=most)?;
+    within(&format!("{flag} height"), height, least_height..=most)?;
     Ok((width, height))
 }
 
@@ -68,14 +67,7 @@ impl Args {
 
     /// Returns the given seed, or else `default`.
     pub fn seed_or(&self, default: u64) -> Result<u64, CliError> {
-        let allowed = "a whole number from 0 to 18446744073709551615";
-        Ok(number_or("--seed", &self.run.seed.seed, default, allowed)?)
-    }
-
-    /// Returns the duration of trials in s, if it is given.
-    pub fn duration_s(&self) -> Result<Option<f32>, CliError> {
-        let given = self.run.settings.duration.as_deref();
-        Ok(given.map(|text| number("--duration", text, "a number")).transpose()?)
+        Ok(number_if("--seed", &self.run.seed.seed, 0..=u64::MAX)?.unwrap_or(default))
     }
 
     /// Returns the number of worker threads for a command without a window.
@@ -87,14 +79,14 @@ impl Args {
     #[cfg(feature = "cluster")]
     pub fn expect_workers(&self) -> Result<usize, CliError> {
         let default = usize::from(self.local_threads()? == 0);
-        let given = whole("--expect-workers", &self.workers.expect_workers, 1..=10_000)?;
+        let given = number_if("--expect-workers", &self.workers.expect_workers, 1..=10_000)?;
         Ok(given.unwrap_or(default))
     }
 
     /// Returns the number of threads of this computer that compute besides the workers on other machines.
     #[cfg(feature = "cluster")]
     pub fn local_threads(&self) -> Result<usize, CliError> {
-        let given = whole("--local-threads", &self.workers.local_threads, THREADS_RANGE)?;
+        let given = number_if("--local-threads", &self.workers.local_threads, THREADS_RANGE)?;
         Ok(given.unwrap_or(0))
     }
 
@@ -120,7 +112,7 @@ impl Args {
     }
 
     fn threads_or(&self, default: usize) -> Result<usize, CliError> {
-        let given = whole("--threads", &self.workers.threads.threads, THREADS_RANGE)?;
+        let given = number_if("--threads", &self.workers.threads.threads, THREADS_RANGE)?;
         Ok(given.unwrap_or(default))
     }
 
@@ -151,9 +143,6 @@ impl Args {
     /// Returns the number of frames after which the window closes by itself, if it is given.
     #[cfg(feature = "studio")]
     pub fn exit_after_frames(&self) -> Result<Option<u32>, CliError> {
-        let Some(text) = &self.window.exit_after_frames else { return Ok(None) };
-        let frames = number("--exit-after-frames", text, "a whole number from 1 up")?;
-        within("--exit-after-frames", frames, 1..=u32::MAX)?;
-        Ok(Some(frames))
+        Ok(number_if("--exit-after-frames", &self.window.exit_after_frames, 1..=u32::MAX)?)
     }
 }

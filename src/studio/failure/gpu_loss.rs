@@ -7,7 +7,6 @@
 #[cfg(unix)]
 use std::ffi::OsString;
 
-use std::io::Write;
 use std::panic::PanicHookInfo;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,6 +17,7 @@ use bevy::render::settings::RenderCreation;
 use crate::studio::error::StudioError;
 use crate::studio::state::run_context::RunInProgress;
 use crate::studio::ui::notifications::Notices;
+use snakes_lab::run::headless::say;
 
 /// Reason why drawing ended for good, if it did. `studio::run` reads it after the window is closed.
 #[derive(Resource, Debug, Clone, Default)]
@@ -78,8 +78,7 @@ pub(crate) fn recover_or_exit(info: &PanicHookInfo<'_>, run_folder: &RunInProgre
     let message = format!("the graphics driver failed ({said})");
     // The panicking thread may hold this lock, so do not block on it.
     let run = run_folder.try_lock().ok().and_then(|mut run| run.take());
-    // A failure to write to standard error cannot be reported anywhere else.
-    let _ = writeln!(std::io::stderr(), "error: {}", StudioError::Crashed { message, run });
+    say(&format!("error: {}", StudioError::Crashed { message, run }));
     std::process::exit(1)
 }
 

@@ -14,6 +14,7 @@ use bevy::prelude::*;
 use super::gpu_loss;
 use crate::studio::error::StudioError;
 use crate::studio::state::run_context::RunInProgress;
+use snakes_lab::run::end_without_threads;
 
 static WINDOW_IS_OPEN: AtomicBool = AtomicBool::new(false);
 static FIRST_PANIC: Mutex<Option<String>> = Mutex::new(None);
@@ -32,6 +33,7 @@ pub(crate) fn guarded(
     let folder = Arc::clone(run_folder);
     panic::set_hook(Box::new(move |info| {
         let is_open = WINDOW_IS_OPEN.load(Ordering::Relaxed);
+        end_without_threads(info);
         if is_open {
             gpu_loss::recover_or_exit(info, &folder);
             usual_hook(info);

@@ -17,6 +17,7 @@ use super::run_context::RunContext;
 use super::undo::{UndoHistory, UndoStep};
 use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
+use snakes_core::check::printable;
 use snakes_core::save::SavesFolder;
 use snakes_core::save::library::{FileStep, SavePlace};
 use snakes_lab::run::{BackgroundTask, LibraryReader};
@@ -151,7 +152,7 @@ impl Library {
 
     /// Returns the displayed name of an entry.
     pub fn name_of(&self, place: &SavePlace) -> String {
-        self.item(place).map_or_else(|| place.name(), |item| item.name().to_owned())
+        self.item(place).map_or_else(|| place.shown_name(), |item| item.name().to_owned())
     }
 
     /// Returns the user's own name for a run, if any.
@@ -251,7 +252,7 @@ impl Library {
 }
 
 fn name_of(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    printable(&path.file_stem().unwrap_or_default().to_string_lossy()).into_owned()
 }
 
 #[cfg(test)]

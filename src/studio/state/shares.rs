@@ -18,6 +18,7 @@ use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
+use snakes_core::check::printable;
 use snakes_core::evolve::Champion;
 use snakes_core::score::evaluate;
 use snakes_lab::export::ExportFormat;
@@ -173,7 +174,7 @@ pub(crate) fn refuse_number(format: ExportFormat, found: usize) -> Result<(), St
 }
 
 fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    printable(&path.file_name().unwrap_or_default().to_string_lossy()).into_owned()
 }
 
 /// Adds the extension of a format to a path if it is missing.

@@ -193,7 +193,7 @@ fn flags_without_effect_and_values_that_are_not_allowed_are_refused_by_name() {
         ("-o a.mp4 --size 641x360", 2, "--size is 641x360; allowed: an even width"),
         ("-o a.gif --fps 60", 2, "--fps is 60; allowed: 1 to 50"),
         ("-o a.mp4 --fps 0", 2, "--fps is 0; allowed: 1 to 120"),
-        ("-o a.gif --fps many", 2, "--fps is \"many\"; allowed: a number"),
+        ("-o a.gif --fps many", 2, "--fps is \"many\"; allowed: a whole number from 1 to 50"),
         ("-o a.gif --speed 0", 2, "--speed is 0; allowed: 0.1 to 16"),
         ("-o a.gif --camera free", 2, "--camera is \"free\"; allowed: follow, side or top"),
         ("-o a.gif --show all", 2, "--show is \"all\"; allowed: contacts"),

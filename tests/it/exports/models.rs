@@ -77,6 +77,11 @@ pub(super) fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
     let scaled = |most: f32| {
         list(scales.iter().zip(&strengths).map(|(scale, share)| most * scale * share).collect())
     };
+    let bend_limits_rad = drawn(joints, [0.2, 1.8]);
+    // A sixth of the joints cannot twist, as in many champions.
+    let twist_limits_rad = drawn(joints, [-0.3, 1.5]);
+    let twist_limits_rad: Vec<f32> =
+        twist_limits_rad.into_iter().map(|limit_rad| limit_rad.max(0.0)).collect();
     let number = |values: Vec<f32>| values[0].to_string();
     let fields = [
         ("agent.limbs", sizes.len().to_string()),
@@ -84,8 +89,8 @@ pub(super) fn random_trial(rng: &mut ChaCha8Rng) -> Trial {
         ("limb_length_m", of_limbs(1)),
         ("limb_height_m", of_limbs(2)),
         ("agent.density_kg_m3", list(drawn(sizes.len(), [2.0, 3.0]))),
-        ("agent.bend_limit_rad", list(drawn(joints, [0.2, 1.8]))),
-        ("agent.twist_limit_rad", list(drawn(joints, [0.01, 1.5]))),
+        ("agent.bend_limit_rad", list(bend_limits_rad)),
+        ("agent.twist_limit_rad", list(twist_limits_rad)),
         ("max_bend_torque_nm", scaled(1000.0)),
         ("max_twist_torque_nm", scaled(700.0)),
         ("joint_damping_nms_per_rad", list(scales.iter().map(|scale| 30.0 * scale).collect())),

@@ -14,6 +14,7 @@ use crate::names::{NOTICE_INTERVAL, RUN_NOTICES, SILENCE, WORKER_NOTICES, audit_
 use crate::wire::{WIRE_FORMAT, WorkBatch, line_of};
 use snakes_core::{ENGINE_VERSION, Processors};
 use snakes_lab::run::headless::say;
+use snakes_lab::run::with_threads;
 
 /// Sends a notice of this worker once a second, and listens to coordinators. Returns when the worker is stopped, with
 /// an error if it stops because all coordinators compute with another engine.
@@ -130,9 +131,10 @@ pub async fn answer_audits(place: Arc<Workplace>) {
             continue;
         };
         let at_work = Arc::clone(&place);
-        let results = tokio::task::spawn_blocking(move || compute(&at_work, &work)).await;
+        let check = || tokio::task::spawn_blocking(move || compute(&at_work, &work));
         // If a request has no answer, the coordinator's machine makes the check.
-        if let Ok(Some(results)) = results {
+        let Ok(check) = with_threads(check) else { continue };
+        if let Ok(Some(results)) = check.await {
             let _ = place.broker.client().publish(reply, results.encode().into()).await;
         }
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::SaveError;
 use super::files::read_bytes;
 use super::whole_file::write_whole;
+use crate::check::no_formula;
 
 /// Maximum size of a picture that is read, in MiB: more than that of the largest window.
 const LARGEST_PICTURE_MIB: u64 = 256;
@@ -74,14 +75,16 @@ pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
     write_whole(path, text.as_bytes())
 }
 
-/// Writes records as CSV (RFC 4180), atomically.
+/// Writes records as CSV (RFC 4180), atomically. No cell is a formula: see [`no_formula`].
 ///
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> {
     let encode = || -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        records.iter().try_for_each(|record| writer.write_record(record))?;
+        for record in records {
+            writer.write_record(record.iter().map(|cell| no_formula(cell).into_owned()))?;
+        }
         writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()).into())
     };
     let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
@@ -107,11 +110,13 @@ mod tests {
     }
 
     #[test]
-    fn fields_with_commas_or_quotes_are_quoted() {
+    fn f13_fields_with_commas_or_quotes_are_quoted_and_none_is_a_formula() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.csv");
         let record = |words: [&str; 2]| words.map(str::to_owned).to_vec();
-        store_csv(&path, &[record(["a", "b"]), record(["1", "x, \"y\""])]).expect("written");
-        assert_eq!(fs::read_to_string(&path).expect("read"), "a,b\n1,\"x, \"\"y\"\"\"\n");
+        let records = [["a", "b"], ["-1", "x, \"y\""], ["=1+1", "NA"]].map(record);
+        store_csv(&path, &records).expect("written");
+        let text = fs::read_to_string(&path).expect("read");
+        assert_eq!(text, "a,b\n-1,\"x, \"\"y\"\"\"\n'=1+1,NA\n");
     }
 }

@@ -168,12 +168,12 @@ mod tests {
                 "rise_m: -0.5",
                 "stairs.rise_m of step 1 is -0.5; allowed: a rise that ends",
             ),
+            ("rise_m: 0.5", "rise_m: 0.0", "stairs.rise_m is 0; allowed: -5 to -0.01 or 0.01 to 5"),
             (
                 "rise_m: 0.5",
-                "rise_m: 0.0",
-                "stairs.rise_m is 0; allowed: -5 to -0.01 or 0.01 to 5 m",
+                "rise_m: NaN",
+                "stairs.rise_m is NaN; allowed: -5 to -0.01 or 0.01 to 5",
             ),
-            ("rise_m: 0.5", "rise_m: NaN", "stairs.rise_m is NaN; allowed: -5 to 5"),
             ("tread_m: 0.8", "tread_m: 0.000001", "stairs.tread_m is 0.000001; allowed: 0.1 to 20"),
             ("tread_m: 0.8", "tread_m: [1.0, 2.0]", "stairs.tread_m is "),
             (

@@ -1,6 +1,7 @@
 //! Units of panels that differ from the units of files: angles are stored in radians and shown in degrees.
 
-use super::setting::{NumberRange, Setting};
+use super::range::NumberRange;
+use super::setting::Setting;
 use super::value::SettingValue;
 
 /// A unit of panels, and its relation to the unit of files.
@@ -124,17 +125,14 @@ impl Setting {
         let slider =
             range.slider.map(|[from, to]| [display.bound(from, false), display.bound(to, true)]);
         let logarithmic_from = range.logarithmic_from.map(|from| display.bound(from, false));
-        NumberRange { least, most, slider, logarithmic_from, ..*range }
+        let gap = range.gap.map(|[from, to]| [display.bound(from, true), display.bound(to, false)]);
+        NumberRange { least, most, slider, logarithmic_from, gap, ..*range }
     }
 
     /// Describes in words, in the unit of panels, the range of the setting's number or numbers.
     pub fn shown_range_in_words(&self) -> String {
         let Some(display) = self.display else { return self.range_in_words() };
-        let ends = |range: &NumberRange| {
-            let NumberRange { least, most, .. } = self.shown_range(range);
-            (least.to_string(), most.to_string())
-        };
-        self.range_with(display.unit, ends)
+        self.range_with(display.unit, |range| self.shown_range(range))
     }
 }
 

@@ -16,6 +16,7 @@ mod declare;
 mod display;
 mod parts;
 mod per_part;
+mod range;
 mod setting;
 mod table;
 mod value;
@@ -28,7 +29,8 @@ pub(crate) use declare::{listed_values, named_by_info, named_values, setting_gro
 pub use display::DisplayUnit;
 pub use parts::Parts;
 pub use per_part::PerPart;
-pub use setting::{Need, NumberRange, Setting, SettingKind, SettingRow};
+pub use range::NumberRange;
+pub use setting::{Need, Setting, SettingKind, SettingRow};
 pub use setting::{
     absent, choice, list_of_numbers, number, optional_per_part, per_part, switch, whole,
 };

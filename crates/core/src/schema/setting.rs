@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::display::DisplayUnit;
 use super::parts::Parts;
+use super::range::NumberRange;
 use super::value::SettingValue;
 use super::{Choice, Choices, PerPart};
 use crate::check::{Invalid, within};
@@ -45,25 +46,6 @@ pub enum SettingKind {
     Absent(&'static str),
 }
 
-/// Range of the numbers that a setting may have, and its slider.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NumberRange {
-    /// Least allowed number.
-    pub least: f32,
-    /// Greatest allowed number.
-    pub most: f32,
-    /// Whether only whole numbers are allowed.
-    pub is_whole: bool,
-    /// Numbers at the ends of the slider. None: the setting has no slider.
-    pub slider: Option<[f32; 2]>,
-    /// Number from which the slider is logarithmic. None: the slider is linear.
-    pub logarithmic_from: Option<f32>,
-    /// Parts of the snake or the stairs for which the setting may have separate values.
-    pub parts: Parts,
-    /// Number with which a panel switches an optional setting on. None: the setting is not optional.
-    pub begins_with: Option<f32>,
-}
-
 /// A property of a run, such as soft limbs, without which some settings have no effect; the text names it. A row states what its setting
 /// needs, and a group that knows the run states which needs are met ([`Walk::meet`](super::Walk::meet)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,30 +74,14 @@ fn row<T>(label: &'static str, kind: SettingKind) -> SettingRow<T> {
     SettingRow { setting, is_used: true, need: None, field: PhantomData }
 }
 
-fn numbers(least: f32, most: f32) -> NumberRange {
-    NumberRange {
-        least,
-        most,
-        is_whole: false,
-        slider: None,
-        logarithmic_from: None,
-        parts: Parts::One,
-        begins_with: None,
-    }
-}
-
-fn numbers_in(range: RangeInclusive<f32>) -> NumberRange {
-    numbers(*range.start(), *range.end())
-}
-
 /// Makes the row of a number.
 pub fn number(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<f32> {
-    row(label, SettingKind::Number(numbers_in(range)))
+    row(label, SettingKind::Number(NumberRange::of(range)))
 }
 
 /// Makes the row of a whole number. Its greatest value is at most 2^24, up to which a slider's numbers are exact.
 pub fn whole(label: &'static str, range: RangeInclusive<u32>) -> SettingRow<u32> {
-    let range = numbers(*range.start() as f32, *range.end() as f32);
+    let range = NumberRange::of(*range.start() as f32..=*range.end() as f32);
     row(label, SettingKind::Number(NumberRange { is_whole: true, ..range }))
 }
 
@@ -125,7 +91,7 @@ pub fn per_part(
     range: RangeInclusive<f32>,
     parts: Parts,
 ) -> SettingRow<PerPart> {
-    row(label, SettingKind::Number(NumberRange { parts, ..numbers_in(range) }))
+    row(label, SettingKind::Number(NumberRange { parts, ..NumberRange::of(range) }))
 }
 
 /// Makes the row of a number for all parts together, of a number for each part, or of no value: each genome then has its own. Panels switch
@@ -137,13 +103,13 @@ pub fn optional_per_part(
     begins_with: f32,
 ) -> SettingRow<Option<PerPart>> {
     let begins_with = Some(begins_with);
-    let range = NumberRange { parts, begins_with, ..numbers_in(range) };
+    let range = NumberRange { parts, begins_with, ..NumberRange::of(range) };
     row(label, SettingKind::Number(range))
 }
 
 /// Makes the row of a list of 1 to [`LONGEST_LIST`] numbers.
 pub fn list_of_numbers(label: &'static str, range: RangeInclusive<f32>) -> SettingRow<Vec<f32>> {
-    row(label, SettingKind::List(numbers_in(range)))
+    row(label, SettingKind::List(NumberRange::of(range)))
 }
 
 /// Greatest length of a list of numbers.
@@ -188,6 +154,14 @@ impl<T> SettingRow<T> {
     pub fn slider(mut self, least: f32, most: f32) -> Self {
         if let SettingKind::Number(range) = &mut self.setting.kind {
             range.slider = Some([least, most]);
+        }
+        self
+    }
+
+    /// Forbids the numbers between `from` and `to`, which themselves are allowed.
+    pub fn without(mut self, from: f32, to: f32) -> Self {
+        if let SettingKind::Number(range) = &mut self.setting.kind {
+            range.gap = Some([from, to]);
         }
         self
     }
@@ -238,25 +212,23 @@ impl Setting {
     /// Describes the range of the number or of the list in words, in the unit of files; empty for other kinds of setting.
     pub fn range_in_words(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-        let ends = |range: &NumberRange| (range.least.to_string(), range.most.to_string());
-        self.range_with(&unit, ends)
+        self.range_with(&unit, |range| *range)
     }
 
-    /// Describes the range in words, with the ends as `ends` writes them.
+    /// Describes the range that `shown` makes of the setting's range.
     pub(super) fn range_with(
         &self,
         unit: &str,
-        ends: impl Fn(&NumberRange) -> (String, String),
+        shown: impl Fn(&NumberRange) -> NumberRange,
     ) -> String {
         match &self.kind {
             SettingKind::Number(range) => {
                 let whole = if range.is_whole { ", whole numbers" } else { "" };
-                let (least, most) = ends(range);
-                format!("{least} to {most}{unit}{whole}")
+                format!("{}{unit}{whole}", shown(range).in_words())
             }
             SettingKind::List(range) => {
-                let (least, most) = ends(range);
-                format!("numbers from {least} to {most}{unit}, with commas between them")
+                let range = shown(range).in_words();
+                format!("numbers from {range}{unit}, with commas between them")
             }
             SettingKind::Choice(_) | SettingKind::Switch | SettingKind::Absent(_) => String::new(),
         }
@@ -312,7 +284,7 @@ impl Setting {
     pub fn check(&self, path: &str, value: &SettingValue) -> Result<(), Invalid> {
         match (&self.kind, value) {
             (SettingKind::Number(range), SettingValue::Number(number)) => {
-                within(path, *number, range.least..=range.most)
+                range.check(path, *number)
             }
             (SettingKind::Number(range), SettingValue::Whole(number)) => {
                 within(path, f64::from(*number), range.least.into()..=range.most.into())
@@ -328,7 +300,7 @@ impl Setting {
                     ));
                 }
                 numbers.iter().enumerate().try_for_each(|(index, &number)| {
-                    within(&format!("{path}[{index}]"), number, range.least..=range.most)
+                    range.check(&format!("{path}[{index}]"), number)
                 })
             }
             (SettingKind::List(range), SettingValue::List(numbers)) => {
@@ -336,9 +308,7 @@ impl Setting {
                     let allowed = format!("1 to {LONGEST_LIST} values");
                     return Err(Invalid::new(path, format!("{} values", numbers.len()), allowed));
                 }
-                numbers
-                    .iter()
-                    .try_for_each(|&number| within(path, number, range.least..=range.most))
+                numbers.iter().try_for_each(|&number| range.check(path, number))
             }
             _ => Ok(()),
         }

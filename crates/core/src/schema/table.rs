@@ -38,8 +38,8 @@ fn line(listed: &ListedSetting) -> String {
     };
     let allowed = match (setting.display, setting.kind) {
         (Some(display), SettingKind::Number(range) | SettingKind::List(range)) => {
-            let shown = setting.shown_range(&range);
-            format!("{allowed}; in the studio {} to {}{}", shown.least, shown.most, display.unit)
+            let shown = setting.shown_range(&range).in_words();
+            format!("{allowed}; in the studio {shown}{}", display.unit)
         }
         _ => allowed,
     };

@@ -34,6 +34,7 @@ pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::Rollout;
 pub use scored::{Scored, evaluate, score, score_together};
 pub use stairs_grid::{StairsCell, StairsGrid};
+pub(crate) use trial::FRONT_M;
 pub use trial::Trial;
 
 pub use crate::schema::PerPart;

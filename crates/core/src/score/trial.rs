@@ -39,7 +39,7 @@ setting_group! {
 }
 
 /// Distance of the front of a body from the genome from `start_y_m`, in metres: half the length of the report's snake.
-const FRONT_M: f32 = 5.0;
+pub(crate) const FRONT_M: f32 = 5.0;
 
 impl SettingGroup for Trial {
     fn walk(&mut self, walk: &mut Walk<'_>) {

@@ -53,6 +53,6 @@ pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
 };
 pub use stair_profile::ClimbProgress;
-pub use stairs::{StairBox, StairSolid, Stairs};
+pub use stairs::{LEAST_RISE_M, StairBox, StairSolid, Stairs};
 pub use surface::{ERP_TIME_S, Skin, Surface};
 pub use torque::JointTorque;

@@ -11,6 +11,8 @@ use crate::schema::{
     Need, Parts, PerPart, Section, SettingGroup, Walk, is_default, number, per_part, setting_group,
     settings, whole,
 };
+pub use limits::LEAST_RISE_M;
+use limits::LEAST_SLOPE_M;
 
 setting_group! {
     /// A straight staircase towards +y, with a landing behind its last step. A deep tread is an intermediate landing. A negative rise is a
@@ -70,8 +72,9 @@ impl SettingGroup for Stairs {
                 .slider(0.0, 20.0);
             // The range goes from a doorsill to a wall.
             rise_m: per_part("Rise", -5.0..=5.0, each_step).needs(Self::GIVEN)
+                .without(-LEAST_RISE_M, LEAST_RISE_M)
                 .unit("m")
-                .hint("Height of a step over the one below it; a negative rise leads down")
+                .hint("Height of a step over the one below it; a negative rise leads down, at most to the ground")
                 .slider(0.05, 2.0);
             tread_m: per_part("Tread", 0.1..=20.0, each_step)
                 .unit("m")
@@ -96,6 +99,7 @@ impl SettingGroup for Stairs {
                 .hint("How far each tread overhangs its riser. Sloping rises have no nosing")
                 .slider(0.0, 0.3);
             slope_m: per_part("Slope", 0.0..=19.9, each_step).advanced().needs(Self::GIVEN)
+                .without(0.0, LEAST_SLOPE_M)
                 .unit("m")
                 .hint("Depth over which a rise slopes like a ramp; 0 is a vertical riser")
                 .slider(0.0, 2.0);

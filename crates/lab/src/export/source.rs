@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::ExportError;
 use snakes_core::Engine;
-use snakes_core::check::Invalid;
+use snakes_core::check::{Invalid, printable};
 use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{LoadedChampion, load_champion_and_note, load_log, load_run};
 use snakes_core::score::evaluate;
@@ -71,6 +71,7 @@ impl ExportSource {
         let mut champions: Vec<ExportedChampion> = Vec::with_capacity(files.len());
         for file in files {
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            let stem = printable(&stem);
             // Tables are grouped by name, so equal names of files in different folders get numbers.
             let is_free = |name: &String| champions.iter().all(|other| other.name != *name);
             let numbered = (2..=files.len() + 1).map(|number| format!("{stem} ({number})"));

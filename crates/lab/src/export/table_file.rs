@@ -15,6 +15,7 @@ use super::columns::{KEYS, RowReader, RowValues, VALUES, columns};
 use super::facts::facts_as_json;
 use super::motion::follow;
 use super::{ExportError, ExportProgress, ExportedChampion};
+use snakes_core::check::no_formula;
 use snakes_core::save::UnfinishedFile;
 use snakes_core::score::Rollout;
 
@@ -53,7 +54,7 @@ fn send_rows(
     Ok(())
 }
 
-/// Writes a table as CSV. Numbers have as many digits as their bits need. A missing value is an empty cell.
+/// Writes a table as CSV. Numbers have as many digits as their bits need. A missing value is an empty cell. No name is a formula.
 pub(super) fn write_csv(
     champions: &[ExportedChampion],
     path: &Path,
@@ -66,7 +67,7 @@ pub(super) fn write_csv(
     send_rows(champions, progress, |key, values| {
         let numbers = [key.step.to_string(), key.time_s.to_string(), key.limb.to_string()];
         let values = values.iter().map(|value| value.map(|value| value.to_string()));
-        let cells = [key.champion.to_owned()].into_iter().chain(numbers);
+        let cells = [no_formula(key.champion).into_owned()].into_iter().chain(numbers);
         writer.write_record(cells.chain(values.map(Option::unwrap_or_default))).map_err(&failed)
     })?;
     writer.flush().map_err(ExportError::unwritable(path))?;

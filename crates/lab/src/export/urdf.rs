@@ -115,7 +115,7 @@ fn roll_pitch_yaw(turn: Rotation) -> [f32; 3] {
 }
 
 /// Writes each universal joint as two joints: the bend between the front limb and a link of almost no mass, and the twist behind
-/// it.
+/// it. A joint that cannot turn is fixed.
 fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
     for (index, joint) in plan.body.joints.iter().enumerate() {
         let number = index + 1;
@@ -145,7 +145,10 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
         ];
         for ((axis, limit_rad), torque_nm) in axes.into_iter().zip(limits).zip(torques) {
             let (name, direction, parent, child, (at_m, rpy_rad)) = axis;
-            let head = [("name", format!("{name}_{number}")), ("type", "revolute".to_owned())];
+            // Some programs, such as MuJoCo, ignore a range without width, and the joint would turn freely.
+            let is_locked = limit_rad == 0.0;
+            let kind = if is_locked { "fixed" } else { "revolute" };
+            let head = [("name", format!("{name}_{number}")), ("type", kind.to_owned())];
             xml.element("joint", &head, |xml| {
                 ends(xml, &parent, &child)?;
                 let mut origin = vec![("xyz", spaced(at_m))];
@@ -153,6 +156,9 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
                     origin.push(("rpy", spaced(rpy_rad)));
                 }
                 xml.leaf("origin", &origin)?;
+                if is_locked {
+                    return Ok(());
+                }
                 xml.leaf("axis", &[("xyz", direction.to_owned())])?;
                 xml.leaf("dynamics", &[("damping", joint.damping_nms_per_rad.to_string())])?;
                 xml.leaf(
@@ -168,4 +174,54 @@ fn joints(xml: &mut XmlText, plan: &WorldPlan) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::mjcf;
+    use snakes_core::save::load_champion;
+
+    /// Returns the values of an attribute, each as one or two numbers.
+    fn values(text: &str, attribute: &str) -> Vec<Vec<f32>> {
+        let found = text.split(&format!(" {attribute}=\"")).skip(1);
+        let value = found.map(|rest| rest.split('"').next().unwrap_or_default());
+        let numbers = |value: &str| {
+            value.split(' ').map(|number| number.parse().expect("a number")).collect()
+        };
+        value.map(numbers).collect()
+    }
+
+    #[test]
+    fn f10_every_exported_range_has_a_width_and_a_locked_joint_is_fixed() {
+        let saves = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../saves");
+        let mut locked = 0;
+        for file in std::fs::read_dir(saves).expect("a folder") {
+            let file = file.expect("a file").path();
+            let name = &file.display().to_string();
+            let champion = load_champion(&file).expect("well formed").champion;
+            let plan = champion.trial.world_plan(&champion.genome);
+            let text = urdf(name, &plan, &[]).expect("in memory");
+            let ends = values(&text, "lower").into_iter().zip(values(&text, "upper"));
+            assert!(ends.clone().all(|(lower, upper)| lower < upper), "{name}: {text}");
+            let limits = plan
+                .body
+                .joints
+                .iter()
+                .flat_map(|joint| [joint.bend_limit_rad, joint.twist_limit_rad]);
+            let (fixed, turning): (Vec<f32>, Vec<f32>) =
+                limits.partition(|limit_rad| *limit_rad == 0.0);
+            assert_eq!(text.matches("type=\"fixed\"").count(), fixed.len(), "{name}");
+            assert_eq!(ends.count(), turning.len(), "{name}");
+            locked += fixed.len();
+            let text = mjcf(name, &plan, &[]).expect("in memory");
+            for attribute in ["range", "ctrlrange"] {
+                assert!(
+                    values(&text, attribute).iter().all(|ends| ends[0] < ends[1]),
+                    "{name}: {text}"
+                );
+            }
+        }
+        assert!(locked >= 4, "the first climber cannot twist");
+    }
 }

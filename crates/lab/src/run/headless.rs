@@ -7,10 +7,12 @@ use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
 use super::json::{short, with_short_numbers};
-use super::progress_bar::{beside_bar, run_generation_with_bar};
+use super::progress_bar::run_generation_with_bar;
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
+pub use super::terminal::say;
+use super::terminal::write_line;
 use snakes_core::evolve::{Champion, RunPlan, Rung, SettingChange, SpeciesCount, StairsCount};
 use snakes_core::save::SaveError;
 
@@ -136,7 +138,7 @@ pub fn evolve(
         say(&format!("changed during the run: {}", list_changes(recorder.changes())));
     }
     if !json {
-        writeln!(out, "{TABLE_HEAD}")?;
+        write_line(out, TABLE_HEAD)?;
     }
     let mut landing = Landing::default();
     let mut print = |report: &GenerationReport| {
@@ -145,7 +147,7 @@ pub fn evolve(
             true => report_json(report, first, bodies_vary).to_string(),
             false => table_row(report),
         };
-        writeln!(out, "{line}")?;
+        write_line(out, &line)?;
         out.flush()
     };
     reports.iter().try_for_each(&mut print)?;
@@ -183,14 +185,15 @@ pub fn evolve(
             "best": best.map(|best| short(best.evaluation.fitness)),
             "champion": recorder.best(),
         });
-        writeln!(out, "{last}")?;
+        write_line(out, &last.to_string())?;
     } else if let (Some(best), Some(path)) = (best, recorder.best()) {
-        writeln!(out, "\nchampion  {}", about(best))?;
-        writeln!(out, "saved to  {}", path.display())?;
+        write_line(out, "")?;
+        write_line(out, &format!("champion  {}", about(best)))?;
+        write_line(out, &format!("saved to  {}", path.display()))?;
         if let Some(first) = landing.first {
-            writeln!(out, "landing   first reached by evaluation {first}")?;
+            write_line(out, &format!("landing   first reached by evaluation {first}"))?;
         }
-        writeln!(out, "run hash  {run_hash}")?;
+        write_line(out, &format!("run hash  {run_hash}"))?;
     }
     best.map(|_| ()).ok_or(HeadlessError::NoChampion)
 }
@@ -228,12 +231,6 @@ impl Landing {
         self.spent += u64::from(report.evaluations);
         number
     }
-}
-
-/// Writes a line for the user to standard error. Standard output is reserved for results.
-pub fn say(line: &str) {
-    // If standard error is closed, there is nowhere to report the failure.
-    let _ = beside_bar(|| writeln!(io::stderr(), "{line}"));
 }
 
 const TABLE_HEAD: &str =

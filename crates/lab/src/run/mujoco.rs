@@ -48,6 +48,14 @@ pub enum MujocoError {
         /// Why it cannot be used.
         reason: String,
     },
+    /// The system refused to start the Python process. Holds the reason.
+    #[error("{python}: cannot be started: {reason}")]
+    NotStarted {
+        /// Name of the Python program.
+        python: String,
+        /// Reason of the system.
+        reason: io::Error,
+    },
     /// The Python process failed during the exam. Holds the reason.
     #[error("MuJoCo failed: {0}")]
     Failed(String),
@@ -119,7 +127,12 @@ impl Mujoco {
             python: python.to_string_lossy().into_owned(),
             reason,
         };
-        let failed = |error: io::Error| missing(error.to_string());
+        let failed = |reason: io::Error| match reason.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::PermissionDenied => {
+                missing(reason.to_string())
+            }
+            _ => MujocoError::NotStarted { python: python.to_string_lossy().into_owned(), reason },
+        };
         let folder = tempfile::tempdir().map_err(failed)?;
         let mut command = Command::new(program(&python));
         command

@@ -2,8 +2,12 @@
 
 use std::any::Any;
 use std::cell::RefCell;
-use std::panic::{self, AssertUnwindSafe};
+use std::io;
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
+
+use super::evaluator::WorkersError;
+use super::terminal::say;
 
 thread_local! {
     /// Message of the last panic if this thread expects panics (empty before one), otherwise `None`.
@@ -21,6 +25,44 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let message = EXPECTED.take().unwrap_or_default();
     result
         .map_err(|payload| if message.is_empty() { message_of(payload.as_ref()) } else { message })
+}
+
+/// Runs `work` of a library that panics if the system refuses it a thread.
+///
+/// # Errors
+/// The system refused a thread, or `work` panicked for another reason.
+pub fn with_threads<T>(work: impl FnOnce() -> T) -> io::Result<T> {
+    caught(work).map_err(|message| {
+        if is_of_threads(&message) { no_thread() } else { io::Error::other(message) }
+    })
+}
+
+/// Lets a panic that nobody expects print one line. A panic in a library to which the system refuses a thread ends the program.
+pub fn report_panics() {
+    panic::set_hook(Box::new(|info| {
+        end_without_threads(info);
+        let place = info.location().map(|place| format!(" at {place}")).unwrap_or_default();
+        say(&format!("error: this program has a fault: {}{place}", message_of(info.payload())));
+    }));
+}
+
+/// Ends the program with an error if the system refused a thread to a library, such as Bevy, which panics then. What such a library
+/// leaves behind panics again when it is dropped, which would end the program without a message.
+pub fn end_without_threads(info: &PanicHookInfo<'_>) {
+    if is_of_threads(&message_of(info.payload())) {
+        say(&format!("error: {}", WorkersError::from(no_thread())));
+        std::process::exit(1);
+    }
+}
+
+fn no_thread() -> io::Error {
+    io::Error::other("the system refuses another thread")
+}
+
+/// Whether this is the message with which the standard library, Bevy or Tokio panics if the system refuses a thread.
+fn is_of_threads(message: &str) -> bool {
+    let message = message.to_lowercase();
+    ["failed to spawn thread", "spawn worker thread"].iter().any(|words| message.contains(words))
 }
 
 /// Installs a panic hook that stores the message on threads that expect a panic, instead of printing it.
@@ -55,6 +97,21 @@ fn message_of(payload: &(dyn Any + Send)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn f8_a_library_without_a_thread_gives_an_error_that_says_so() {
+        for message in [
+            "failed to spawn thread: Os { code: 11, kind: WouldBlock }",
+            "Failed to spawn thread.: Os { code: 11, kind: WouldBlock }",
+            "OS can't spawn worker thread: Resource temporarily unavailable (os error 11)",
+        ] {
+            let error = with_threads(|| panic!("{message}")).expect_err("it panicked").to_string();
+            assert_eq!(error, "the system refuses another thread");
+        }
+        let other = with_threads(|| panic!("no such limb")).expect_err("it panicked").to_string();
+        assert!(other.starts_with("no such limb at "), "{other}");
+        assert_eq!(with_threads(|| 2 + 2).expect("no panic"), 4);
+    }
 
     #[test]
     fn a_panic_becomes_its_message_and_place() {

@@ -1,6 +1,6 @@
 //! Progress bars on the terminal. If standard error is not a terminal, none is drawn.
 
-use std::sync::{Mutex, PoisonError};
+use std::thread;
 use std::time::Duration;
 
 use crossbeam_channel::RecvTimeoutError;
@@ -10,6 +10,7 @@ use super::evaluator::Evaluator;
 use super::experiment::Experiment;
 use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
+use super::terminal::set_drawn;
 use snakes_core::score::Evaluation;
 
 /// Runs one generation with a progress bar; for `record`, see [`Experiment::run_generation_recording`].
@@ -41,35 +42,30 @@ pub fn bar_of(count: u64, things: &str) -> ProgressBar {
     bar
 }
 
-/// The bar that is currently drawn on the terminal.
-static DRAWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
-
-fn set_drawn(bar: Option<ProgressBar>) {
-    *DRAWN.lock().unwrap_or_else(PoisonError::into_inner) = bar;
-}
-
-/// Calls `write`, which writes to the terminal, while the bar is hidden.
-pub fn beside_bar<T>(write: impl FnOnce() -> T) -> T {
-    let bar = DRAWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    match bar {
-        Some(bar) => bar.suspend(write),
-        None => write(),
-    }
-}
-
 /// Does `work` while a bar shows the number that `control` has counted.
 pub fn with_bar<T>(bar: &ProgressBar, control: &RunControl, work: impl FnOnce() -> T) -> T {
+    while_drawn(bar, &|| bar.set_position(control.done().into()), work)
+}
+
+/// Does `work`, which moves the bar itself, while the bar's estimate is kept up to date.
+pub fn beneath_bar<T>(bar: &ProgressBar, work: impl FnOnce() -> T) -> T {
+    while_drawn(bar, &|| bar.tick(), work)
+}
+
+/// Does `work` while a thread draws the bar again and again. If the system refuses the thread, the work is done all the same.
+fn while_drawn<T>(bar: &ProgressBar, draw: &(dyn Fn() + Sync), work: impl FnOnce() -> T) -> T {
     set_drawn(Some(bar.clone()));
-    let result = std::thread::scope(|scope| {
+    let result = thread::scope(|scope| {
         let (finished, is_finished) = crossbeam_channel::bounded::<()>(0);
-        scope.spawn(move || {
+        let redraw = move || {
             // The loop ends when the sender is dropped.
             while is_finished.recv_timeout(Duration::from_millis(100))
                 == Err(RecvTimeoutError::Timeout)
             {
-                bar.set_position(control.done().into());
+                draw();
             }
-        });
+        };
+        let _ = thread::Builder::new().name("progress bar".to_owned()).spawn_scoped(scope, redraw);
         let result = work();
         drop(finished);
         result

@@ -2,8 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::thread;
 
-use super::evaluator::Evaluator;
+use super::evaluator::{Evaluator, WorkersError};
 use super::headless::HeadlessError;
 use super::run_control::{Cancelled, RunControl};
 
@@ -38,12 +39,16 @@ pub(crate) fn whole_runs<T: Send>(
             }
         }
     };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> =
-            (0..evaluator.workers().min(count)).map(|_| scope.spawn(worker)).collect();
-        let results = workers
-            .into_iter()
-            .map(|worker| worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None })));
+    thread::scope(|scope| {
+        let start = |number| {
+            let named = thread::Builder::new().name(format!("runs-{number}"));
+            named.spawn_scoped(scope, worker).inspect_err(|_| control.cancel())
+        };
+        let workers: Vec<_> = (0..evaluator.workers().min(count)).map(start).collect();
+        let results = workers.into_iter().map(|worker| {
+            let worker = worker.map_err(WorkersError::from)?;
+            worker.join().unwrap_or(Err(HeadlessError::Cancelled { kept: None }))
+        });
         // The cause is reported instead of the cancellations that followed from it.
         let mut errors: Vec<HeadlessError> = results.filter_map(Result::err).collect();
         errors.sort_by_key(|error| matches!(error, HeadlessError::Cancelled { .. }));

@@ -1,5 +1,7 @@
 //! Checks of a study before its runs begin.
 
+use std::ops::RangeInclusive;
+
 use super::definition::{Goal, Study};
 use super::measure::Measure;
 use super::plans::is_short_for;
@@ -8,8 +10,9 @@ use snakes_core::check::{Invalid, name, quoted, within};
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
 
-/// Maximum number of seeds of a study.
-const MAX_SEEDS: u64 = 10_000;
+/// Allowed numbers of seeds of a study.
+pub const SEEDS: RangeInclusive<u64> = 1..=10_000;
+
 impl Study {
     /// Checks everything that can be checked without a run.
     ///
@@ -28,7 +31,7 @@ impl Study {
             let allowed = "no value; the study names strategies and controllers as methods";
             return Err(Invalid::new(field, &self.settings[field], allowed));
         }
-        within("seeds", self.seeds, 1..=MAX_SEEDS)?;
+        within("seeds", self.seeds, SEEDS)?;
         within("first_seed", self.first_seed, 0..=u64::MAX - self.seeds)?;
         within("number of arms", self.arms.len(), 1..=1000)?;
         for (index, arm) in self.arms.iter().enumerate() {

@@ -1,7 +1,6 @@
 //! The driver of a study: makes missing runs and exams, and writes the files of the results.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::definition::{Arm, Examined, Study};
 use super::figure::study_figure;
@@ -13,7 +12,7 @@ use super::values::{add_exam, of_suite};
 use crate::plot;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::{HeadlessError, say};
-use crate::run::progress_bar::{bar_of, with_bar};
+use crate::run::progress_bar::{bar_of, beneath_bar, with_bar};
 use crate::run::{Evaluator, RunControl, whole_runs};
 use snakes_core::check::{Invalid, within};
 use snakes_core::save::{
@@ -92,8 +91,6 @@ pub fn perform(
     let left: Vec<&PlannedRun<'_>> = planned.iter().filter(|run| !is_done(run)).collect();
     say(&format!("{}: {} of {} runs left", study.name, left.len(), planned.len()));
     let bar = bar_of(left.iter().map(|run| run.simulations()).sum(), "simulations");
-    // The steady tick shows an estimate soon after the start, and keeps it up to date during long generations.
-    bar.enable_steady_tick(Duration::from_secs(1));
     let work = |index: usize, single: &dyn Evaluator| {
         left[index].make(single, control, &|simulations| bar.inc(simulations))
     };
@@ -102,13 +99,12 @@ pub fn perform(
         if let Some(champion) = champion.filter(|_| keeps_champions) {
             store_champion(&files.champion(arm, run.seed), &champion, None)?;
         }
-        bar.suspend(|| say(&in_one_line(arm, &run)));
+        say(&in_one_line(arm, &run));
         finished.add(&arm.name, &protocol, run);
         // The runs are stored after each run, so that a kill loses no finished run.
         Ok(store_study(&files.ron, &finished)?)
     };
-    let result = whole_runs(left.len(), evaluator, control, work, done);
-    bar.finish_and_clear();
+    let result = beneath_bar(&bar, || whole_runs(left.len(), evaluator, control, work, done));
     result.map_err(|error| error.keeping(&files.ron))?;
     let order = |name: &str| study.arms.iter().position(|arm| arm.name == name);
     finished.arms.sort_by_key(|arm| order(&arm.name));

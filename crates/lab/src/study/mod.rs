@@ -22,6 +22,7 @@ mod run;
 mod values;
 mod words;
 
+pub use checks::SEEDS;
 pub use compare::{ArmComparison, comparisons};
 pub use definition::{
     Arm, Changes, Demand, Examined, Goal, Methods, Plain, Study, built_in_studies, suites_named,
@@ -31,7 +32,7 @@ pub use figure::{controllers, curve, curves, short_title};
 pub use findings::Findings;
 pub use measure::Measure;
 pub use newborns::NewbornStatistics;
-pub use plans::DURATION;
+pub use plans::EVALUATIONS;
 pub use records::json_lines;
 pub use report::{tables, values_as_markdown};
 pub use results::{Measured, Results, Verdict};

@@ -1,5 +1,7 @@
 //! Plans of an arm's runs: the settings of a preset, with the changes of the study and of the arm.
 
+use std::ops::RangeInclusive;
+
 use super::definition::{Arm, Plain, Study};
 use snakes_core::check::{Invalid, within};
 use snakes_core::evolve::{
@@ -11,8 +13,8 @@ use snakes_core::schema::{Choices, SettingValue};
 use snakes_core::score::ExamSuite;
 use snakes_core::world::PhysicsEngine;
 
-/// Maximum number of evaluations of a run.
-const MAX_EVALUATIONS: u32 = 10_000_000;
+/// Numbers of evaluations that a run may spend. Fewer than a generation has are not allowed either.
+pub const EVALUATIONS: RangeInclusive<u32> = 1..=10_000_000;
 
 impl Study {
     /// Returns the plan of a run of an arm with this seed.
@@ -95,9 +97,10 @@ impl Study {
                 evolution.generations = evaluations / evolution.population.max(1);
             }
             let min = evolution.population.max(fixed_generations.unwrap_or(1));
-            within("evaluations", evaluations, min..=MAX_EVALUATIONS)?;
+            within("evaluations", evaluations, min..=*EVALUATIONS.end())?;
         }
         settings.check()?;
+        settings.check_start()?;
         check_effects(&settings, arm.settings.keys().map(String::as_str))?;
         Ok(settings)
     }
@@ -130,4 +133,4 @@ pub(super) fn is_short_for(field: &str, name: &str) -> bool {
 }
 
 /// Full name of the setting for the duration of trials.
-pub const DURATION: &str = "trial.duration_s";
+const DURATION: &str = "trial.duration_s";

@@ -51,7 +51,7 @@ fn clicked_of(
 pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
-    let folder = item.place().name();
+    let folder = item.place().shown_name();
     if item.name() != folder {
         explain(ui, &format!("Folder {folder}"));
     }

@@ -237,7 +237,7 @@ fn invalid_text_stays_with_its_reason_and_nothing_is_sent() {
     let mut panel = panel_of(&run, "trial.stairs.rise_m");
     type_into(&mut panel, "9");
     assert_eq!(*panel.state(), []);
-    let said = "Rise is \"9\"; allowed: -5 to 5 m";
+    let said = "Rise is \"9\"; allowed: -5 to -0.01 or 0.01 to 5 m";
     assert!(panel.query_by_label_contains(said).is_some());
     let field = panel.get_by_role(egui::accesskit::Role::TextInput);
     assert_eq!(field.value().as_deref(), Some("9"), "to be corrected");

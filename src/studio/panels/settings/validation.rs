@@ -40,8 +40,7 @@ impl Check<'_> {
                 } else {
                     text.parse::<f32>().is_ok_and(f32::is_finite)
                 };
-                let allowed = range.least..=range.most;
-                let is_allowed = text.parse().is_ok_and(|value: f32| allowed.contains(&value));
+                let is_allowed = text.parse().is_ok_and(|value: f32| range.allows(value));
                 // The message uses the setting's label.
                 if !is_number || !is_allowed {
                     return Err(unreadable());
@@ -55,7 +54,7 @@ impl Check<'_> {
                     Some(_) => self.stored_list(inside).ok_or_else(unreadable)?,
                 };
                 let list = numbers(&text).ok_or_else(unreadable)?;
-                let is_allowed = |number: &f32| (range.least..=range.most).contains(number);
+                let is_allowed = |number: &f32| range.allows(*number);
                 // The check of the whole list would show the numbers in the unit of files.
                 let is_shown_otherwise = self.setting.display.is_some();
                 if list.iter().any(|number| !number.is_finite())
@@ -95,7 +94,8 @@ impl Check<'_> {
     /// The text is invalid; the error is a message for the user.
     pub fn whole(&self, text: &str) -> Result<(), String> {
         let checked = with_field(self.settings, self.field, text);
-        checked.map(drop).map_err(|invalid| in_words(&invalid, self.all))
+        let checked = checked.and_then(|settings| settings.check_start());
+        checked.map_err(|invalid| in_words(&invalid, self.all))
     }
 }
 
@@ -150,9 +150,13 @@ mod tests {
     #[test]
     fn messages_have_label_value_and_range() {
         for (field, text, message) in [
-            ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: -5 to 5 m"),
-            ("trial.stairs.rise_m", "high", "Rise is \"high\"; allowed: -5 to 5 m"),
-            ("trial.stairs.rise_m", "NaN", "Rise is \"NaN\"; allowed: -5 to 5 m"),
+            ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: -5 to -0.01 or 0.01 to 5 m"),
+            (
+                "trial.stairs.rise_m",
+                "high",
+                "Rise is \"high\"; allowed: -5 to -0.01 or 0.01 to 5 m",
+            ),
+            ("trial.stairs.rise_m", "NaN", "Rise is \"NaN\"; allowed: -5 to -0.01 or 0.01 to 5 m"),
             ("trial.stairs.steps", "2.5", "Steps is \"2.5\"; allowed: 0 to 100, whole numbers"),
             (
                 "genome.bend_limits_rad",

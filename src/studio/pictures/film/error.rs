@@ -23,6 +23,9 @@ pub enum FilmError {
         "a .mp4 film is written by ffmpeg, which is not installed here or not in PATH; install it, or write a .gif"
     )]
     NoFfmpeg,
+    /// The system refused to start the program that writes .mp4 films, or a thread for it.
+    #[error("ffmpeg: cannot be started: {0}")]
+    Ffmpeg(std::io::Error),
 }
 
 impl From<Invalid> for FilmError {

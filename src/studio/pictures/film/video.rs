@@ -49,7 +49,7 @@ impl Video {
                 .kind()
             {
                 io::ErrorKind::NotFound => FilmError::NoFfmpeg,
-                _ => ExportError::unwritable(path)(error).into(),
+                _ => FilmError::Ffmpeg(error),
             })?;
         Ok(Self { ffmpeg, file, path: path.to_owned() })
     }

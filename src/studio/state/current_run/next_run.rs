@@ -62,6 +62,7 @@ impl CurrentRun {
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
         let settings = with_fields_and_engine(&next.settings, changes)
+            .and_then(|settings| settings.check_start().map(|()| settings))
             .map_err(|error: Invalid| error.to_string())?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }

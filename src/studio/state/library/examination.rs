@@ -35,7 +35,7 @@ impl Examination {
     pub fn begin(places: &[SavePlace]) -> Result<Option<Self>, String> {
         let load = |(place, path): (&SavePlace, PathBuf)| {
             let loaded = load_champion(&path).map_err(|error| error.to_string())?;
-            let (name, engine) = (place.name(), &loaded.engine);
+            let (name, engine) = (place.shown_name(), &loaded.engine);
             match loaded.is_of_this_engine() {
                 true => Ok((name, (path, loaded))),
                 false => Err(format!("{name} moves differently here: engine {engine} recorded it")),

@@ -59,7 +59,7 @@ impl LibraryItem {
     }
 
     fn describe(&mut self) {
-        let folder = self.place().name();
+        let folder = self.place().shown_name();
         let own = self.notes().map(|notes| notes.name.clone()).unwrap_or_default();
         self.name = if own.is_empty() { folder.clone() } else { own };
         self.sorted_as = self.name.to_lowercase();

@@ -40,7 +40,7 @@ pub fn champion_of(
 ) -> Result<StagedChampion, String> {
     let (loaded, generation) = load(place, best)?;
     let name = match (generation, own_name) {
-        (None, _) => place.name(),
+        (None, _) => place.shown_name(),
         (Some(generation), Some(own)) => format!("{own}, generation {generation}"),
         (Some(generation), None) => {
             let origin = &loaded.champion.origin;

@@ -2,6 +2,7 @@
 
 use crate::check::Invalid;
 use crate::schema::{PerPart, number, setting_group, whole};
+use crate::world::LEAST_RISE_M;
 
 setting_group! {
     /// Settings of a ladder of stairs: a run begins on low stairs, whose rise grows up to that of the trial as the snakes succeed.
@@ -10,6 +11,7 @@ setting_group! {
         /// Rise of the first stairs, in m. With 0 there is no ladder.
         first_rise_m: f32 = 0.0,
             number("First rise", 0.0..=5.0)
+                .without(0.0, LEAST_RISE_M)
                 .unit("m")
                 .hint("Rise of the first stairs; 0 begins with the rise of the stairs themselves")
                 .slider(0.0, 1.0)
@@ -74,9 +76,9 @@ impl LadderSettings {
             ));
         }
         match rises_m {
-            PerPart::All(rise_m) if (0.01..=*rise_m).contains(&self.first_rise_m) => Ok(()),
+            PerPart::All(rise_m) if self.first_rise_m <= *rise_m => Ok(()),
             PerPart::All(rise_m) => {
-                refused(format!("0, or 0.01 m to {rise_m} m, the rise of the stairs"))
+                refused(format!("0, or {LEAST_RISE_M} m to {rise_m} m, the rise of the stairs"))
             }
             PerPart::Each(_) => refused("0 with steps of different heights".to_owned()),
         }

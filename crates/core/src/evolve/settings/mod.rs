@@ -17,6 +17,7 @@ mod novelty;
 mod partners;
 mod poet;
 mod size;
+mod start;
 mod strategy_kind;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};

@@ -118,8 +118,14 @@ fn every_setting_is_allowed_within_its_range_and_refused_beyond_it_by_name_value
                 for number in beyond {
                     match range.is_whole && number.starts_with('-') {
                         true => refuses_text(&number),
-                        false => refuses(&number, &number, &ends.join(" to ")),
+                        false => refuses(&number, &number, &range.in_words()),
                     }
+                }
+                for end in range.gap.into_iter().flatten() {
+                    allows(&end.to_string());
+                    let inside =
+                        if end > 0.0 { end.next_down() } else { end.next_up() }.to_string();
+                    refuses(&inside, &inside, &range.in_words());
                 }
                 refuses_text("NaN");
             }
@@ -159,4 +165,72 @@ fn a_generation_that_would_not_fit_into_memory_is_refused() {
     settings.genome.points_per_s = 1000.0;
     let error = settings.check().unwrap_err().to_string();
     assert!(error.starts_with("genome.points_per_s is 1000 (4800000 torque points"), "{error}");
+}
+
+/// Returns numbers of a range to try: its ends, its middle, the ends of its gap and of its slider, and numbers next to zero.
+fn samples(range: &NumberRange) -> Vec<f32> {
+    let NumberRange { least, most, is_whole, slider, gap, begins_with, .. } = *range;
+    let mut numbers =
+        vec![least, most, f32::midpoint(least, most), 0.0, most * 1.0e-6, least * 1.0e-6];
+    numbers.extend(slider.into_iter().chain(gap).flatten().chain(begins_with));
+    let numbers = numbers.into_iter().map(|number| if is_whole { number.round() } else { number });
+    numbers.filter(|number| range.allows(*number)).collect()
+}
+
+/// Returns texts that give the setting a number: alone and, where each part may have its own, behind the greatest number of the first.
+fn texts_of(number: f32, kind: &SettingKind) -> Vec<String> {
+    match kind {
+        SettingKind::List(_) => vec![format!("[{number}]")],
+        SettingKind::Number(range) if range.parts.count() > 1 => {
+            let mut list = vec![range.most; range.parts.count()];
+            list[1] = number;
+            vec![number.to_string(), format!("{list:?}")]
+        }
+        _ => vec![number.to_string()],
+    }
+}
+
+#[test]
+fn f14_every_number_that_a_setting_documents_is_allowed_in_some_run() {
+    let presets = crate::save::shipped_presets().expect("well formed");
+    let runs: Vec<Settings> = presets.into_iter().map(|preset| preset.settings).collect();
+    let mut all = std::collections::BTreeMap::new();
+    for run in &runs {
+        all.extend(schema::list(run).into_iter().map(|listed| (listed.path.clone(), listed)));
+    }
+    let mut refused = Vec::new();
+    for (path, listed) in &all {
+        let (SettingKind::Number(range) | SettingKind::List(range)) = listed.setting.kind else {
+            continue;
+        };
+        // Limits that depend on each other are tried together with another number of the same group.
+        let group = path.rsplit_once('.').map_or("", |(group, _)| group);
+        let mut others = vec![None];
+        for (other, listed) in all.iter().filter(|(other, _)| {
+            *other != path && other.rsplit_once('.').is_some_and(|(of, _)| of == group)
+        }) {
+            let SettingKind::Number(range) = listed.setting.kind else { continue };
+            others.extend(
+                samples(&range).iter().map(|number| Some((other.as_str(), number.to_string()))),
+            );
+        }
+        for number in samples(&range) {
+            let is_allowed = |run: &Settings| {
+                texts_of(number, &listed.setting.kind).iter().any(|text| {
+                    others.iter().any(|other| {
+                        let other = other.iter().map(|(path, text)| (*path, text.as_str()));
+                        with_fields(run, other.chain([(path.as_str(), text.as_str())])).is_ok()
+                    })
+                })
+            };
+            if !runs.iter().any(is_allowed) {
+                let allowed = listed.setting.allowed();
+                let problem = with_field(&runs[0], path, &number.to_string()).map(drop);
+                refused.push(format!(
+                    "{path} documents {allowed}, but {number} is refused: {problem:?}"
+                ));
+            }
+        }
+    }
+    assert!(refused.is_empty(), "{}", refused.join("\n"));
 }

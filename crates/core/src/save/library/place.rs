@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::check::printable;
+
 /// Place of a library entry.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SavePlace {
@@ -22,6 +24,11 @@ impl SavePlace {
             Self::Run(path) => path.file_name(),
         };
         part.unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Returns the name of the entry as one line for people: see [`printable`].
+    pub fn shown_name(&self) -> String {
+        printable(&self.name()).into_owned()
     }
 
     /// Returns the path of the file or folder. None for a part of the program.
