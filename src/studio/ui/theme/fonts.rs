@@ -14,8 +14,9 @@ use super::{
 /// frame, because the texture reaches the graphics card one frame after the text.
 #[derive(Debug, Default)]
 pub struct GlyphWarmUp {
-    /// Text options and pixels per point of the loaded glyphs, and whether those of the presenting mode are among them.
-    drawn: Option<(TextOptions, f32, bool)>,
+    /// Text options and pixels per point of the loaded glyphs, whether those of the presenting mode are among them, and the
+    /// number of fonts: another font empties the texture.
+    drawn: Option<(TextOptions, f32, bool, usize)>,
 }
 
 impl GlyphWarmUp {
@@ -23,8 +24,9 @@ impl GlyphWarmUp {
     /// has taken effect and after every change of the scale.
     pub fn warm_up(&mut self, context: &egui::Context, scale: f32, is_presenting: bool) {
         let pixels_per_point = scale * context.native_pixels_per_point().unwrap_or(1.0);
-        let options = context.fonts(|fonts| *fonts.options());
-        let now = Some((options, pixels_per_point, is_presenting));
+        let (options, fonts) =
+            context.fonts(|fonts| (*fonts.options(), fonts.definitions().font_data.len()));
+        let now = Some((options, pixels_per_point, is_presenting, fonts));
         if self.drawn != now {
             self.drawn = now;
             draw_letters(context, pixels_per_point, is_presenting);
