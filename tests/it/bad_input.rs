@@ -226,6 +226,22 @@ fn the_same_run_writes_the_same_folder_and_another_run_another() {
     assert_eq!(run_with(5), 2, "another run writes another");
 }
 
+/// Windows names the folders of a user in another way.
+#[cfg(unix)]
+#[test]
+fn f2_a_home_that_is_no_absolute_path_is_not_used() {
+    let folder = folder();
+    for home in ["home", "."] {
+        let mut command = snakes(folder.path(), "run --preset quick --generations 1 --restart");
+        let output = command.env("HOME", home).env_remove("XDG_DATA_HOME").output();
+        let said = String::from_utf8(output.expect("the program starts").stdout).expect("UTF-8");
+        assert!(said.contains("saved to  saves/quick-"), "{said}");
+    }
+    let mut found: Vec<_> = fs::read_dir(folder.path()).expect("a folder").collect();
+    assert_eq!(found.pop().expect("saves").expect("read").file_name(), "saves");
+    assert!(found.is_empty(), "{found:?}");
+}
+
 /// Systems other than Linux always have a display.
 #[cfg(target_os = "linux")]
 #[test]
