@@ -261,7 +261,7 @@ fn refusal_with(variables: &[(&str, &str)], arguments: &str) -> String {
     assert_eq!(output.status.code(), Some(1), "{arguments}");
     let text = String::from_utf8(output.stderr).expect("UTF-8");
     let line = text.lines().find(|line| line.starts_with("error: "));
-    line.unwrap_or_else(|| panic!("an error in {text:?}")).to_owned()
+    line.expect("an error").to_owned()
 }
 
 #[cfg(all(feature = "studio", target_os = "linux"))]

@@ -156,12 +156,7 @@ fn shaped(text: &str, height: f32) -> Option<ShapedLine> {
     let pixels_per_em = height * units_per_em(embedded) / embedded.outlines().height_unscaled();
     let mut line = ShapedLine { glyphs: Vec::new(), width: 0.0 };
     for (font, part) in parts {
-        let face = harfrust::FontRef::from_index(font.bytes, font.index).ok()?;
-        let mut buffer = harfrust::UnicodeBuffer::new();
-        buffer.push_str(part);
-        buffer.guess_segment_properties();
-        let shaper = harfrust::ShaperData::new(&face);
-        let shaped = shaper.shaper(&face).build().shape(buffer, harfrust::ShapeOptions::new());
+        let shaped = font.shape(part);
         let pixels = pixels_per_em / units_per_em(font);
         let scale = PxScale::from(font.outlines().height_unscaled() * pixels);
         for (info, position) in shaped.glyph_infos().iter().zip(shaped.glyph_positions()) {

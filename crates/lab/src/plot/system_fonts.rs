@@ -19,6 +19,8 @@ pub struct SystemFont {
     /// Index of the font in the file.
     pub index: u32,
     outlines: FontRef<'static>,
+    tables: harfrust::FontRef<'static>,
+    shaping: harfrust::ShaperData,
 }
 
 /// Largest file of a font that is read, in MiB. Those with all Chinese characters have about 20.
@@ -112,14 +114,24 @@ fn places_of(letter: char) -> Vec<(PathBuf, u32)> {
 impl SystemFont {
     /// Returns the font in these bytes; `None` if they are damaged. Both readers of fonts have to understand it.
     pub fn of_bytes(name: String, bytes: &'static [u8], index: u32) -> Option<Self> {
-        harfrust::FontRef::from_index(bytes, index).ok()?;
+        let tables = harfrust::FontRef::from_index(bytes, index).ok()?;
         let outlines = FontRef::try_from_slice_and_index(bytes, index).ok()?;
-        Some(Self { name, bytes, index, outlines })
+        let shaping = harfrust::ShaperData::new(&tables);
+        Some(Self { name, bytes, index, outlines, tables, shaping })
     }
 
     /// The font as a list of outlines.
     pub(super) fn outlines(&self) -> &FontRef<'static> {
         &self.outlines
+    }
+
+    /// Returns the glyphs of a text in one script, from left to right.
+    pub(super) fn shape(&self, text: &str) -> harfrust::GlyphBuffer {
+        let mut buffer = harfrust::UnicodeBuffer::new();
+        buffer.push_str(text);
+        buffer.guess_segment_properties();
+        let shaper = self.shaping.shaper(&self.tables).build();
+        shaper.shape(buffer, harfrust::ShapeOptions::new())
     }
 
     /// Returns whether the font can draw a character. A font of coloured pictures has characters without an outline.
