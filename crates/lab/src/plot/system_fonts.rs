@@ -10,7 +10,6 @@ use ab_glyph::{Font, FontRef};
 use snakes_core::save::read_bytes;
 
 /// A font of the system. It is read once and stays in memory.
-#[derive(Debug)]
 pub struct SystemFont {
     /// Path of the font's file, with its index in the file.
     pub name: String,
