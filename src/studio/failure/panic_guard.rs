@@ -62,7 +62,9 @@ fn said(info: &PanicHookInfo<'_>) -> String {
 /// Short form of the panic's message.
 fn reason(info: &PanicHookInfo<'_>) -> String {
     let message = info.payload_as_str().unwrap_or("unknown reason");
-    if message.contains("event loop") {
+    if ["LibraryOpenError", "NoWaylandLib"].iter().any(|missing| message.contains(missing)) {
+        "a library of X11 or Wayland is missing".to_owned()
+    } else if message.contains("event loop") {
         format!("no display was found{}", variables::of_display())
     } else if message.contains("GPU") {
         format!("no graphics driver was found{}", variables::of_graphics())
