@@ -38,7 +38,8 @@ pub(super) type Area<'a> = DrawingArea<Canvas<'a>, plotters::coord::Shift>;
 pub(super) struct Canvas<'a>(BitMapBackend<'a>);
 
 /// Result of drawing on a canvas.
-type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+type CanvasResult<'a> =
+    Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
 
 impl<'a> DrawingBackend for Canvas<'a> {
     type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
@@ -47,15 +48,15 @@ impl<'a> DrawingBackend for Canvas<'a> {
         self.0.get_size()
     }
 
-    fn ensure_prepared(&mut self) -> Drawn<'a> {
+    fn ensure_prepared(&mut self) -> CanvasResult<'a> {
         self.0.ensure_prepared()
     }
 
-    fn present(&mut self) -> Drawn<'a> {
+    fn present(&mut self) -> CanvasResult<'a> {
         self.0.present()
     }
 
-    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> Drawn<'a> {
+    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> CanvasResult<'a> {
         self.0.draw_pixel(at, color)
     }
 
@@ -64,7 +65,7 @@ impl<'a> DrawingBackend for Canvas<'a> {
         from: BackendCoord,
         to: BackendCoord,
         style: &S,
-    ) -> Drawn<'a> {
+    ) -> CanvasResult<'a> {
         self.0.draw_line(from, to, style)
     }
 
@@ -74,7 +75,7 @@ impl<'a> DrawingBackend for Canvas<'a> {
         to: BackendCoord,
         style: &S,
         fill: bool,
-    ) -> Drawn<'a> {
+    ) -> CanvasResult<'a> {
         self.0.draw_rect(from, to, style, fill)
     }
 
@@ -83,7 +84,7 @@ impl<'a> DrawingBackend for Canvas<'a> {
         text: &str,
         style: &S,
         at: BackendCoord,
-    ) -> Drawn<'a> {
+    ) -> CanvasResult<'a> {
         self.0.draw_text(text, &InAllScripts(style), at)
     }
 
