@@ -32,7 +32,7 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     #[cfg(feature = "studio")]
     if let Some(at) = &wanted.film.at {
         refuse_json(args, "--at")?;
-        crate::studio::name_runtime_folder(|_| ());
+        crate::studio::correct_variables(|_| ());
         return super::render::draw(wanted, at, output);
     }
     #[cfg(feature = "studio")]
@@ -66,7 +66,7 @@ fn figures(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
     };
     #[cfg(feature = "studio")]
     {
-        crate::studio::name_runtime_folder(|_| ());
+        crate::studio::correct_variables(|_| ());
         super::figures::draw(run, wanted.output.as_deref())
     }
     #[cfg(not(feature = "studio"))]

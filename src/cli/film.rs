@@ -58,7 +58,7 @@ pub fn ordered(
 impl OrderedFilm {
     /// Draws and writes the film. Returns the path of its file or, for single pictures, of their folder.
     pub fn carry_out(&self, progress: &ExportProgress) -> Result<PathBuf, CliError> {
-        crate::studio::name_runtime_folder(|_| ());
+        crate::studio::correct_variables(|_| ());
         film(&self.order, self.format, &self.path, progress)?;
         Ok(match self.format {
             ExportFormat::Png => frame_folder_of(&self.path),

@@ -112,9 +112,9 @@ fn evolve(args: &Args) -> Result<(), CliError> {
 #[cfg(feature = "studio")]
 fn open_studio(args: &Args, files: &[PathBuf]) -> Result<(), CliError> {
     use crate::studio;
-    // Without a display, only the error that follows is printed.
+    // Without an X11 display, only the error that follows is printed.
     let has_display = std::env::var_os("DISPLAY").is_some();
-    studio::name_runtime_folder(|note| {
+    studio::correct_variables(|note| {
         if has_display {
             say(note)
         }

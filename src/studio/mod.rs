@@ -45,7 +45,7 @@ use workspace::Workspace;
 pub use commands::camera_mode::CameraMode;
 pub use commands::overlay::Overlay;
 pub use error::StudioError;
-pub use failure::runtime_folder::name_runtime_folder;
+pub use failure::variables::correct as correct_variables;
 pub use pictures::{figures, film, render};
 pub use stage::MAX_LANES;
 pub use state::options::Options;

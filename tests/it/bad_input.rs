@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::program::{folder, json_lines, run, with_slashes};
+use super::program::{folder, json_lines, run, snakes, with_slashes};
 
 /// Runs the program, which must fail with `code` and one line, and returns the line.
 fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
@@ -226,6 +226,22 @@ fn the_same_run_writes_the_same_folder_and_another_run_another() {
     assert_eq!(run_with(5), 2, "another run writes another");
 }
 
+/// Windows names the folders of a user in another way.
+#[cfg(unix)]
+#[test]
+fn f2_a_home_that_is_no_absolute_path_is_not_used() {
+    let folder = folder();
+    for home in ["home", "."] {
+        let mut command = snakes(folder.path(), "run --preset quick --generations 1 --restart");
+        let output = command.env("HOME", home).env_remove("XDG_DATA_HOME").output();
+        let said = String::from_utf8(output.expect("the program starts").stdout).expect("UTF-8");
+        assert!(said.contains("saved to  saves/quick-"), "{said}");
+    }
+    let mut found: Vec<_> = fs::read_dir(folder.path()).expect("a folder").collect();
+    assert_eq!(found.pop().expect("saves").expect("read").file_name(), "saves");
+    assert!(found.is_empty(), "{found:?}");
+}
+
 /// Systems other than Linux always have a display.
 #[cfg(target_os = "linux")]
 #[test]
@@ -234,4 +250,43 @@ fn without_a_display_the_studio_fails_with_one_line() {
     assert!(message.contains("--no-render"), "{message}");
     #[cfg(feature = "studio")]
     assert!(message.starts_with("error: no window can be opened ("), "{message}");
+}
+
+/// Returns the error line of the program with these environment variables.
+#[cfg(all(feature = "studio", target_os = "linux"))]
+fn refusal_with(variables: &[(&str, &str)], arguments: &str) -> String {
+    let folder = folder();
+    let output = snakes(folder.path(), arguments).envs(variables.iter().copied()).output();
+    let output = output.expect("the program starts");
+    assert_eq!(output.status.code(), Some(1), "{arguments}");
+    let text = String::from_utf8(output.stderr).expect("UTF-8");
+    let line = text.lines().find(|line| line.starts_with("error: "));
+    line.expect("an error").to_owned()
+}
+
+#[cfg(all(feature = "studio", target_os = "linux"))]
+#[test]
+fn f2_an_error_names_the_variables_that_lead_to_no_display_or_driver() {
+    let message = refusal_with(&[], "");
+    assert!(message.contains("neither WAYLAND_DISPLAY nor DISPLAY is set"), "{message}");
+    // A display number beyond all that exist.
+    let (wayland, x11) = (("WAYLAND_DISPLAY", "wayland-9"), ("DISPLAY", ":64999"));
+    for (variables, named) in [
+        (vec![wayland], "with WAYLAND_DISPLAY=\"wayland-9\""),
+        (vec![x11], "with DISPLAY=\":64999\""),
+        (vec![wayland, x11], "with DISPLAY=\":64999\""),
+        (vec![("WAYLAND_SOCKET", "four")], "with WAYLAND_SOCKET=\"four\""),
+    ] {
+        let message = refusal_with(&variables, "");
+        assert!(message.contains(&format!("no server answers {named}")), "{message}");
+        assert!(message.contains("--no-render"), "{message}");
+    }
+    let champion = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
+    let picture = format!("export {champion} -o p.png --at 1 --size 64x64");
+    for (name, value) in [("WGPU_BACKEND", "metal"), ("VK_ICD_FILENAMES", "/nowhere.json")] {
+        // Another kind of driver must not be found instead.
+        let message =
+            refusal_with(&[(name, value), ("VK_DRIVER_FILES", "/nowhere.json")], &picture);
+        assert!(message.contains(&format!("{name}={value:?}")), "{message}");
+    }
 }

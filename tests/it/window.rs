@@ -7,6 +7,7 @@
 mod display;
 mod guidance;
 mod input;
+mod keyboards;
 mod library;
 mod panels;
 mod picture;

@@ -6,8 +6,10 @@ mod figure;
 mod film_text;
 mod labels;
 mod paint;
+mod scripts;
 mod series;
 mod signal;
+mod system_fonts;
 mod table;
 mod ticks;
 
@@ -22,7 +24,9 @@ pub use figure::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent, padded_
 pub use film_text::{FilmBand, FilmTitle, film_band, film_title};
 pub use labels::beside_line;
 pub use paint::figure;
+pub use scripts::in_visual_order;
 pub use signal::signal;
+pub use system_fonts::{SystemFont, system_font};
 pub use ticks::{tick_step, tick_text};
 
 /// Writes a line of text onto a picture, on a dark band along its lower edge.

@@ -2,7 +2,7 @@
 
 pub mod gpu_loss;
 pub mod panic_guard;
-pub mod runtime_folder;
+pub mod variables;
 
 use bevy::prelude::*;
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::prelude::*;
 
-use super::gpu_loss;
+use super::{gpu_loss, variables};
 use crate::studio::error::StudioError;
 use crate::studio::state::run_context::RunInProgress;
 use snakes_lab::run::end_without_threads;
@@ -64,10 +64,12 @@ fn said(info: &PanicHookInfo<'_>) -> String {
 /// Returns the reason why no window can be opened, from the panic's message.
 fn reason(info: &PanicHookInfo<'_>) -> String {
     let message = info.payload_as_str().unwrap_or("unknown reason");
-    if message.contains("event loop") {
-        "no display was found".to_owned()
+    if ["LibraryOpenError", "NoWaylandLib"].iter().any(|missing| message.contains(missing)) {
+        "a library of X11 or Wayland is missing".to_owned()
+    } else if message.contains("event loop") {
+        format!("no display was found{}", variables::of_display())
     } else if message.contains("GPU") {
-        "no graphics driver was found".to_owned()
+        format!("no graphics driver was found{}", variables::of_graphics())
     } else {
         message.lines().next().unwrap_or_default().chars().take(120).collect()
     }

@@ -10,6 +10,7 @@ pub mod notifications;
 pub mod number_field;
 pub mod outlines;
 pub mod plot_axes;
+pub mod scripts;
 pub mod text_prompt;
 pub mod text_rows;
 pub mod theme;
@@ -18,5 +19,5 @@ pub mod viewport;
 use bevy::prelude::*;
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_plugins(notifications::plugin);
+    app.add_plugins((notifications::plugin, scripts::plugin));
 }

@@ -103,6 +103,11 @@ impl Studio {
         Self::open_in(&Arc::new(folder()), test, arguments, size, size)
     }
 
+    /// Opens the program with other environment variables.
+    pub fn open_with(test: &str, arguments: &str, variables: &[(&str, &str)]) -> Option<Self> {
+        Self::open_anywhere(&Arc::new(folder()), test, arguments, (SIZE, SIZE), variables)
+    }
+
     /// Opens the program without anything to watch. `folder` is its working directory and home. The screen may be larger than the
     /// window.
     pub fn open_in(
@@ -111,6 +116,16 @@ impl Studio {
         arguments: &str,
         size: (i32, i32),
         screen: (i32, i32),
+    ) -> Option<Self> {
+        Self::open_anywhere(folder, test, arguments, (size, screen), &[])
+    }
+
+    fn open_anywhere(
+        folder: &Arc<tempfile::TempDir>,
+        test: &str,
+        arguments: &str,
+        (size, screen): ((i32, i32), (i32, i32)),
+        variables: &[(&str, &str)],
     ) -> Option<Self> {
         if let Some(missing) = ["Xvfb", "xdotool"].into_iter().find(|tool| !is_installed(tool)) {
             skip(test, &format!("{missing} is not installed"));
@@ -152,6 +167,7 @@ impl Studio {
             .env("PATH", file_manager(folder.path()))
             // The log must be plain text, even where it would be coloured.
             .env("NO_COLOR", "1")
+            .envs(variables.iter().copied())
             .stderr(fs::File::create(folder.path().join(LOG)).expect("created"))
             .spawn()
             .expect("the program starts");
@@ -342,6 +358,11 @@ impl Studio {
     pub fn xdotool_reader(&self) -> Child {
         let mut command = self.xdotool_command(&["-"]);
         command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("xdotool starts")
+    }
+
+    /// Returns the name of the display.
+    pub fn display(&self) -> &str {
+        &self.display
     }
 
     /// Returns the number of the window in xdotool.

@@ -128,6 +128,9 @@ pub fn read_text(path: &Path) -> Result<String, SaveError> {
 
 /// Reads a regular file of at most `limit_mib`. Devices and pipes are refused, because a device might never end and a pipe might block for
 /// ever.
+///
+/// # Errors
+/// Fails if the file cannot be read, is not a regular file, or is larger.
 pub fn read_bytes(path: &Path, limit_mib: u64) -> Result<Vec<u8>, SaveError> {
     let unreadable = SaveError::unreadable(path);
     let limit = limit_mib * 1024 * 1024;

@@ -33,6 +33,8 @@ impl SavesFolder {
             return Self(here);
         }
         let data = ProjectDirs::from("", "", "snakes-and-stairs");
+        // A relative HOME would lead to another folder from each working directory.
+        let data = data.filter(|data| data.data_dir().is_absolute());
         Self(data.map_or(here, |data| data.data_dir().join("saves")))
     }
 

@@ -44,7 +44,7 @@ pub use champion_exam::{check_examinable, exam_in_words, store_exam};
 pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
 pub use copies::ChampionCopies;
-pub use files::{SaveError, load_text};
+pub use files::{SaveError, load_text, read_bytes};
 pub use folder::{RunSummary, SavesFolder, load_generation, load_run, within_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};

@@ -120,6 +120,7 @@ impl PreferencesFile {
     /// Returns the file in the platform's folder for settings. It has no path if the platform has no such folder.
     pub fn find() -> Self {
         let folders = ProjectDirs::from("", "", "snakes-and-stairs");
+        let folders = folders.filter(|folders| folders.config_dir().is_absolute());
         Self(folders.map(|folders| folders.config_dir().join("studio.ron")))
     }
 

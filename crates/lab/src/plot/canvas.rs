@@ -5,7 +5,11 @@ use std::sync::OnceLock;
 
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
+use plotters_backend::{
+    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind,
+};
 
+use super::scripts::InAllScripts;
 use snakes_core::save::Picture;
 
 /// Error when a plot could not be drawn.
@@ -28,7 +32,70 @@ pub(super) fn text() -> TextStyle<'static> {
 }
 
 /// A drawing area of the plotting library, over the pixels of a picture.
-pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+pub(super) type Area<'a> = DrawingArea<Canvas<'a>, plotters::coord::Shift>;
+
+/// The pixels of a picture, on which texts may be in any script.
+pub(super) struct Canvas<'a>(BitMapBackend<'a>);
+
+/// Result of drawing on a canvas.
+type CanvasResult<'a> =
+    Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+
+impl<'a> DrawingBackend for Canvas<'a> {
+    type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.0.get_size()
+    }
+
+    fn ensure_prepared(&mut self) -> CanvasResult<'a> {
+        self.0.ensure_prepared()
+    }
+
+    fn present(&mut self) -> CanvasResult<'a> {
+        self.0.present()
+    }
+
+    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> CanvasResult<'a> {
+        self.0.draw_pixel(at, color)
+    }
+
+    fn draw_line<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+    ) -> CanvasResult<'a> {
+        self.0.draw_line(from, to, style)
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> CanvasResult<'a> {
+        self.0.draw_rect(from, to, style, fill)
+    }
+
+    fn draw_text<S: BackendTextStyle>(
+        &mut self,
+        text: &str,
+        style: &S,
+        at: BackendCoord,
+    ) -> CanvasResult<'a> {
+        self.0.draw_text(text, &InAllScripts(style), at)
+    }
+
+    fn estimate_text_size<S: BackendTextStyle>(
+        &self,
+        text: &str,
+        style: &S,
+    ) -> Result<(u32, u32), DrawingErrorKind<Self::ErrorType>> {
+        self.0.estimate_text_size(text, &InAllScripts(style))
+    }
+}
 
 /// Draws on a picture. The embedded font is available.
 pub(super) fn draw_on(
@@ -37,13 +104,14 @@ pub(super) fn draw_on(
 ) -> Result<(), PlotError> {
     font()?;
     let size = (picture.width, picture.height);
-    let area = BitMapBackend::with_buffer(&mut picture.rgb, size).into_drawing_area();
+    let canvas = Canvas(BitMapBackend::with_buffer(&mut picture.rgb, size));
+    let area = canvas.into_drawing_area();
     let drawn = draw(&area).and_then(|()| Ok(area.present()?));
     drawn.map_err(|error| PlotError(error.to_string()))
 }
 
-/// Registers the embedded font with the plotting library, once. System fonts are not used, so a plot looks the same
-/// everywhere.
+/// Registers the embedded font with the plotting library, once. A plot looks the same everywhere, because fonts of the system draw only
+/// the characters that this one lacks.
 fn font() -> Result<(), PlotError> {
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let register =

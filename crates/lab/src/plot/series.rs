@@ -4,6 +4,7 @@ use std::error::Error;
 
 use plotters::prelude::*;
 
+use super::canvas::Canvas;
 use super::colors::{BAND_OPACITY, color_of};
 use super::figure::{Role, Series, Shape};
 use super::ticks::TickedAxis;
@@ -13,7 +14,7 @@ pub(super) const DASH: (i32, i32) = (10, 7);
 
 /// The axes of a chart in a picture.
 pub(super) type FigureAxes<'a, 'b> =
-    ChartContext<'a, BitMapBackend<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
+    ChartContext<'a, Canvas<'b>, Cartesian2d<TickedAxis, TickedAxis>>;
 
 /// Draws a series between the axes of its chart.
 pub(super) fn paint_series(

@@ -14,9 +14,9 @@ use super::{
 /// frame after the text, so a new character would be missing for a frame.
 #[derive(Debug, Default)]
 pub struct GlyphWarmUp {
-    /// Text options and pixels per point of the loaded glyphs, and whether the presenting mode's sizes are loaded.
-    /// `None` before the first call.
-    drawn: Option<(TextOptions, f32, bool)>,
+    /// Text options and pixels per point of the loaded glyphs, whether the presenting mode's sizes are loaded, and the number of fonts,
+    /// because a further font empties the texture. `None` before the first call.
+    drawn: Option<(TextOptions, f32, bool, usize)>,
 }
 
 impl GlyphWarmUp {
@@ -24,8 +24,9 @@ impl GlyphWarmUp {
     /// [`super::apply`] has taken effect and after every change of the scale.
     pub fn warm_up(&mut self, context: &egui::Context, scale: f32, is_presenting: bool) {
         let pixels_per_point = scale * context.native_pixels_per_point().unwrap_or(1.0);
-        let options = context.fonts(|fonts| *fonts.options());
-        let now = Some((options, pixels_per_point, is_presenting));
+        let (options, fonts) =
+            context.fonts(|fonts| (*fonts.options(), fonts.definitions().font_data.len()));
+        let now = Some((options, pixels_per_point, is_presenting, fonts));
         if self.drawn != now {
             self.drawn = now;
             draw_letters(context, pixels_per_point, is_presenting);
