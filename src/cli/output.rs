@@ -1,7 +1,7 @@
 //! Standard output, and the interrupt key.
 
 use std::io::{self, Write};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde_json::{Value, json};
 
@@ -35,9 +35,18 @@ pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Re
 /// Control that the interrupt key cancels; `None` before the first.
 static CANCELLED_BY_KEY: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
 
+fn current() -> MutexGuard<'static, Option<Arc<RunControl>>> {
+    CANCELLED_BY_KEY.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns whether the interrupt key was pressed since the latest control was made. Before the first, the key ends the program.
+#[cfg(feature = "cluster")]
+pub fn is_interrupted() -> bool {
+    current().as_ref().is_some_and(|control| control.is_cancelled())
+}
+
 /// Returns a control that the interrupt key cancels. It replaces any earlier control.
 pub fn cancel_on_interrupt() -> Arc<RunControl> {
-    let current = || CANCELLED_BY_KEY.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
     let is_first = current().replace(Arc::clone(&control)).is_none();
     if is_first {

@@ -20,7 +20,7 @@ use crate::outcome::Outcome;
 use crate::wire::{ResultBatch, TaskKind, TaskText, WorkBatch, task_key};
 use audits::Audits;
 pub use audits::{AuditTask, Checker};
-use batches::LOST_AFTER;
+pub use batches::LOST_AFTER;
 use staff::Staff;
 use staff::Standing;
 

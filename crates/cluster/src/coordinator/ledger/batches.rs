@@ -16,9 +16,14 @@ const LATE_AFTER: Duration = Duration::from_secs(2);
 const LATE_FACTOR: f64 = 3.0;
 /// A batch without results for this long is given up and its tasks are queued again, because the server may have lost
 /// it.
-pub(super) const LOST_AFTER: Duration = Duration::from_secs(30);
+pub const LOST_AFTER: Duration = Duration::from_secs(30);
 /// Maximum number of batches that hold the same task.
 const MOST_COPIES: u8 = 3;
+/// Size of the head of a message besides its keys, in bytes, at most.
+const HEAD_SIZE: usize = 300;
+/// Size of a task's key in the head of a message, in bytes.
+const KEY_SIZE: usize = 20;
+
 impl Ledger {
     pub(super) fn is_held(&self, key: u64) -> bool {
         let Some(pending) = self.tasks.get(&key) else { return true };
@@ -71,12 +76,13 @@ impl Ledger {
                 continue;
             };
             let of = (pending.kind, pending.shared);
-            let fits = keys.is_empty() || bytes + pending.text.len() < self.largest_message;
+            let size = pending.text.len() + KEY_SIZE;
+            let fits = keys.is_empty() || bytes + size + HEAD_SIZE < self.largest_message;
             if self.is_held(key) || *group.get_or_insert(of) != of || !fits {
                 at += 1;
                 continue;
             }
-            bytes += pending.text.len();
+            bytes += size;
             keys.push(key);
             self.queue.remove(at);
         }
