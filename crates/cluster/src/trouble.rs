@@ -4,7 +4,6 @@ use std::error::Error;
 use std::fmt;
 
 use async_nats::jetstream::ErrorCode;
-use async_nats::jetstream::consumer::StreamErrorKind;
 use async_nats::jetstream::context::{
     ConsumerInfoError, ConsumerInfoErrorKind, CreateStreamError, CreateStreamErrorKind,
     PublishError, PublishErrorKind,

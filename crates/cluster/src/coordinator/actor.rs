@@ -9,7 +9,7 @@ use crossbeam_channel::Sender;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
-use tokio::task::JoinHandle;
+use tokio::task::{JoinHandle, JoinSet};
 
 use super::common::{Common, CoordinatorOptions};
 use super::ledger::{AuditTask, CallId, Checker, LOST_AFTER, Ledger, LedgerAction};
@@ -75,6 +75,8 @@ pub struct Actor {
     /// Whether the user was told that something is larger than the server's messages.
     has_said_too_large: bool,
     tasks: Vec<JoinHandle<()>>,
+    /// Tasks that publish batches.
+    publishing: JoinSet<()>,
 }
 
 /// Interval at which the coordinator looks for late batches and silent workers.
@@ -143,6 +145,7 @@ impl Actor {
             heard,
             has_said_too_large: false,
             tasks,
+            publishing: JoinSet::new(),
         })
     }
 
@@ -150,6 +153,7 @@ impl Actor {
         for action in actions {
             match action {
                 LedgerAction::Publish(batch) => self.publish(batch),
+                LedgerAction::Withdraw => self.withdraw(),
                 LedgerAction::Deliver(call, index, outcome) => {
                     // A call that was cancelled receives nothing.
                     if let Some(sender) = self.calls.get(&call) {
@@ -178,8 +182,8 @@ impl Actor {
         let id = format!("{}.{}", batch.run, batch.batch);
         let subject = work_subject(&self.options.proof, &batch.run);
         let broker = Arc::clone(&self.broker);
-        self.tasks.retain(|task| !task.is_finished());
-        self.tasks.push(self.broker.runtime().spawn(async move {
+        while self.publishing.try_join_next().is_some() {}
+        let publish = async move {
             // Results come first in a store that is full, because they make room for work.
             let wait = async || {
                 tokio::time::sleep(PAUSE_FOR_RESULTS).await;
@@ -189,6 +193,21 @@ impl Actor {
             let stored = publish_until_stored(&broker, task, &subject, &id, &bytes, wait);
             // The ledger gives the batch up by then, and publishes its tasks again.
             let _ = tokio::time::timeout(LOST_AFTER, stored).await;
+        };
+        self.publishing.spawn_on(publish, self.broker.runtime());
+    }
+
+    /// Removes all batches of this run from the server, also those that are still being published.
+    fn withdraw(&mut self) {
+        self.publishing.abort_all();
+        let broker = Arc::clone(&self.broker);
+        let subject = work_subject(&self.options.proof, &self.options.run);
+        self.tasks.retain(|task| !task.is_finished());
+        self.tasks.push(self.broker.runtime().spawn(async move {
+            // Batches that cannot be removed stay until a worker takes them.
+            if let Ok(stream) = broker.work_stream().await {
+                let _ = stream.purge().filter(subject).await;
+            }
         }));
     }
 

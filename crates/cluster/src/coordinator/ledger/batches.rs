@@ -49,9 +49,38 @@ impl Ledger {
         }
     }
 
+    /// Sends all batches in transit again, because the server has lost its store.
+    pub fn on_store_lost(&mut self, now: Instant) -> Vec<LedgerAction> {
+        let lost = self.release_all();
+        let line = format!("the server has lost what it stored: {lost} batches are sent again");
+        let mut actions = vec![LedgerAction::Say(line)];
+        actions.extend(self.publish(now));
+        actions
+    }
+
+    /// Releases all batches, and returns how many there were.
+    fn release_all(&mut self) -> usize {
+        let all = std::mem::take(&mut self.batches);
+        let count = all.len();
+        // Each task goes to the front of the queue, so the last one is released first.
+        self.release(all.into_values().rev().flat_map(|batch| batch.keys.into_iter().rev()));
+        count
+    }
+
+    /// Withdraws all batches when a worker begins to wait for its server, and holds them back until none waits. Otherwise
+    /// batches could fill the server's store, and leave the results no room for ever.
+    pub(super) fn make_room(&mut self) -> Option<LedgerAction> {
+        let made_room = std::mem::replace(&mut self.makes_room, self.staff.has_waiting());
+        let begins = self.makes_room && !made_room;
+        begins.then(|| {
+            self.release_all();
+            LedgerAction::Withdraw
+        })
+    }
+
     /// Publishes batches while the workers have capacity for them.
     pub(super) fn publish(&mut self, now: Instant) -> Vec<LedgerAction> {
-        let threads = self.staff.threads();
+        let threads = if self.makes_room { 0 } else { self.staff.threads() };
         let mut actions = Vec::new();
         while self.batches.len() < threads * BATCHES_PER_THREAD {
             let keys = self.next_keys(threads);

@@ -85,6 +85,12 @@ impl Staff {
         works.filter_map(|member| Some(member.notice.as_ref()?.threads as usize)).sum()
     }
 
+    /// Returns whether a present worker waits for its server.
+    pub fn has_waiting(&self) -> bool {
+        let waits = |notice: &WorkerNotice| notice.trouble.is_some();
+        self.0.values().any(|member| member.works() && member.notice.as_ref().is_some_and(waits))
+    }
+
     /// Returns the names of the workers that were set aside.
     pub fn set_aside_names(&self) -> Vec<String> {
         let is_it = |(_, member): &(&String, &StaffMember)| member.standing == Standing::SetAside;
