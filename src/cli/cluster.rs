@@ -3,16 +3,19 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
 
 use serde_json::{Value, json};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::args::{Args, CredentialFlags};
 use super::error::CliError;
-use super::output::{cancel_on_interrupt, print, print_json};
+use super::output::{cancel_on_interrupt, is_interrupted, print, print_json};
 use snakes_cluster::{
-    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, RunQueue,
-    Simulator, WorkerOptions, host_name, machines, proof, purge, unique_name, work,
+    Broker, BrokerOptions, ClusterError, Coordinator, CoordinatorOptions, Machines, RunNotice,
+    RunQueue, Simulator, WorkerOptions, host_name, machines, patiently, proof, purge, unique_name,
+    work,
 };
 use snakes_lab::run::Evaluator;
 use snakes_lab::run::headless::say;
@@ -22,7 +25,27 @@ fn server(args: &Args) -> BrokerOptions {
     BrokerOptions { url: args.workers.nats.clone().unwrap_or_default(), creds, tls_ca }
 }
 
-/// Starts an evaluator on the workers of a server.
+/// Pause before an attempt is repeated for which the server lacked room.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// Repeats an attempt until the server has room for it, and tells the user once of each lack.
+fn when_there_is_room<T>(
+    attempt: impl FnMut() -> Result<T, ClusterError>,
+) -> Result<T, ClusterError> {
+    let mut told = None;
+    let waits = |error: &ClusterError| {
+        let line = format!("{error}; waiting");
+        if told.as_ref() != Some(&line) {
+            say(&line);
+            told = Some(line);
+        }
+        thread::sleep(PAUSE);
+        !is_interrupted()
+    };
+    patiently(waits, attempt)
+}
+
+/// Starts an evaluator on the workers of a server. Waits while the server lacks room.
 pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evaluator>, CliError> {
     let (expect_workers, local_threads) = (args.expect_workers()?, args.local_threads()?);
     let server = server(args);
@@ -30,34 +53,39 @@ pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Eva
     // The place is part of the run's name: equal plans of two users, or in two folders, are different runs on the server.
     let place = format!("{} {}", host_name(), place.display());
     let run = format!("{words}-{:08x}", xxh3_64(place.as_bytes()) as u32);
-    let broker = Broker::connect(&server, &run)?;
     let options = CoordinatorOptions {
         run: run.clone(),
         proof: proof()?,
         expect_workers,
         local_threads,
+        ends_if_refused: true,
         compute: Arc::new(Simulator),
     };
-    let url = broker.url().to_owned();
-    let coordinator = Coordinator::start(broker, options)?;
-    say(&format!("computing on the workers of {url}, as run {run}"));
+    let coordinator = when_there_is_room(|| {
+        Coordinator::start(Broker::connect(&server, &run)?, options.clone())
+    })?;
+    say(&format!("computing on the workers of {}, as run {run}", server.url));
     Ok(Arc::new(coordinator))
 }
 
 /// Works for the runs on a server until the interrupt key is pressed.
 pub fn worker(args: &Args) -> Result<(), CliError> {
-    let threads = args.threads()?;
+    let (threads, server) = (args.threads()?, server(args));
     let name = unique_name();
-    let broker = Broker::connect(&server(args), &name)?;
-    let proof = proof()?;
+    let broker = when_there_is_room(|| Broker::connect(&server, &name).map(Arc::new))?;
+    let options = WorkerOptions {
+        name: name.clone(),
+        threads,
+        proof: proof()?,
+        compute: Arc::new(Simulator),
+    };
     let plural = if threads == 1 { "" } else { "s" };
     say(&format!(
         "worker {name}: {threads} thread{plural} for the runs on {}; Ctrl-C stops it",
         broker.url()
     ));
-    let options =
-        WorkerOptions { name: name.clone(), threads, proof, compute: Arc::new(Simulator) };
-    let evaluations = work(broker, options, &cancel_on_interrupt()?)?;
+    let control = cancel_on_interrupt()?;
+    let evaluations = when_there_is_room(|| work(&broker, options.clone(), &control))?;
     say(&format!("worker {name}: stopped; {evaluations} evaluations"));
     Ok(())
 }
@@ -101,6 +129,11 @@ done, to do: evaluations with a result, and those that wait for one
 queued: batches that no worker has finished; unread: results that the run has not fetched yet
 ";
 
+/// Returns the line below a worker or a run that waits for the server; empty if it does not.
+fn trouble_line(trouble: Option<&str>) -> String {
+    trouble.map_or_else(String::new, |trouble| format!("    {trouble}\n"))
+}
+
 fn as_text(machines: &Machines) -> String {
     let mut text = format!(
         "{:<28} {:<16} {:>7} {:>12} {:>7} {:>11}  engine\n",
@@ -117,6 +150,7 @@ fn as_text(machines: &Machines) -> String {
             worker.redelivered,
             worker.engine_words()
         );
+        text += &trouble_line(worker.trouble.as_deref());
     }
     if machines.workers.is_empty() {
         text += "none\n";
@@ -141,6 +175,7 @@ fn as_text(machines: &Machines) -> String {
         for worker in run.iter().flat_map(|run| &run.set_aside) {
             text += &format!("    set aside: {worker}\n");
         }
+        text += &trouble_line(run.and_then(|run| run.trouble.as_deref()));
     }
     if names.is_empty() {
         text += "none\n";

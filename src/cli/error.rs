@@ -46,6 +46,9 @@ pub enum CliError {
     /// A worker sent wrong results after right ones. Holds the reason as one line.
     #[error("{0}")]
     Tainted(String),
+    /// The evaluator can evaluate nothing more. Holds the reason, and how far the work came, as one line.
+    #[error("{0}")]
+    Refused(String),
     /// This machine computes other bits than the reference.
     #[error(
         "{differ} of {all} trajectories differ from the reference: champions saved on other machines move \

@@ -25,13 +25,17 @@ pub fn evaluator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Evalu
     }
 }
 
-/// Returns the result of work with an evaluator, or an error if results that the evaluator reported cannot be trusted.
+/// Returns the result of work with an evaluator, or an error if results that the evaluator reported cannot be trusted. If the work
+/// was cancelled because the evaluator can evaluate nothing more, the error says so.
 pub fn trusted<T, E: Into<CliError>>(
     evaluator: &dyn Evaluator,
     result: Result<T, E>,
 ) -> Result<T, CliError> {
     match evaluator.fault() {
         Some(reason) => Err(CliError::Tainted(reason)),
-        None => result.map_err(Into::into),
+        None => result.map_err(|error| match (error.into(), evaluator.refusal()) {
+            (error, Some(reason)) => CliError::Refused(format!("{reason}; {error}")),
+            (error, None) => error,
+        }),
     }
 }

@@ -3,7 +3,7 @@
 use std::io;
 #[cfg(unix)]
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use serde_json::{Value, json};
 
@@ -48,13 +48,23 @@ pub fn print_names(kind: &str, things: &[(String, String)], as_json: bool) -> Re
 /// Control that a request to end the program cancels; `None` before the first.
 static CANCELLED_AT_END: Mutex<Option<Arc<RunControl>>> = Mutex::new(None);
 
+fn current() -> MutexGuard<'static, Option<Arc<RunControl>>> {
+    CANCELLED_AT_END.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns whether the user or the system has requested the end since the latest control was made. Before the first control, such a
+/// request ends the program.
+#[cfg(feature = "cluster")]
+pub fn is_interrupted() -> bool {
+    current().as_ref().is_some_and(|control| control.is_cancelled())
+}
+
 /// Returns a control that a request to end the program cancels: the interrupt key, or a signal of the system. It replaces any earlier
 /// control.
 ///
 /// # Errors
 /// Fails if the system refuses the thread that waits for such a request, which would then have no effect.
 pub fn cancel_on_interrupt() -> Result<Arc<RunControl>, CliError> {
-    let current = || CANCELLED_AT_END.lock().unwrap_or_else(PoisonError::into_inner);
     let control = Arc::new(RunControl::default());
     let is_first = current().replace(Arc::clone(&control)).is_none();
     if is_first {

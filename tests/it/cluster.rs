@@ -6,6 +6,7 @@
 mod faults;
 mod hashes;
 mod liars;
+mod limits;
 mod proxy;
 mod refusals;
 mod scale;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use async_nats::{ConnectError, ConnectErrorKind, ServerAddr};
 
-use super::connection::{NO_RIGHT, one_line};
+use super::trouble::{Trouble, one_line, said};
 use snakes_core::check::Invalid;
 
 /// Address of a NATS server and the files that a connection to it needs.
@@ -43,8 +43,11 @@ impl BrokerOptions {
         self.url.split(',').map(place).collect::<Vec<String>>().join(", ")
     }
 
-    /// Returns the reason why the connection cannot be made, with advice where the reason is a known one.
-    pub(super) fn why_unreachable(&self, error: &ConnectError) -> String {
+    /// Returns why the connection cannot be made, with advice where the reason is a known one.
+    pub(super) fn why_unreachable(&self, error: &ConnectError) -> Trouble {
+        if let Some(error) = said(error) {
+            return Trouble::of_server(error);
+        }
         let problem = one_line(error);
         let advice = [
             (
@@ -53,20 +56,19 @@ impl BrokerOptions {
             ),
             ("InvalidContentType", "the server does not use TLS"),
         ];
-        if let Some((_, advice)) = advice.into_iter().find(|(word, _)| problem.contains(word)) {
-            return format!("{problem}; {advice}");
-        }
         let places = self.places();
-        match error.kind() {
-            ConnectErrorKind::AuthorizationViolation => NO_RIGHT.to_owned(),
-            ConnectErrorKind::Dns => {
-                format!("no computer is found at {places}; check the name, or give its number")
-            }
-            ConnectErrorKind::Io | ConnectErrorKind::TimedOut => format!(
-                "no server answers at {places}; start one with nats-server -js, and check address and firewall"
-            ),
-            _ => problem,
-        }
+        Trouble::Refused(match advice.into_iter().find(|(word, _)| problem.contains(word)) {
+            Some((_, advice)) => format!("{problem}; {advice}"),
+            None => match error.kind() {
+                ConnectErrorKind::Dns => {
+                    format!("no computer is found at {places}; check the name, or give its number")
+                }
+                ConnectErrorKind::Io | ConnectErrorKind::TimedOut => format!(
+                    "no server answers at {places}; start one with nats-server -js, and check address and firewall"
+                ),
+                _ => problem,
+            },
+        })
     }
 }
 

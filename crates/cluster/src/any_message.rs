@@ -85,6 +85,7 @@ mod tests {
             pending: 3,
             results: 4,
             set_aside: vec!["w-1".to_owned()],
+            trouble: None,
         };
         examples.push(("run".to_owned(), line_of(&run).into_bytes()));
         examples

@@ -11,12 +11,13 @@ use async_nats::{Client, ConnectOptions, Subscriber};
 use tokio::runtime::{Builder, Handle, Runtime};
 
 use super::address::BrokerOptions;
-use super::connection::{ServerConnection, Trouble};
+use super::connection::ServerConnection;
 use super::error::ClusterError;
 use super::names::{
     ACKNOWLEDGEMENT_WAIT, MESSAGE_AGE, RESULT_STREAM, RESULT_SUBJECTS, RUN_NOTICES, WORK_STREAM,
     WORK_SUBJECTS, WORKER_NOTICES, result_subject, work_subject, worker_consumer,
 };
+use super::trouble::Trouble;
 use snakes_core::save::load_text;
 use snakes_lab::run::with_threads;
 
@@ -41,6 +42,10 @@ pub enum PullSource {
     Results(String),
 }
 
+/// Bytes of a message that are reserved for its headers.
+const HEADERS: usize = 4 * 1024;
+/// Smallest payload of a message, in bytes, with which requests, notices and batches of a few snakes fit.
+const LEAST_PAYLOAD: usize = 16 * 1024;
 /// Longest time that a server may take to answer.
 const ANSWER_WAIT: Duration = Duration::from_secs(5);
 /// Maximum number of requests for work that wait on the server at the same time.
@@ -52,7 +57,7 @@ impl Broker {
     /// Connects to the server, and creates the streams that do not exist yet.
     ///
     /// # Errors
-    /// The server cannot be reached, refuses the credentials, or has no JetStream.
+    /// The server cannot be reached, refuses the connection or the streams, or has no JetStream.
     pub fn connect(options: &BrokerOptions, name: &str) -> Result<Self, ClusterError> {
         options.check()?;
         let connection = Arc::new(ServerConnection::new(&options.url));
@@ -76,9 +81,26 @@ impl Broker {
         if !broker.client.server_info().jetstream {
             return Err(ClusterError::NoJetStream { url: broker.url().to_owned() });
         }
-        let streams = broker.runtime.block_on(broker.make_streams());
-        streams.map_err(|trouble| broker.refused("a stream", &trouble))?;
+        let most = broker.client.server_info().max_payload;
+        if most < LEAST_PAYLOAD {
+            let url = broker.url().to_owned();
+            return Err(ClusterError::SmallMessages { url, most, least: LEAST_PAYLOAD });
+        }
+        broker.ask("making a stream", broker.make_streams())?;
         Ok(broker)
+    }
+
+    /// Returns the answer to a request. `task` names the request in a few words.
+    ///
+    /// # Errors
+    /// The request failed. It is not repeated.
+    pub(super) fn ask<T>(
+        &self,
+        task: &'static str,
+        request: impl Future<Output = Result<T, Trouble>>,
+    ) -> Result<T, ClusterError> {
+        let answer = self.runtime.block_on(self.connection.answer(request));
+        answer.map_err(|trouble| self.refused(task, trouble))
     }
 
     /// Returns the address of the server.
@@ -111,8 +133,7 @@ impl Broker {
 
     /// Returns the largest payload of a message that the server accepts, in bytes.
     pub(super) fn largest_message(&self) -> usize {
-        // 4 KiB of a message are reserved for its headers.
-        self.client.server_info().max_payload.saturating_sub(4096)
+        self.client.server_info().max_payload.max(LEAST_PAYLOAD) - HEADERS
     }
 
     /// Creates the streams of batches and of results if they do not exist.
@@ -170,8 +191,8 @@ impl Broker {
         Ok((consumer, is_missing))
     }
 
-    pub(super) fn refused(&self, task: &'static str, trouble: &Trouble) -> ClusterError {
-        ClusterError::Refused { url: self.url().to_owned(), task, problem: trouble.to_string() }
+    pub(super) fn refused(&self, task: &'static str, trouble: Trouble) -> ClusterError {
+        ClusterError::Refused { url: self.url().to_owned(), task, trouble }
     }
 }
 
@@ -208,7 +229,7 @@ async fn connect(
         }
         connect = connect.add_root_certificates(path.clone()).require_tls(true);
     }
-    let connection = Arc::clone(connection);
+    let (of_events, of_attempts) = (Arc::clone(connection), Arc::clone(connection));
     let connect = connect
         .name(name)
         .connection_timeout(ANSWER_WAIT)
@@ -218,13 +239,18 @@ async fn connect(
             Duration::from_millis(100 * attempts.clamp(1, 10) as u64)
         })
         .event_callback(move |event| {
-            connection.on_event(&event);
+            of_events.on_event(&event);
             std::future::ready(())
+        })
+        .reconnect_to_server_callback(move |servers, _| {
+            of_attempts.on_attempts(&servers);
+            // The client chooses the server.
+            std::future::ready(None)
         });
     let addresses: Vec<&str> = options.url.split(',').collect();
     let client = connect.connect(addresses).await.map_err(|error| ClusterError::Unreachable {
         url: options.url.clone(),
-        problem: options.why_unreachable(&error),
+        trouble: options.why_unreachable(&error),
     })?;
     let jetstream = jetstream::new(client.clone());
     Ok((client, jetstream))

@@ -2,23 +2,15 @@
 //! again, and a line for a request that keeps failing.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use async_nats::{ClientError, Event, ServerError};
+use async_nats::{ClientError, Event, Server, ServerError};
 use tokio::sync::watch;
 
+use super::hello::LONGEST_TROUBLE;
+use super::trouble::Trouble;
 use snakes_lab::run::headless::say;
-
-/// Why a request to the server failed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Trouble {
-    /// No answer came. A connection that is lost without notice looks the same.
-    NoAnswer,
-    /// The server refused the request. Holds the server's message.
-    Refused(String),
-}
 
 /// The state of a connection to a server.
 #[derive(Debug)]
@@ -26,14 +18,18 @@ pub struct ServerConnection {
     url: String,
     /// Number of times that the connection was made again after a loss.
     renewals: watch::Sender<u64>,
+    /// Why the server refuses for good what this program needs; `None` while it does not.
+    refusal: watch::Sender<Option<String>>,
     state: Mutex<ConnectionState>,
 }
 
 #[derive(Debug, Default)]
 struct ConnectionState {
     is_lost: bool,
-    /// The latest message about rights since the connection was made, which is not repeated.
+    /// The latest message about the whole connection since it was made, which is not repeated.
     told: Option<String>,
+    /// The server's latest error message, which often says why the connection ends next.
+    said: Option<String>,
     /// Requests that currently fail, by the name of their task.
     failing: BTreeMap<&'static str, Failing>,
 }
@@ -41,7 +37,8 @@ struct ConnectionState {
 #[derive(Debug)]
 struct Failing {
     since: Instant,
-    is_told: bool,
+    /// The failure in words, once the user was told of it.
+    told: Option<String>,
 }
 
 /// The user is told of a request that has been refused for this long. A shorter refusal often ends by itself.
@@ -49,47 +46,19 @@ const PATIENCE_WITH_REFUSALS: Duration = Duration::from_secs(3);
 /// The user is told of a request that has had no answer for this long, unless the connection is known to be lost by
 /// then.
 const PATIENCE_WITH_SILENCE: Duration = Duration::from_secs(20);
-/// Parts of error messages which show that no answer came because the server stops, starts, or cannot be reached.
-const NO_ANSWER: [&str; 7] = [
-    "timed out",
-    "broken pipe",
-    "no responders",
-    "Server Shutdown",
-    "channel closed",
-    "503",
-    "EOF",
-];
-
-impl Trouble {
-    /// Classifies an error of the NATS client.
-    pub fn of(error: &dyn std::error::Error) -> Self {
-        let words = one_line(error);
-        match NO_ANSWER.iter().any(|part| words.contains(part)) {
-            true => Self::NoAnswer,
-            false => Self::Refused(words),
-        }
-    }
-}
-
-impl<E: std::error::Error> From<E> for Trouble {
-    fn from(error: E) -> Self {
-        Self::of(&error)
-    }
-}
-
-impl fmt::Display for Trouble {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoAnswer => formatter.write_str("the server does not answer"),
-            Self::Refused(words) => formatter.write_str(words),
-        }
-    }
-}
+/// Message about a subscription whose messages this computer takes in too slowly.
+const SLOW: &str = "messages arrive faster than this computer takes them in, and some are lost; that costs time, and \
+                    changes no result";
 
 impl ServerConnection {
     /// Creates the state of a connection before it is made for the first time.
     pub fn new(url: &str) -> Self {
-        Self { url: url.to_owned(), renewals: watch::Sender::new(0), state: Mutex::default() }
+        Self {
+            url: url.to_owned(),
+            renewals: watch::Sender::new(0),
+            refusal: watch::Sender::new(None),
+            state: Mutex::default(),
+        }
     }
 
     /// Returns whether the connection is known to be lost.
@@ -100,6 +69,42 @@ impl ServerConnection {
     /// Returns a receiver that is notified each time the connection is made again.
     pub fn renewals(&self) -> watch::Receiver<u64> {
         self.renewals.subscribe()
+    }
+
+    /// Waits until the server refuses for good what this program needs, and returns why.
+    pub async fn refusal(&self) -> Trouble {
+        let mut refusal = self.refusal.subscribe();
+        let words = refusal.wait_for(Option::is_some).await.ok().and_then(|words| words.clone());
+        match words {
+            Some(words) => Trouble::Never(words),
+            // The sender lives as long as this connection.
+            None => std::future::pending().await,
+        }
+    }
+
+    /// Returns the answer to a request. If the server refuses the request by a message about the whole connection, such
+    /// as one about rights, no answer would come.
+    ///
+    /// # Errors
+    /// The request failed, or the server refuses it for good.
+    pub async fn answer<T>(
+        &self,
+        request: impl Future<Output = Result<T, Trouble>>,
+    ) -> Result<T, Trouble> {
+        tokio::select! {
+            answer = request => answer,
+            refusal = self.refusal() => Err(refusal),
+        }
+    }
+
+    /// Handles the outcomes of the latest attempts to connect again, and prints a line if the server refused one.
+    pub fn on_attempts(&self, servers: &[Server]) {
+        // The client tells its event callback neither the server's words nor that it refused.
+        let words =
+            servers.iter().find_map(|server| server.last_error.as_ref()?.split_once("nats: "));
+        if let Some((_, words)) = words {
+            self.on_event(&Event::ServerError(ServerError::Other(words.to_owned())));
+        }
     }
 
     /// Handles an event of the NATS client, and prints a line if the event is new to the user.
@@ -116,55 +121,87 @@ impl ServerConnection {
                 // Requests fail while the connection is lost; they need no lines of their own.
                 state.failing.clear();
                 let is_news = !std::mem::replace(&mut state.is_lost, true);
-                is_news.then(|| "connection lost; waiting for the server".to_owned())
+                let said = state.said.take().map_or_else(String::new, |said| format!("; {said}"));
+                is_news.then(|| format!("connection lost{said}; waiting for the server"))
             }
             Event::Connected => {
-                state.told = None;
+                (state.told, state.said) = (None, None);
                 if !std::mem::replace(&mut state.is_lost, false) {
                     return None;
                 }
                 self.renewals.send_modify(|number| *number += 1);
                 Some("connected again".to_owned())
             }
-            Event::ServerError(ServerError::AuthorizationViolation) => {
-                state.tell_once(NO_RIGHT.to_owned())
+            Event::LameDuckMode => {
+                state.tell_once("the server says that it ends soon (lame duck mode)".to_owned())
             }
-            // Other errors of the server end the connection, which causes a separate event.
-            Event::ServerError(ServerError::Other(words)) if words.contains("ermissions") => {
-                state.tell_once(format!("the server says: {words}"))
-            }
+            Event::SlowConsumer(_) => state.tell_once(SLOW.to_owned()),
+            Event::ServerError(error) => self.line_of(error, &mut state),
             Event::ClientError(ClientError::Other(words)) if words.contains("authorization") => {
-                state.tell_once(NO_RIGHT.to_owned())
+                self.line_of(&ServerError::AuthorizationViolation, &mut state)
             }
             _ => None,
         }
     }
 
-    /// Records that a request failed and will be repeated. `task` describes the failure in a few words.
-    pub fn failed(&self, task: &'static str, trouble: &Trouble) {
-        if self.is_to_be_told(task, trouble, Instant::now()) {
-            say(&format!("{}: {task}: {trouble}; trying again", self.url));
+    /// Returns the line about an error message of the server, if it is new to the user.
+    fn line_of(&self, error: &ServerError, state: &mut ConnectionState) -> Option<String> {
+        match Trouble::of_server(error) {
+            // The error that ends the program is the message.
+            Trouble::Never(words) => {
+                self.refuse(words);
+                None
+            }
+            Trouble::Full(words) => state.tell_once(format!("{words}; trying again")),
+            // Such a message ends the connection, which causes a separate event.
+            other => {
+                state.said = Some(other.to_string());
+                None
+            }
         }
     }
 
-    fn is_to_be_told(&self, task: &'static str, trouble: &Trouble, now: Instant) -> bool {
+    fn refuse(&self, words: String) {
+        self.refusal.send_if_modified(|refusal| {
+            refusal.is_none().then(|| *refusal = Some(words)).is_some()
+        });
+    }
+
+    /// Records that a request failed and will be repeated. `task` describes the failure in a few words.
+    pub fn failed(&self, task: &'static str, trouble: &Trouble) {
+        if let Trouble::Never(words) = trouble {
+            self.refuse(words.clone());
+        } else if let Some(words) = self.news(task, trouble, Instant::now()) {
+            say(&format!("{}: {words}; trying again", self.url));
+        }
+    }
+
+    /// Returns the failure in words if the user must be told of it now.
+    fn news(&self, task: &'static str, trouble: &Trouble, now: Instant) -> Option<String> {
         let mut state = self.state();
         if state.is_lost {
-            return false;
+            return None;
         }
-        let failing = state.failing.entry(task).or_insert(Failing { since: now, is_told: false });
+        let failing = state.failing.entry(task).or_insert(Failing { since: now, told: None });
         let patience = match trouble {
             Trouble::NoAnswer => PATIENCE_WITH_SILENCE,
-            Trouble::Refused(_) => PATIENCE_WITH_REFUSALS,
+            _ => PATIENCE_WITH_REFUSALS,
         };
-        let is_due = now.duration_since(failing.since) >= patience;
-        is_due && !std::mem::replace(&mut failing.is_told, true)
+        let is_due = now.duration_since(failing.since) >= patience && failing.told.is_none();
+        is_due.then(|| failing.told.insert(format!("{task}: {trouble}")).clone())
+    }
+
+    /// Returns what currently fails, in words for a notice, if the user was told of it.
+    pub fn trouble(&self) -> Option<String> {
+        let state = self.state();
+        let told = state.failing.values().find_map(|failing| failing.told.as_deref())?;
+        Some(told[..told.floor_char_boundary(LONGEST_TROUBLE)].to_owned())
     }
 
     /// Records that a request succeeded.
     pub fn succeeded(&self, task: &'static str) {
         let failing = self.state().failing.remove(task);
-        if failing.is_some_and(|failing| failing.is_told) {
+        if failing.is_some_and(|failing| failing.told.is_some()) {
             say(&format!("{}: {task}: over", self.url));
         }
     }
@@ -173,9 +210,6 @@ impl ServerConnection {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
-
-/// Error message for credentials that the server refuses.
-pub const NO_RIGHT: &str = "the server refuses the credentials (--creds FILE)";
 
 impl ConnectionState {
     /// Returns the line, or `None` if it equals the line before.
@@ -186,23 +220,10 @@ impl ConnectionState {
     }
 }
 
-/// Returns an error and its causes as one line.
-pub fn one_line(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut source = error.source();
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    text.replace(char::is_control, " ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trouble::NO_RIGHT;
 
     #[test]
     fn a_lost_connection_is_one_line_and_its_return_is_another() {
@@ -220,9 +241,6 @@ mod tests {
         let lines: Vec<String> = lines.iter().filter_map(|event| connection.line(event)).collect();
         assert_eq!(lines, ["connection lost; waiting for the server", "connected again"]);
         assert_eq!(*renewals.borrow(), 1);
-        let refused = Event::ServerError(ServerError::AuthorizationViolation);
-        assert_eq!(connection.line(&refused), Some(NO_RIGHT.to_owned()));
-        assert_eq!(connection.line(&refused), None);
     }
 
     #[test]
@@ -231,7 +249,8 @@ mod tests {
         let began = Instant::now();
         let refused = Trouble::Refused("maximum bytes exceeded".to_owned());
         let told = |seconds: u64, trouble: &Trouble| {
-            connection.is_to_be_told("no work", trouble, began + Duration::from_secs(seconds))
+            let news = connection.news("no work", trouble, began + Duration::from_secs(seconds));
+            news.is_some()
         };
         assert_eq!(
             [0, 2, 3, 4].map(|seconds| told(seconds, &refused)),
@@ -245,12 +264,50 @@ mod tests {
     }
 
     #[test]
-    fn a_server_that_ends_does_not_refuse() {
-        let of = |text: &str| Trouble::of(&std::io::Error::other(text.to_owned()));
-        let ends =
-            "error while processing messages from the stream: 409, Some(\"Server Shutdown\")";
-        assert_eq!(of(ends), Trouble::NoAnswer);
-        assert_eq!(of("jetstream request timed out"), Trouble::NoAnswer);
-        assert_eq!(of("disk full"), Trouble::Refused("disk full".to_owned()));
+    fn f3_the_reason_of_a_loss_and_of_a_refused_attempt_are_told_once() {
+        let connection = ServerConnection::new("nats://a");
+        let said = |words: &str| Event::ServerError(ServerError::Other(words.to_owned()));
+        let lines = [
+            Event::LameDuckMode,
+            Event::LameDuckMode,
+            said("Slow Consumer"),
+            Event::Disconnected,
+            said("maximum connections exceeded"),
+            said("maximum connections exceeded"),
+            Event::Connected,
+        ];
+        let lines: Vec<String> = lines.iter().filter_map(|event| connection.line(event)).collect();
+        let expected = [
+            "the server says that it ends soon (lame duck mode)",
+            "connection lost; the server says: Slow Consumer; waiting for the server",
+            "the server says: maximum connections exceeded; end other programs that use it, or raise max_connections; \
+             trying again",
+            "connected again",
+        ];
+        assert_eq!(lines, expected);
+    }
+
+    #[tokio::test]
+    async fn f3_a_refusal_for_good_ends_requests_at_once_and_is_remembered() {
+        let connection = ServerConnection::new("nats://a");
+        connection.on_event(&Event::ServerError(ServerError::AuthorizationViolation));
+        let silent = std::future::pending::<Result<(), Trouble>>();
+        let refusal = Trouble::Never(NO_RIGHT.to_owned());
+        assert_eq!(connection.answer(silent).await, Err(refusal.clone()));
+        connection.failed("no work", &Trouble::Never("other".to_owned()));
+        assert_eq!(connection.refusal().await, refusal, "the first one counts");
+    }
+
+    #[test]
+    fn f3_what_fails_is_told_in_notices_as_long_as_it_fails() {
+        let connection = ServerConnection::new("nats://a");
+        let full = Trouble::Full("ä".repeat(400));
+        assert_eq!(connection.news("no work", &full, Instant::now()), None);
+        assert_eq!(connection.trouble(), None, "nobody was told yet");
+        connection.news("no work", &full, Instant::now() + PATIENCE_WITH_REFUSALS);
+        let trouble = connection.trouble().expect("told");
+        assert!(trouble.starts_with("no work: ä") && trouble.len() <= LONGEST_TROUBLE, "{trouble}");
+        connection.succeeded("no work");
+        assert_eq!(connection.trouble(), None);
     }
 }

@@ -101,6 +101,13 @@ impl Coordinator {
         self.inner.common.status().clone()
     }
 
+    /// Returns [`Cancelled`] if calls are to be cancelled, because `control` was, or because they have become useless.
+    fn check(&self, control: &RunControl) -> Result<(), Cancelled> {
+        let Status { taint, refusal, .. } = self.status();
+        let is_over = taint.is_some() || (refusal.is_some() && self.inner.options.ends_if_refused);
+        if is_over || control.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+
     /// Tells the user that workers are missing, with the command that starts a worker.
     fn say_that_it_waits(&self, present: &str) {
         say(&format!("{present}; waiting (start one with: snakes worker {})", self.inner.flags));
@@ -110,12 +117,13 @@ impl Coordinator {
     /// present.
     ///
     /// # Errors
-    /// [`Cancelled`], if `control` was cancelled.
+    /// [`Cancelled`]: see [`Self::check`].
     fn wait_for_workers(&self, control: &RunControl) -> Result<(), Cancelled> {
         let expected = self.inner.options.expect_workers;
         let (began, mut told) = (Instant::now(), None);
         loop {
             control.wait_while_paused()?;
+            self.check(control)?;
             let Status { workers, .. } = self.status();
             if workers >= expected {
                 return Ok(());
@@ -172,9 +180,7 @@ impl Coordinator {
                 is_paused = control.is_paused();
                 self.send(CoordinatorCommand::Pause(call, is_paused));
             }
-            if control.is_cancelled() || self.status().taint.is_some() {
-                return Err(Cancelled);
-            }
+            self.check(control)?;
             match outcomes.recv_timeout(CONTROL_INTERVAL) {
                 Ok((index, outcome)) => {
                     left -= 1;
@@ -306,11 +312,19 @@ impl Evaluator for Coordinator {
         // Checks of the last results may still be in progress.
         let began = Instant::now();
         loop {
-            let Status { taint, audits, .. } = self.status();
-            if taint.is_some() || audits == 0 || began.elapsed() > LONGEST_CHECK {
+            let Status { taint, audits, refusal, .. } = self.status();
+            if taint.is_some()
+                || refusal.is_some()
+                || audits == 0
+                || began.elapsed() > LONGEST_CHECK
+            {
                 return taint;
             }
             thread::sleep(CONTROL_INTERVAL);
         }
+    }
+
+    fn refusal(&self) -> Option<String> {
+        self.status().refusal
     }
 }

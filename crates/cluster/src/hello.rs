@@ -4,12 +4,15 @@ use serde::{Deserialize, Serialize};
 
 use super::names::check_name;
 use super::wire::{WireError, parse_line};
-use snakes_core::check::{hash_of, within};
+use snakes_core::check::{Invalid, hash_of, quoted, within};
 use snakes_core::schema::Choices;
 use snakes_core::{ENGINE_VERSION, Processors};
 
 /// Maximum size of a notice, in bytes.
 const LARGEST_NOTICE: usize = 4096;
+
+/// Maximum size of the line about a trouble, in bytes.
+pub const LONGEST_TROUBLE: usize = 500;
 
 /// Notice of a worker, sent once a second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,6 +38,9 @@ pub struct WorkerNotice {
     pub per_s: f32,
     /// Number of batches that the worker received after the server had delivered them before.
     pub redelivered: u64,
+    /// Why the worker waits for the server, as one line of at most 500 bytes; `None` if it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trouble: Option<String>,
     /// Whether the worker was stopped, so that this notice is its last.
     pub leaves: bool,
 }
@@ -61,6 +67,9 @@ pub struct RunNotice {
     pub results: u64,
     /// Names of the workers that were set aside because they sent other bits.
     pub set_aside: Vec<String>,
+    /// Why the run waits for the server, as one line of at most 500 bytes; `None` if it does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trouble: Option<String>,
 }
 
 /// Describes an engine and its proof in words.
@@ -106,6 +115,7 @@ impl WorkerNotice {
         hash_of("proof", &notice.proof)?;
         within("threads", notice.threads, 1..=1024)?;
         within("per_s", notice.per_s, 0.0..=1.0e9)?;
+        check_trouble(notice.trouble.as_deref())?;
         Ok(notice)
     }
 
@@ -126,12 +136,23 @@ impl RunNotice {
         check_name("host", &notice.host)?;
         hash_of("proof", &notice.proof)?;
         notice.set_aside.iter().try_for_each(|worker| check_name("set_aside", worker))?;
+        check_trouble(notice.trouble.as_deref())?;
         Ok(notice)
     }
 
     /// Describes the coordinator's engine in words.
     pub fn engine_words(&self) -> String {
         engine_words(self.engine, self.processors, &self.proof)
+    }
+}
+
+/// Checks the line about a trouble, which is shown to people.
+fn check_trouble(line: Option<&str>) -> Result<(), Invalid> {
+    let line = line.unwrap_or_default();
+    within("length of trouble", line.len(), 0..=LONGEST_TROUBLE)?;
+    match line.contains(char::is_control) {
+        true => Err(Invalid::new("trouble", quoted(line), "a line without control characters")),
+        false => Ok(()),
     }
 }
 
@@ -160,7 +181,24 @@ pub(crate) mod tests {
             evaluations: 10,
             per_s: 2.5,
             redelivered: 0,
+            trouble: None,
             leaves: false,
+        }
+    }
+
+    /// Returns a notice of a run with the engine of this program.
+    pub fn run_notice(run: &str, host: &str) -> RunNotice {
+        RunNotice {
+            format: WIRE_FORMAT,
+            run: run.to_owned(),
+            host: host.to_owned(),
+            engine: ENGINE_VERSION,
+            processors: Processors::THIS,
+            proof: "0123456789abcdef".to_owned(),
+            pending: 1,
+            results: 0,
+            set_aside: Vec::new(),
+            trouble: None,
         }
     }
 
@@ -174,6 +212,12 @@ pub(crate) mod tests {
             ("\"threads\":4", "\"threads\":0", "threads is 0; allowed: 1 to 1024"),
             ("2.5", "-1.0", "per_s is -1; allowed"),
             ("0123456789abcdef", "x", "proof is \"x\""),
+            ("\"leaves\"", "\"trouble\":\"\\u001b[31m\",\"leaves\"", "trouble is "),
+            (
+                "\"leaves\"",
+                &format!("\"trouble\":\"{}\",\"leaves\"", "x".repeat(501)),
+                "length of trouble is 501",
+            ),
         ] {
             let error = WorkerNotice::read(text.replace(from, to).as_bytes()).expect_err("refused");
             assert!(error.to_string().contains(problem), "{error}");

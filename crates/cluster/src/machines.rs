@@ -7,10 +7,10 @@ use futures_util::{StreamExt, TryStreamExt};
 use serde::Serialize;
 
 use super::broker::Broker;
-use super::connection::Trouble;
 use super::error::ClusterError;
 use super::hello::{RunNotice, WorkerNotice};
 use super::names::{NOTICE_INTERVAL, check_name, result_subject, work_subject, worker_consumer};
+use super::trouble::Trouble;
 use snakes_core::check::{Invalid, quoted};
 
 /// Time during which notices are collected. Each machine sends two notices in this time.
@@ -43,17 +43,15 @@ pub struct Machines {
 /// # Errors
 /// The server refuses a request.
 pub fn machines(broker: &Broker) -> Result<Machines, ClusterError> {
-    broker.runtime().block_on(async {
+    broker.ask("listing the machines", async {
         let mut machines = heard(broker).await?;
-        let queues = queues(broker, &mut machines).await;
-        queues.map_err(|trouble| broker.refused("the list of queues", &trouble))?;
+        queues(broker, &mut machines).await?;
         Ok(machines)
     })
 }
 
-async fn heard(broker: &Broker) -> Result<Machines, ClusterError> {
-    let (mut workers, mut runs) =
-        broker.notices().await.map_err(|trouble| broker.refused("listening", &trouble))?;
+async fn heard(broker: &Broker) -> Result<Machines, Trouble> {
+    let (mut workers, mut runs) = broker.notices().await?;
     let mut machines = Machines::default();
     let end = tokio::time::sleep(LISTENING);
     tokio::pin!(end);
@@ -121,12 +119,11 @@ pub fn purge(broker: &Broker, run: &str) -> Result<RunQueue, ClusterError> {
         };
         return Err(Invalid::new("--purge", quoted(run), allowed).into());
     }
-    let purged = broker.runtime().block_on(async {
+    broker.ask("the removal", async {
         let (work, results) = (broker.work_stream().await?, broker.result_stream().await?);
         let batches = work.purge().filter(work_subject("*", run)).await;
         let found = results.purge().filter(result_subject(run)).await;
         let _ = results.delete_consumer(run).await;
-        Ok::<_, Trouble>(RunQueue { batches: batches?.purged, results: found?.purged })
-    });
-    purged.map_err(|trouble| broker.refused("the removal", &trouble))
+        Ok(RunQueue { batches: batches?.purged, results: found?.purged })
+    })
 }

@@ -11,8 +11,8 @@ use futures_util::StreamExt;
 use tokio::sync::watch;
 
 use super::broker::{Broker, PullSource};
-use super::connection::Trouble;
 use super::names::PULL_WAIT;
+use super::trouble::Trouble;
 
 /// The outcome of a fetch.
 pub enum Pulled {

@@ -6,18 +6,23 @@ use async_nats::jetstream::context::PublishErrorKind;
 use async_nats::jetstream::message::PublishMessage;
 
 use super::broker::Broker;
+use super::trouble::Trouble;
 
 /// Pause before a request that failed is repeated.
 pub const RETRY_PAUSE: Duration = Duration::from_millis(500);
 
 /// Publishes a message repeatedly until the server has stored it, however long this takes. The server stores messages
-/// with the same `id` only once. `task` describes the failure in a few words, for the user.
+/// with the same `id` only once. `task` describes the failure in a few words, for the user. While the server's store is
+/// full, `make_room` is called before each repetition, and returns whether it made room, so that no pause is needed.
+///
+/// Never returns if the server refuses the message for good, which [`super::connection::ServerConnection::refusal`] tells.
 pub async fn publish_until_stored(
     broker: &Broker,
     task: &'static str,
     subject: &str,
     id: &str,
     bytes: &[u8],
+    make_room: impl AsyncFn() -> bool,
 ) {
     let mut renewals = broker.connection().renewals();
     loop {
@@ -33,11 +38,17 @@ pub async fn publish_until_stored(
             broker.connection().succeeded(task);
             return;
         };
-        if error.kind() == PublishErrorKind::StreamNotFound {
-            // The next attempt shows whether creating the streams helped.
-            let _ = broker.make_streams().await;
+        let trouble = match error.kind() {
+            // The next attempt shows whether making the streams helped.
+            PublishErrorKind::StreamNotFound => {
+                broker.make_streams().await.err().unwrap_or(Trouble::NoAnswer)
+            }
+            _ => error.into(),
+        };
+        if matches!(trouble, Trouble::Full(_)) && make_room().await {
+            continue;
         }
-        broker.connection().failed(task, &error.into());
+        broker.connection().failed(task, &trouble);
         tokio::time::sleep(RETRY_PAUSE).await;
     }
 }

@@ -11,7 +11,7 @@ use super::address::BrokerOptions;
 use super::broker::Broker;
 use super::compute::Simulator;
 use super::coordinator::{Coordinator, CoordinatorOptions};
-use super::error::ClusterError;
+use super::error::{ClusterError, patiently};
 use super::hello::random_number;
 use super::machines::{Machines, machines};
 use super::proof::proof;
@@ -46,8 +46,9 @@ pub enum WatchNews {
     },
     /// The machines on the server.
     Listed(Machines),
-    /// The server did not answer. Holds the reason as one line. The request is repeated.
-    NoAnswer(String),
+    /// A request to the server failed, or the server has no room for the connection. Holds the reason as one line. The
+    /// attempt is repeated.
+    Trouble(String),
     /// A coordinator was started.
     Coordinates {
         /// The requested run.
@@ -123,20 +124,26 @@ struct Watcher {
 impl Watcher {
     /// Connects and lists the machines until the [`ServerWatch`] is dropped.
     fn watch(&mut self) -> Result<(), ClusterError> {
-        let broker = Broker::connect(&self.server, "studio")?;
+        let server = self.server.clone();
+        let waits = |error: &ClusterError| {
+            let _ = self.news.send(WatchNews::Trouble(error.to_string()));
+            self.take_orders(RETRY_PAUSE)
+        };
+        let broker = patiently(waits, || Broker::connect(&server, "studio"))?;
         let proof = proof()?;
         let _ = self.news.send(WatchNews::Connected { proof: proof.clone() });
         let mut pause = Duration::ZERO;
         while self.take_orders(pause) {
             pause = PAUSE;
             let listed = self.coordinate(&proof).and_then(|()| machines(&broker));
-            let news = listed.map_or_else(
-                |error| {
+            let news = match listed {
+                Ok(machines) => WatchNews::Listed(machines),
+                Err(error) if error.is_final() => return Err(error),
+                Err(error) => {
                     pause = RETRY_PAUSE;
-                    WatchNews::NoAnswer(error.to_string())
-                },
-                WatchNews::Listed,
-            );
+                    WatchNews::Trouble(error.to_string())
+                }
+            };
             if self.news.send(news).is_err() {
                 break;
             }
@@ -166,7 +173,13 @@ impl Watcher {
     }
 
     /// Starts the coordinator of the requested run, if it has not started yet.
+    ///
+    /// # Errors
+    /// The coordinator cannot start, or the server refuses for good what it needs.
     fn coordinate(&mut self, proof: &str) -> Result<(), ClusterError> {
+        if let Some((_, Some(coordinator))) = &self.current {
+            return coordinator.refusal().map_or(Ok(()), |reason| Err(ClusterError::Ended(reason)));
+        }
         let Some((run, coordinator @ None)) = &mut self.current else { return Ok(()) };
         let name = format!("{}-{:08x}", run.name, random_number() as u32);
         let broker = Broker::connect(&self.server, &name)?;
@@ -175,6 +188,7 @@ impl Watcher {
             proof: proof.to_owned(),
             expect_workers: 0,
             local_threads: run.local_threads,
+            ends_if_refused: false,
             compute: Arc::new(Simulator),
         };
         let started = Arc::new(Coordinator::start(broker, options)?);

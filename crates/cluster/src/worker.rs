@@ -4,6 +4,7 @@ mod activity;
 mod notices;
 mod shared_cache;
 
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
@@ -66,18 +67,18 @@ const STOP_INTERVAL: Duration = Duration::from_millis(30);
 /// stopped worker ends within two seconds, even if its server does not answer. Returns the number of its evaluations.
 ///
 /// # Errors
-/// The first request for work is refused, or all coordinators on the server compute with another engine.
+/// The first request for work is refused, the server refuses for good what the worker needs, or all coordinators on the
+/// server compute with another engine.
 pub fn work(
-    broker: Broker,
+    broker: &Arc<Broker>,
     options: WorkerOptions,
     control: &Arc<RunControl>,
 ) -> Result<u64, ClusterError> {
     super::names::check_name("worker", &options.name)?;
-    let broker = Arc::new(broker);
     let threads = options.threads;
     let place = Arc::new(Workplace {
         cache: SharedCache::new(MOST_SHARED),
-        broker,
+        broker: Arc::clone(broker),
         options,
         control: Arc::clone(control),
         evaluations: AtomicU64::new(0),
@@ -86,11 +87,9 @@ pub fn work(
     });
     let runtime = place.broker.runtime();
     let source = PullSource::Work(place.options.proof.clone());
-    let Some(consumer) = place.unless_stopped(Duration::ZERO, place.broker.consumer(&source))
-    else {
-        return Ok(0);
-    };
-    consumer.map_err(|trouble| place.broker.refused("the request for work", &trouble))?;
+    let consumer = place.broker.connection().answer(place.broker.consumer(&source));
+    let Some(consumer) = place.unless_stopped(Duration::ZERO, consumer) else { return Ok(0) };
+    consumer.map_err(|trouble| place.broker.refused("asking for work", trouble))?;
     let notices = runtime.spawn(tell_and_listen(Arc::clone(&place)));
     let audits = runtime.spawn(answer_audits(Arc::clone(&place)));
     let mut workers = Vec::new();
@@ -102,12 +101,12 @@ pub fn work(
     let ended = joined(workers, control);
     audits.abort();
     // The task of the notices ends after its last notice, which says that this worker leaves.
-    let foreign = runtime.block_on(async {
-        let foreign = tokio::time::timeout(LAST_WORDS, notices).await;
+    let error = runtime.block_on(async {
+        let error = tokio::time::timeout(LAST_WORDS, notices).await;
         let _ = tokio::time::timeout(LAST_WORDS, place.broker.client().flush()).await;
-        foreign
+        error
     });
-    match foreign {
+    match error {
         Ok(Ok(Some(error))) => Err(error),
         _ if ended > 0 => Err(ClusterError::ThreadEnded),
         _ => Ok(place.evaluations.load(Relaxed)),
@@ -204,9 +203,8 @@ fn do_batch(place: &Workplace, message: &Message) {
         })
     };
     place.activity.begin(&work.run);
-    let results = compute(place, &work);
+    let stored = compute(place, &work).is_some_and(|results| store(place, message, &results));
     place.activity.end();
-    let stored = results.is_some_and(|results| store(place, &results));
     reporter.abort();
     // The pause lets a batch that cannot be computed wait; a stopped worker returns its batch without delay.
     let pause = (!place.control.is_cancelled()).then_some(RETRY_PAUSE);
@@ -245,7 +243,7 @@ fn compute(place: &Workplace, work: &WorkBatch) -> Option<ResultBatch> {
 
 /// Stores results that exceed the largest message, in parts. A single result that is too large is reported as refused;
 /// the coordinator's process then computes it.
-fn store_in_parts(place: &Workplace, results: &ResultBatch) -> bool {
+fn store_in_parts(place: &Workplace, batch: &Message, results: &ResultBatch) -> bool {
     let part =
         |outcomes: &[TaskText]| ResultBatch { outcomes: outcomes.to_vec(), ..results.clone() };
     match &results.outcomes[..] {
@@ -253,24 +251,29 @@ fn store_in_parts(place: &Workplace, results: &ResultBatch) -> bool {
         [only] => {
             let problem = "the result is larger than the server takes".to_owned();
             let text = Outcome::Refused(problem).line().into();
-            store(place, &part(&[TaskText { key: only.key, text }]))
+            store(place, batch, &part(&[TaskText { key: only.key, text }]))
         }
         many => {
             let (first, second) = many.split_at(many.len() / 2);
-            store(place, &part(first)) && store(place, &part(second))
+            store(place, batch, &part(first)) && store(place, batch, &part(second))
         }
     }
 }
 
 /// Stores results on the server, however long this takes. Returns `false` if the worker was stopped before.
-fn store(place: &Workplace, results: &ResultBatch) -> bool {
+///
+/// If the server's store is full, the results take the room of their batch, which is acknowledged early. Otherwise a
+/// store that is full of batches would stay so. Should the results be lost then, the coordinator sends their tasks again.
+fn store(place: &Workplace, batch: &Message, results: &ResultBatch) -> bool {
     let (subject, bytes) = (result_subject(&results.run), results.encode());
     if bytes.len() > place.broker.largest_message() {
-        return store_in_parts(place, results);
+        return store_in_parts(place, batch, results);
     }
     let first = results.outcomes.first().map_or(0, |outcome| outcome.key);
     let id = format!("{}.{}.{first:x}.{}", results.run, results.batch, results.worker);
     let task = "a result cannot be stored";
-    let stored = publish_until_stored(&place.broker, task, &subject, &id, &bytes);
+    let has_room = Cell::new(false);
+    let make_room = async || !has_room.replace(true) && batch.double_ack().await.is_ok();
+    let stored = publish_until_stored(&place.broker, task, &subject, &id, &bytes, make_room);
     place.unless_stopped(LAST_WORDS, stored).is_some()
 }

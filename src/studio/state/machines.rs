@@ -30,8 +30,8 @@ pub(crate) enum LinkState {
     /// There is no connection.
     #[default]
     Off,
-    /// The server has not answered yet.
-    Connecting,
+    /// The connection is not made yet. Holds the reason in one line why the latest attempt failed, if one did.
+    Connecting(Option<String>),
     /// The server is connected, with what is known about it.
     Connected(Box<KnownServer>),
     /// The connection failed or ended, for this reason, in one line.
@@ -45,7 +45,7 @@ pub(crate) struct KnownServer {
     pub proof: String,
     /// Machines in the latest listing, if any.
     pub machines: Option<Machines>,
-    /// Reason why the server did not answer the latest request, in one line.
+    /// Reason why the latest request failed, in one line.
     pub problem: Option<String>,
     /// Name of this window's run on the server, while the run uses it.
     pub own_run: Option<String>,
@@ -94,7 +94,7 @@ impl MachinesLink {
                 let server = BrokerOptions { url: url.clone(), ..BrokerOptions::default() };
                 let watch = ServerWatch::start(server);
                 self.watch = Some(watch.map_err(|error| format!("Not connected: {error}"))?);
-                (self.address, self.state) = (url, LinkState::Connecting);
+                (self.address, self.state) = (url, LinkState::Connecting(None));
             }
             MachinesCommand::Disconnect => self.disconnect(run),
         }
@@ -125,9 +125,10 @@ impl MachinesLink {
             (WatchNews::Listed(machines), LinkState::Connected(known)) => {
                 (known.machines, known.problem) = (Some(machines), None);
             }
-            (WatchNews::NoAnswer(problem), LinkState::Connected(known)) => {
+            (WatchNews::Trouble(problem), LinkState::Connected(known)) => {
                 known.problem = Some(problem);
             }
+            (WatchNews::Trouble(problem), LinkState::Connecting(latest)) => *latest = Some(problem),
             (
                 WatchNews::Coordinates { run: asked, name, evaluator },
                 LinkState::Connected(known),
@@ -143,7 +144,7 @@ impl MachinesLink {
                 notices.problem(format!("Other computers are not connected: {problem}"));
                 self.state = LinkState::Failed(problem);
             }
-            (WatchNews::Listed(_) | WatchNews::NoAnswer(_) | WatchNews::Coordinates { .. }, _) => {}
+            (WatchNews::Listed(_) | WatchNews::Trouble(_) | WatchNews::Coordinates { .. }, _) => {}
         }
     }
 

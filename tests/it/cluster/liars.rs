@@ -48,7 +48,7 @@ pub fn worker_with(
         let broker = Broker::connect(&options, &name).expect("connected");
         let proof = proof().expect("the reference's bits");
         let options = WorkerOptions { name, threads, proof, compute };
-        work(broker, options, &stopped).expect("no fault");
+        work(&Arc::new(broker), options, &stopped).expect("no fault");
     });
     (control, thread)
 }

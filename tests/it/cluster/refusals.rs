@@ -6,7 +6,7 @@ use super::server::{Server, free_port, is_there, worker};
 use crate::program::{folder, run, snakes};
 
 /// Runs a command that must fail, and returns its only line on standard error.
-fn refusal(folder: &Path, arguments: &str) -> String {
+pub fn refusal(folder: &Path, arguments: &str) -> String {
     let output = run(folder, arguments);
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{arguments}: {stderr}");
@@ -17,7 +17,7 @@ fn refusal(folder: &Path, arguments: &str) -> String {
 }
 
 /// Returns the error lines of a coordinator and of a worker.
-fn refusals(folder: &Path, flags: &str) -> [String; 2] {
+pub fn refusals(folder: &Path, flags: &str) -> [String; 2] {
     let evolve = format!("--no-render --population 6 --generations 1 --duration 1 {flags}");
     [refusal(folder, &evolve), refusal(folder, &format!("worker {flags}"))]
 }

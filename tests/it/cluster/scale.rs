@@ -54,6 +54,7 @@ fn two_hundred_workers_are_kept_busy_and_memory_stays_flat() {
     let options = BrokerOptions { url: server.url(), ..BrokerOptions::default() };
     let broker = Broker::connect(&options, "scale").expect("connected");
     let options = CoordinatorOptions {
+        ends_if_refused: true,
         run: "scale".to_owned(),
         proof: proof().expect("the reference's bits"),
         expect_workers: WORKERS,

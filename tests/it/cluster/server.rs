@@ -79,13 +79,23 @@ impl Server {
 
     /// Starts a server that stores at most 8 MB, if `nats-server` is installed.
     pub fn start_small() -> Option<Self> {
+        Self::start_as("jetstream { max_file_store: 8MB }")
+    }
+
+    /// Starts a server with these settings, if `nats-server` is installed.
+    pub fn start_as(settings: &str) -> Option<Self> {
         let mut server = Self::start_with(&["-js"])?;
-        let config = server.folder.path().join("server.conf");
-        std::fs::write(&config, "jetstream { max_file_store: 8MB }\n").expect("written");
-        server.arguments = vec!["-c".to_owned(), config.to_string_lossy().into_owned()];
-        server.kill();
-        server.restart();
+        server.change(settings);
         Some(server)
+    }
+
+    /// Starts the server again with these settings, and with the files of its earlier start.
+    pub fn change(&mut self, settings: &str) {
+        let config = self.folder.path().join("server.conf");
+        std::fs::write(&config, settings).expect("written");
+        self.arguments = vec!["-c".to_owned(), config.to_string_lossy().into_owned()];
+        self.kill();
+        self.restart();
     }
 
     /// Starts a server with these arguments, if `nats-server` is installed.
@@ -219,6 +229,15 @@ impl Run {
             assert!(self.is_running(), "the run ended before generation {count}");
             assert!(began.elapsed() < Duration::from_mins(5), "waited for generation {count}");
             std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits until the coordinator has ended, for at most two minutes.
+    pub fn wait_for_end(&mut self) {
+        let began = Instant::now();
+        while self.is_running() {
+            assert!(began.elapsed() < Duration::from_mins(2), "the run goes on");
+            std::thread::sleep(Duration::from_millis(50));
         }
     }
 

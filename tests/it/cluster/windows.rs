@@ -9,6 +9,40 @@ use snakes_lab::run::{Evaluator, Experiment, LocalPool, RunControl};
 
 use super::server::{Server, worker};
 
+#[test]
+fn f3_a_window_waits_for_room_on_its_server_and_ends_what_the_server_refuses_for_good() {
+    let Some(mut server) = Server::start_as("max_connections: 1\njetstream { }\n") else { return };
+    let taken = std::net::TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
+    sleep(Duration::from_millis(300));
+    let options = BrokerOptions { url: server.url(), ..BrokerOptions::default() };
+    let watch = ServerWatch::start(options).expect("a thread");
+    let next = || {
+        let began = Instant::now();
+        loop {
+            assert!(began.elapsed() < Duration::from_secs(30), "news in time");
+            match watch.poll() {
+                Some(WatchNews::Listed(_)) | None => sleep(Duration::from_millis(20)),
+                Some(news) => return news,
+            }
+        }
+    };
+    let news = next();
+    let WatchNews::Trouble(line) = &news else { panic!("{news:?}") };
+    assert!(line.contains("the server says: maximum connections exceeded"), "{line}");
+    drop(taken);
+    while !matches!(next(), WatchNews::Connected { .. }) {}
+    server.change(
+        "jetstream { }\nno_auth_user: a\nauthorization { users = [ { user: a, password: b, permissions: { publish: \
+         \"x\" } } ] }\n",
+    );
+    let line = loop {
+        if let WatchNews::Failed(line) = next() {
+            break line;
+        }
+    };
+    assert!(line.contains("the server says: Permissions Violation for Publish to "), "{line}");
+}
+
 /// Returns the hash of a short run with this evaluator.
 fn hash_with(evaluator: &dyn Evaluator) -> u64 {
     let mut settings = Settings::default();

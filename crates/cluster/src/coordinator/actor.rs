@@ -9,20 +9,20 @@ use crossbeam_channel::Sender;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use tokio::sync::mpsc::{Receiver, UnboundedReceiver, UnboundedSender, channel};
-use tokio::task::JoinHandle;
+use tokio::task::{JoinHandle, JoinSet};
 
 use super::common::{Common, CoordinatorOptions};
-use super::ledger::{AuditTask, CallId, Checker, Ledger, LedgerAction};
+use super::ledger::{AuditTask, CallId, Checker, LOST_AFTER, Ledger, LedgerAction};
 use super::traffic::{News, answer_shared, fetch_results, hear_notices};
 use crate::broker::{Broker, PullSource};
 use crate::compute::{Compute, outcome_of_texts};
-use crate::connection::Trouble;
 use crate::error::ClusterError;
 use crate::hello::{RunNotice, host_name, random_number};
 use crate::names::{
     NOTICE_INTERVAL, RUN_NOTICES, SILENCE, audit_subject, result_subject, work_subject,
 };
 use crate::outcome::Outcome;
+use crate::packing::pack;
 use crate::store::publish_until_stored;
 use crate::wire::{ResultBatch, TaskKind, WIRE_FORMAT, WorkBatch, line_of};
 use snakes_core::{ENGINE_VERSION, Processors};
@@ -72,7 +72,11 @@ pub struct Actor {
     news: Receiver<News>,
     /// Time of the last message from the server.
     heard: Instant,
+    /// Whether the user was told that something is larger than the server's messages.
+    has_said_too_large: bool,
     tasks: Vec<JoinHandle<()>>,
+    /// Tasks that publish batches.
+    publishing: JoinSet<()>,
 }
 
 /// Interval at which the coordinator looks for late batches and silent workers.
@@ -82,6 +86,8 @@ const TICK: Duration = Duration::from_millis(250);
 const DEAFNESS: Duration = NOTICE_INTERVAL.saturating_mul(3);
 /// Longest time that a worker may take to answer a check, including its evaluation.
 const AUDIT_WAIT: Duration = Duration::from_secs(20);
+/// Pause before work is stored again that found the server's store full, besides the usual one.
+const PAUSE_FOR_RESULTS: Duration = Duration::from_secs(1);
 /// Maximum number of messages from the server that wait for the ledger.
 const MOST_WAITING: usize = 1024;
 
@@ -96,15 +102,13 @@ impl Actor {
         common: Arc<Common>,
         commands: UnboundedSender<CoordinatorCommand>,
     ) -> Result<Self, ClusterError> {
-        let prepared = broker.runtime().block_on(async {
+        let (workers, runs) = broker.ask("preparing the run", async {
             let stream = broker.work_stream().await?;
             stream.purge().filter(work_subject(&options.proof, &options.run)).await?;
             broker.consumer(&PullSource::Results(options.run.clone())).await?;
             // Subscribes before this run sends its first notice, because workers answer to it.
             broker.notices().await
-        });
-        let (workers, runs) =
-            prepared.map_err(|trouble: Trouble| broker.refused("the run", &trouble))?;
+        })?;
         // Batch numbers start at random, far from those of an earlier coordinator. Neither they nor the generator can
         // change a result.
         let seed = random_number();
@@ -130,13 +134,26 @@ impl Actor {
         let calls = BTreeMap::new();
         let options = options.clone();
         let heard = Instant::now();
-        Ok(Self { broker, options, ledger, calls, common, commands, news, heard, tasks })
+        Ok(Self {
+            broker,
+            options,
+            ledger,
+            calls,
+            common,
+            commands,
+            news,
+            heard,
+            has_said_too_large: false,
+            tasks,
+            publishing: JoinSet::new(),
+        })
     }
 
     fn act(&mut self, actions: Vec<LedgerAction>) {
         for action in actions {
             match action {
                 LedgerAction::Publish(batch) => self.publish(batch),
+                LedgerAction::Withdraw => self.withdraw(),
                 LedgerAction::Deliver(call, index, outcome) => {
                     // A call that was cancelled receives nothing.
                     if let Some(sender) = self.calls.get(&call) {
@@ -158,17 +175,72 @@ impl Actor {
 
     fn publish(&mut self, batch: WorkBatch) {
         let bytes = batch.encode();
-        if bytes.len() > self.broker.largest_message() {
+        if self.is_too_large(&bytes) {
             let actions = self.ledger.on_too_large(&batch);
             return self.act(actions);
         }
         let id = format!("{}.{}", batch.run, batch.batch);
         let subject = work_subject(&self.options.proof, &batch.run);
         let broker = Arc::clone(&self.broker);
+        while self.publishing.try_join_next().is_some() {}
+        let publish = async move {
+            // Results come first in a store that is full, because they make room for work.
+            let wait = async || {
+                tokio::time::sleep(PAUSE_FOR_RESULTS).await;
+                false
+            };
+            let task = "work cannot be stored";
+            let stored = publish_until_stored(&broker, task, &subject, &id, &bytes, wait);
+            // The ledger gives the batch up by then, and publishes its tasks again.
+            let _ = tokio::time::timeout(LOST_AFTER, stored).await;
+        };
+        self.publishing.spawn_on(publish, self.broker.runtime());
+    }
+
+    /// Removes all batches of this run from the server, also those that are still being published.
+    fn withdraw(&mut self) {
+        self.publishing.abort_all();
+        let broker = Arc::clone(&self.broker);
+        let subject = work_subject(&self.options.proof, &self.options.run);
         self.tasks.retain(|task| !task.is_finished());
         self.tasks.push(self.broker.runtime().spawn(async move {
-            publish_until_stored(&broker, "work cannot be stored", &subject, &id, &bytes).await;
+            // Batches that cannot be removed stay until a worker takes them.
+            if let Ok(stream) = broker.work_stream().await {
+                let _ = stream.purge().filter(subject).await;
+            }
         }));
+    }
+
+    /// Returns whether a message is larger than the server accepts. This computer then computes what it would ask for,
+    /// which the user is told once.
+    fn is_too_large(&mut self, bytes: &[u8]) -> bool {
+        let (size, most) = (bytes.len(), self.broker.largest_message());
+        if size > most && !std::mem::replace(&mut self.has_said_too_large, true) {
+            say(&format!(
+                "{}: a message of {size} bytes is larger than the {most} bytes that the server takes; this computer \
+                 computes what needs such messages (a larger max_payload in the server's settings avoids this)",
+                self.broker.url()
+            ));
+        }
+        size > most
+    }
+
+    /// Opens a call. If the workers could not fetch what its tasks share, refuses the tasks.
+    fn open(
+        &mut self,
+        call: CallId,
+        kind: TaskKind,
+        shared: u64,
+        tasks: Vec<Arc<str>>,
+    ) -> Vec<LedgerAction> {
+        let text = self.common.texts.get(shared).unwrap_or_default();
+        if self.is_too_large(&pack(text.to_string())) {
+            let refused = || Outcome::Refused("what the tasks share is too large".to_owned());
+            return (0..tasks.len())
+                .map(|index| LedgerAction::Deliver(call, index, refused()))
+                .collect();
+        }
+        self.ledger.open(call, kind, shared, tasks, Instant::now())
     }
 
     fn audit(&mut self, audit: AuditTask) {
@@ -214,7 +286,7 @@ impl Actor {
         let actions = match command {
             CoordinatorCommand::Open { call, kind, shared, tasks, sender } => {
                 self.calls.insert(call, sender);
-                self.ledger.open(call, kind, shared, tasks, now)
+                self.open(call, kind, shared, tasks)
             }
             CoordinatorCommand::Pause(call, is_paused) => self.ledger.pause(call, is_paused, now),
             CoordinatorCommand::Close(call) => {
@@ -266,12 +338,13 @@ impl Actor {
             pending: self.ledger.pending() as u64,
             results: self.ledger.results(),
             set_aside: self.ledger.staff().set_aside_names(),
+            trouble: self.broker.connection().trouble(),
         };
         let _ = self.broker.client().publish(RUN_NOTICES, line_of(&notice).into()).await;
     }
 }
 
-/// Runs a coordinator until the command to end arrives. Then removes its batches, results and consumer from the server.
+/// Runs a coordinator until the command to end arrives, or the server refuses for good what it needs. Then removes its batches, results and consumer from the server.
 pub fn run_actor(
     broker: &Broker,
     mut actor: Actor,
@@ -291,10 +364,16 @@ pub fn run_actor(
                 news = actor.news.recv() => if let Some(news) = news { actor.on_news(news) },
                 _ = ticks.tick() => actor.on_tick(),
                 _ = notices.tick() => actor.tell().await,
+                refusal = broker.connection().refusal() => {
+                    let refusal = broker.refused("the run", refusal).to_string();
+                    actor.common.status().refusal = Some(refusal);
+                    break;
+                }
             }
         }
         actor.tasks.iter().for_each(JoinHandle::abort);
-        if !actor.broker.connection().is_lost() {
+        let is_refused = actor.common.status().refusal.is_some();
+        if !is_refused && !actor.broker.connection().is_lost() {
             let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
         }
     });

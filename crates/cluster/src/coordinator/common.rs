@@ -16,6 +16,9 @@ pub struct CoordinatorOptions {
     pub expect_workers: usize,
     /// Number of threads of the coordinator that compute as well.
     pub local_threads: usize,
+    /// Whether calls are cancelled once the server refuses for good what the coordinator needs. Otherwise they end
+    /// without the missing outcomes, which their caller computes.
+    pub ends_if_refused: bool,
     /// Computes outcomes on this machine.
     pub compute: Arc<dyn Compute>,
 }
@@ -31,6 +34,8 @@ pub struct Status {
     pub audits: usize,
     /// Why results that were already delivered may be wrong; `None` while there is no doubt.
     pub taint: Option<String>,
+    /// Why the server refuses for good what the coordinator needs, as one line; `None` while it does not.
+    pub refusal: Option<String>,
 }
 
 /// Maximum number of shared texts that are kept.

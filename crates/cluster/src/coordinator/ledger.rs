@@ -20,7 +20,7 @@ use crate::outcome::Outcome;
 use crate::wire::{ResultBatch, TaskKind, TaskText, WorkBatch, task_key};
 use audits::Audits;
 pub use audits::{AuditTask, Checker};
-use batches::LOST_AFTER;
+pub use batches::LOST_AFTER;
 use staff::Staff;
 use staff::Standing;
 
@@ -36,6 +36,8 @@ pub type CallId = u64;
 pub enum LedgerAction {
     /// Publish a batch.
     Publish(WorkBatch),
+    /// Remove all batches from the server, also those that are still being published.
+    Withdraw,
     /// Report an outcome to a call: the number of the call, the task's index in it, the outcome.
     Deliver(CallId, usize, Outcome),
     /// Compute a task once more, to compare the outcomes.
@@ -90,6 +92,8 @@ pub struct Ledger {
     audits: Audits,
     /// Results that no call has requested yet, by key: the worker's name and the outcome's text.
     early: BTreeMap<u64, (String, Arc<str>)>,
+    /// Whether batches were withdrawn and are held back, because workers wait to store results.
+    makes_room: bool,
     /// Moving average of the time of an evaluation on a worker, in s. `None` before the first result.
     evaluation_s: Option<f64>,
     results: u64,
@@ -118,6 +122,7 @@ impl Ledger {
             staff: Staff::default(),
             audits: Audits::default(),
             early: BTreeMap::new(),
+            makes_room: false,
             evaluation_s: None,
             results: 0,
             rng,
@@ -203,6 +208,7 @@ impl Ledger {
     pub fn on_notice(&mut self, notice: WorkerNotice, now: Instant) -> Vec<LedgerAction> {
         let lines = self.staff.on_notice(notice, &self.proof, now);
         let mut actions: Vec<_> = lines.into_iter().map(LedgerAction::Say).collect();
+        actions.extend(self.make_room());
         actions.extend(self.start_first_audits());
         actions.extend(self.publish(now));
         actions
@@ -222,18 +228,6 @@ impl Ledger {
         actions
     }
 
-    /// Sends all batches in transit again, because the server has lost its store.
-    pub fn on_store_lost(&mut self, now: Instant) -> Vec<LedgerAction> {
-        let lost = std::mem::take(&mut self.batches);
-        let line =
-            format!("the server has lost what it stored: {} batches are sent again", lost.len());
-        // Each task goes to the front of the queue, so the last one is released first.
-        self.release(lost.into_values().rev().flat_map(|batch| batch.keys.into_iter().rev()));
-        let mut actions = vec![LedgerAction::Say(line)];
-        actions.extend(self.publish(now));
-        actions
-    }
-
     /// Restarts the silence of all workers, because the server itself could not be heard.
     pub fn excuse_silence(&mut self, now: Instant) {
         self.staff.excuse_silence(now);
@@ -246,6 +240,7 @@ impl Ledger {
             actions.extend(line.map(LedgerAction::Say));
             keys.into_iter().for_each(|key| self.requeue(key));
         }
+        self.make_room();
         for number in self.late_batches(now, LOST_AFTER) {
             if let Some(batch) = self.batches.remove(&number) {
                 self.release(batch.keys.into_iter());

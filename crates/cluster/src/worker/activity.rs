@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use crate::hello::RunNotice;
+
 /// Maximum number of runs that are remembered.
 const MOST_RUNS: usize = 256;
 /// A worker without a batch for this long counts as waiting. The gap between two generations is much shorter.
@@ -17,6 +19,8 @@ pub struct WorkerActivity(Mutex<ActivityState>);
 struct ActivityState {
     /// Names of the computers of the runs, by the name of the run, from the runs' notices.
     hosts: BTreeMap<String, String>,
+    /// What the runs wait for, by the name of the run, from the runs' notices.
+    troubles: BTreeMap<String, String>,
     /// Names of the runs for which batches were computed.
     computed: BTreeSet<String>,
     /// Names of the runs that were reported to the user.
@@ -28,12 +32,23 @@ struct ActivityState {
 }
 
 impl WorkerActivity {
-    /// Records the notice of a run.
-    pub fn hear(&self, run: &str, host: &str) {
+    /// Records the notice of a run. Returns a line if the run waits for its server since this notice, or no longer.
+    pub fn hear(&self, RunNotice { run, host, trouble, .. }: &RunNotice) -> Option<String> {
         let mut state = self.state();
-        if state.hosts.len() < MOST_RUNS || state.hosts.contains_key(run) {
-            state.hosts.insert(run.to_owned(), host.to_owned());
+        if state.hosts.len() >= MOST_RUNS && !state.hosts.contains_key(run) {
+            return None;
         }
+        state.hosts.insert(run.clone(), host.clone());
+        let before = match trouble {
+            Some(trouble) => state.troubles.insert(run.clone(), trouble.clone()),
+            None => state.troubles.remove(run),
+        };
+        let words = match trouble {
+            _ if before == *trouble => return None,
+            Some(trouble) => trouble.clone(),
+            None => format!("over: {}", before.unwrap_or_default()),
+        };
+        Some(format!("run {run} on {host}: {words}"))
     }
 
     /// Records that a thread begins a batch.
@@ -61,7 +76,7 @@ impl WorkerActivity {
         if waits && !state.computed.is_empty() {
             state.computed.clear();
             state.told.clear();
-            state.hosts.clear();
+            (state.hosts, state.troubles) = Default::default();
             return Some(format!("waiting for work; {evaluations} evaluations so far"));
         }
         // A run without a notice so far sends one within a second.
@@ -81,6 +96,24 @@ impl WorkerActivity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hello::tests::run_notice;
+
+    fn notice(trouble: Option<&str>) -> RunNotice {
+        let trouble = trouble.map(str::to_owned);
+        RunNotice { trouble, ..run_notice("climb", "lab-1") }
+    }
+
+    #[test]
+    fn f3_a_worker_tells_once_that_a_run_waits_for_its_server_and_that_this_is_over() {
+        let activity = WorkerActivity::default();
+        assert_eq!(activity.hear(&notice(None)), None);
+        let line = activity.hear(&notice(Some("work cannot be stored: full")));
+        assert_eq!(line.as_deref(), Some("run climb on lab-1: work cannot be stored: full"));
+        assert_eq!(activity.hear(&notice(Some("work cannot be stored: full"))), None);
+        let line = activity.hear(&notice(None));
+        assert_eq!(line.as_deref(), Some("run climb on lab-1: over: work cannot be stored: full"));
+        assert_eq!(activity.hear(&notice(None)), None);
+    }
 
     #[test]
     fn a_worker_tells_of_each_run_once_and_that_it_waits_once() {
@@ -90,7 +123,7 @@ mod tests {
         assert_eq!(news(60), None);
         activity.begin("climb");
         assert_eq!(news(60), None, "its computer is not known yet");
-        activity.hear("climb", "lab-1");
+        assert_eq!(activity.hear(&notice(None)), None);
         assert_eq!(news(60), Some("computing for climb on lab-1".to_owned()));
         assert_eq!(news(60), None, "a long batch");
         activity.end();
@@ -99,7 +132,7 @@ mod tests {
         assert_eq!(news(5), None);
         assert_eq!(news(60), Some("waiting for work; 70 evaluations so far".to_owned()));
         assert_eq!(news(120), None);
-        activity.hear("climb", "lab-1");
+        assert_eq!(activity.hear(&notice(None)), None);
         activity.begin("climb");
         assert_eq!(news(121), Some("computing for climb on lab-1".to_owned()));
     }

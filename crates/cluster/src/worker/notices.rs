@@ -17,7 +17,8 @@ use snakes_lab::run::headless::say;
 use snakes_lab::run::with_threads;
 
 /// Sends a notice of this worker once a second, and listens to coordinators. Returns when the worker is stopped, with
-/// an error if it stops because all coordinators compute with another engine.
+/// an error if it stops because all coordinators compute with another engine, or because the server refuses for good
+/// what the worker needs.
 pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
     let client = place.broker.client();
     let mut heard = client.subscribe(RUN_NOTICES).await.ok();
@@ -38,6 +39,10 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
                 tell(&place, rate.update(Instant::now(), place.evaluations.load(Relaxed)), true).await;
                 return None;
             }
+            refusal = place.broker.connection().refusal() => {
+                place.control.cancel();
+                return Some(place.broker.refused("the work", refusal));
+            }
             _ = ticks.tick() => {
                 let evaluations = place.evaluations.load(Relaxed);
                 // A lost connection is reported elsewhere and needs no further lines.
@@ -51,7 +56,7 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
             message = notice => {
                 let Some(message) = message else { heard = None; continue };
                 let Ok(notice) = RunNotice::read(&message.payload) else { continue };
-                place.activity.hear(&notice.run, &notice.host);
+                place.activity.hear(&notice).iter().for_each(|line| say(line));
                 if latest_run.as_ref() != Some(&notice.run) {
                     // A notice is sent at once, so that a new coordinator learns early of this worker.
                     latest_run = Some(notice.run.clone());
@@ -97,6 +102,7 @@ fn own_notice(place: &Workplace, per_s: f32, leaves: bool) -> WorkerNotice {
         evaluations: place.evaluations.load(Relaxed),
         per_s,
         redelivered: place.redelivered.load(Relaxed),
+        trouble: place.broker.connection().trouble(),
         leaves,
     }
 }

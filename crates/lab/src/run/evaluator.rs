@@ -101,6 +101,12 @@ pub trait Evaluator: Debug + Send + Sync {
     fn fault(&self) -> Option<String> {
         None
     }
+
+    /// Returns why this evaluator can evaluate nothing more, or `None` while it can. Results that it reported are right. Such an
+    /// evaluator cancels all batches, unless it leaves the missing results to its caller.
+    fn refusal(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Error when the workers of an evaluator could not be started.

@@ -68,11 +68,12 @@ impl MachinesPanel {
                 state(ui, theme::of(ui).text_weak, "Not connected");
                 first_steps(ui, copied);
             }
-            LinkState::Connecting => {
+            LinkState::Connecting(reason) => {
                 ui.horizontal(|ui| {
                     ui.spinner();
                     ui.label(format!("Connecting to {}…", link.address()));
                 });
+                reason.iter().for_each(|reason| problem(ui, reason));
             }
             LinkState::Failed(reason) => {
                 state(ui, theme::of(ui).problem, "Not connected");
@@ -96,7 +97,7 @@ impl MachinesPanel {
                     LinkState::Connected(_) => {
                         ("Disconnect", "Compute on this computer only, from the next generation on")
                     }
-                    LinkState::Connecting => ("Cancel", "Stop connecting"),
+                    LinkState::Connecting(_) => ("Cancel", "Stop connecting"),
                     _ => ("Connect", "Let the workers of this server compute, too"),
                 };
                 let can_connect = !is_off || !text.trim().is_empty();
@@ -177,7 +178,7 @@ fn connected(
     let palette = theme::of(ui);
     match (&known.problem, &known.machines) {
         (Some(reason), _) => {
-            state(ui, palette.problem, "The server does not answer; asking again");
+            state(ui, palette.problem, "A request to the server failed; asking again");
             problem(ui, reason);
         }
         (None, None) => state(ui, palette.accent, "Connected; looking for workers…"),

@@ -48,8 +48,10 @@ fn queue(ui: &mut egui::Ui, name: &str, is_own: bool, machines: &Machines) {
         format!("{}{batches} batches and {results} results waiting", pending.unwrap_or_default());
     let set_aside = run.map_or(&[][..], |run| &run.set_aside);
     let place = weak(ui, place);
+    let trouble = run.and_then(|run| run.trouble.as_ref());
     entry(ui, egui::RichText::new(name).strong(), place, |ui| {
         explain(ui, &words);
+        trouble.iter().for_each(|trouble| problem(ui, &format!("Waits: {trouble}")));
         if !set_aside.is_empty() {
             let names = set_aside.join(", ");
             problem(ui, &format!("Set aside, because their results were wrong: {names}"));

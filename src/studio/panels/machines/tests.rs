@@ -43,9 +43,26 @@ fn worker(name: &str, proof: &str) -> (String, WorkerNotice) {
         evaluations: 345,
         per_s: 6.25,
         redelivered: 7,
+        trouble: None,
         leaves: false,
     };
     (name.to_owned(), notice)
+}
+
+/// The run of the window.
+fn own_run() -> RunNotice {
+    RunNotice {
+        format: 1,
+        run: "own-1".to_owned(),
+        host: "desk".to_owned(),
+        engine: ENGINE_VERSION,
+        processors: Processors::THIS,
+        proof: PROOF.to_owned(),
+        pending: 40,
+        results: 100,
+        set_aside: vec!["liar-1".to_owned()],
+        trouble: None,
+    }
 }
 
 fn connected_to(machines: Option<Machines>, problem: Option<&str>) -> MachinesLink {
@@ -105,11 +122,37 @@ fn an_address_with_a_password_is_refused_and_the_password_is_in_no_message() {
 
 #[test]
 fn connecting_can_be_cancelled() {
-    let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting));
+    let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting(None)));
     assert!(shows(&panel, "Connecting to nats://192.168.1.5:4222"));
     panel.get_by_label("Cancel").click();
     panel.run_steps(3);
     assert_eq!(panel.state().1, [Command::Machines(MachinesCommand::Disconnect)]);
+}
+
+#[test]
+fn f3_a_server_without_room_for_the_window_is_named_while_it_waits() {
+    let problem = "nats://a: cannot connect: the server says: maximum connections exceeded";
+    let panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting(Some(problem.to_owned()))));
+    for part in ["Connecting to nats://192.168.1.5:4222", problem, "Cancel"] {
+        assert!(shows(&panel, part), "{part}");
+    }
+}
+
+#[test]
+fn f3_what_a_run_and_a_worker_wait_for_is_shown_beside_them() {
+    let run = "work cannot be stored: the server says: insufficient resources (code 503, error code 10023)";
+    let of_worker = "a result cannot be stored: the server says: maximum bytes exceeded";
+    let mut machines = Machines::default();
+    let (name, notice) = worker("desk-1", PROOF);
+    machines.workers.insert(name, WorkerNotice { trouble: Some(of_worker.to_owned()), ..notice });
+    let notice = RunNotice { trouble: Some(run.to_owned()), ..own_run() };
+    machines.runs.insert("own-1".to_owned(), notice);
+    for width in [theme::PANEL_WIDTH, 900.0] {
+        let panel = panel(connected_to(Some(machines.clone()), None), width);
+        for part in [run, of_worker] {
+            assert!(shows(&panel, part), "{part} in {width}");
+        }
+    }
 }
 
 #[test]
@@ -144,17 +187,7 @@ fn an_address_of_this_computer_is_explained() {
 
 #[test]
 fn workers_and_queues_are_listed_and_one_with_another_proof_is_marked() {
-    let run = RunNotice {
-        format: 1,
-        run: "own-1".to_owned(),
-        host: "desk".to_owned(),
-        engine: ENGINE_VERSION,
-        processors: Processors::THIS,
-        proof: PROOF.to_owned(),
-        pending: 40,
-        results: 100,
-        set_aside: vec!["liar-1".to_owned()],
-    };
+    let run = own_run();
     let mut machines = Machines::default();
     machines.workers.extend([worker("desk-1", PROOF), worker("old-2", "fedcba9876543210")]);
     machines.runs.insert("own-1".to_owned(), run);
@@ -180,11 +213,11 @@ fn workers_and_queues_are_listed_and_one_with_another_proof_is_marked() {
 }
 
 #[test]
-fn a_server_that_does_not_answer_is_shown_above_what_was_known() {
+fn a_request_that_failed_is_shown_above_what_was_known() {
     let mut machines = Machines::default();
     machines.workers.extend([worker("desk-1", PROOF)]);
     let panel = narrow(connected_to(Some(machines), Some("the list of queues failed: timed out")));
-    for part in ["does not answer; asking again", "timed out", "desk-1"] {
+    for part in ["A request to the server failed; asking again", "timed out", "desk-1"] {
         assert!(shows(&panel, part), "{part}");
     }
 }

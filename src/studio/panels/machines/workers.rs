@@ -49,6 +49,10 @@ pub(super) fn workers(ui: &mut egui::Ui, machines: &Machines, proof: &str) {
     if machines.workers.values().any(|worker| worker.proof != proof) {
         problem(ui, OTHER_PROOF);
     }
+    for worker in machines.workers.values() {
+        let WorkerNotice { worker, trouble, .. } = worker;
+        trouble.iter().for_each(|trouble| problem(ui, &format!("{worker} waits: {trouble}")));
+    }
 }
 
 /// Draws a worker as an entry of a few lines.
@@ -68,6 +72,7 @@ fn worker_entry(ui: &mut egui::Ui, worker: &WorkerNotice, proof: &str) {
         if !is_used {
             problem(ui, OTHER_PROOF);
         }
+        worker.trouble.iter().for_each(|trouble| problem(ui, &format!("Waits: {trouble}")));
     });
 }
 

@@ -21,7 +21,7 @@ fn held_run() -> (tempfile::TempDir, CurrentRun) {
 
 /// Creates a link that is waiting for a server.
 fn connecting() -> MachinesLink {
-    let mut link = MachinesLink::of_test("nats://127.0.0.1:1", LinkState::Connecting);
+    let mut link = MachinesLink::of_test("nats://127.0.0.1:1", LinkState::Connecting(None));
     // No server listens at this address; the failure is never processed.
     let server = BrokerOptions { url: "nats://127.0.0.1:1".to_owned(), ..Default::default() };
     link.watch = Some(ServerWatch::start(server).expect("a thread"));
@@ -86,13 +86,23 @@ fn a_list_replaces_a_problem_and_a_problem_keeps_the_list() {
     for news in [
         WatchNews::Connected { proof: "p".to_owned() },
         WatchNews::Listed(machines.clone()),
-        WatchNews::NoAnswer("lost".to_owned()),
+        WatchNews::Trouble("lost".to_owned()),
     ] {
         link.take_in_news(news, &mut run, &mut notices);
     }
     assert_eq!(known(&link).machines.as_ref(), Some(&machines));
     assert_eq!(known(&link).problem.as_deref(), Some("lost"));
     link.take_in_news(WatchNews::Listed(machines), &mut run, &mut notices);
+    assert_eq!(known(&link).problem, None);
+}
+
+#[test]
+fn f3_a_server_without_room_is_still_being_connected_and_the_latest_reason_is_kept() {
+    let (_folder, mut run) = held_run();
+    let (mut link, mut notices) = (connecting(), Notices::default());
+    link.take_in_news(WatchNews::Trouble("full".to_owned()), &mut run, &mut notices);
+    assert_eq!(link.state(), &LinkState::Connecting(Some("full".to_owned())));
+    link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
     assert_eq!(known(&link).problem, None);
 }
 

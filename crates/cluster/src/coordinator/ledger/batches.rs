@@ -16,9 +16,14 @@ const LATE_AFTER: Duration = Duration::from_secs(2);
 const LATE_FACTOR: f64 = 3.0;
 /// A batch without results for this long is given up and its tasks are queued again, because the server may have lost
 /// it.
-pub(super) const LOST_AFTER: Duration = Duration::from_secs(30);
+pub const LOST_AFTER: Duration = Duration::from_secs(30);
 /// Maximum number of batches that hold the same task.
 const MOST_COPIES: u8 = 3;
+/// Size of the head of a message besides its keys, in bytes, at most.
+const HEAD_SIZE: usize = 300;
+/// Size of a task's key in the head of a message, in bytes.
+const KEY_SIZE: usize = 20;
+
 impl Ledger {
     pub(super) fn is_held(&self, key: u64) -> bool {
         let Some(pending) = self.tasks.get(&key) else { return true };
@@ -44,9 +49,38 @@ impl Ledger {
         }
     }
 
+    /// Sends all batches in transit again, because the server has lost its store.
+    pub fn on_store_lost(&mut self, now: Instant) -> Vec<LedgerAction> {
+        let lost = self.release_all();
+        let line = format!("the server has lost what it stored: {lost} batches are sent again");
+        let mut actions = vec![LedgerAction::Say(line)];
+        actions.extend(self.publish(now));
+        actions
+    }
+
+    /// Releases all batches, and returns how many there were.
+    fn release_all(&mut self) -> usize {
+        let all = std::mem::take(&mut self.batches);
+        let count = all.len();
+        // Each task goes to the front of the queue, so the last one is released first.
+        self.release(all.into_values().rev().flat_map(|batch| batch.keys.into_iter().rev()));
+        count
+    }
+
+    /// Withdraws all batches when a worker begins to wait for its server, and holds them back until none waits. Otherwise
+    /// batches could fill the server's store, and leave the results no room for ever.
+    pub(super) fn make_room(&mut self) -> Option<LedgerAction> {
+        let made_room = std::mem::replace(&mut self.makes_room, self.staff.has_waiting());
+        let begins = self.makes_room && !made_room;
+        begins.then(|| {
+            self.release_all();
+            LedgerAction::Withdraw
+        })
+    }
+
     /// Publishes batches while the workers have capacity for them.
     pub(super) fn publish(&mut self, now: Instant) -> Vec<LedgerAction> {
-        let threads = self.staff.threads();
+        let threads = if self.makes_room { 0 } else { self.staff.threads() };
         let mut actions = Vec::new();
         while self.batches.len() < threads * BATCHES_PER_THREAD {
             let keys = self.next_keys(threads);
@@ -71,12 +105,13 @@ impl Ledger {
                 continue;
             };
             let of = (pending.kind, pending.shared);
-            let fits = keys.is_empty() || bytes + pending.text.len() < self.largest_message;
+            let size = pending.text.len() + KEY_SIZE;
+            let fits = keys.is_empty() || bytes + size + HEAD_SIZE < self.largest_message;
             if self.is_held(key) || *group.get_or_insert(of) != of || !fits {
                 at += 1;
                 continue;
             }
-            bytes += pending.text.len();
+            bytes += size;
             keys.push(key);
             self.queue.remove(at);
         }

@@ -85,6 +85,12 @@ impl Staff {
         works.filter_map(|member| Some(member.notice.as_ref()?.threads as usize)).sum()
     }
 
+    /// Returns whether a present worker waits for its server.
+    pub fn has_waiting(&self) -> bool {
+        let waits = |notice: &WorkerNotice| notice.trouble.is_some();
+        self.0.values().any(|member| member.works() && member.notice.as_ref().is_some_and(waits))
+    }
+
     /// Returns the names of the workers that were set aside.
     pub fn set_aside_names(&self) -> Vec<String> {
         let is_it = |(_, member): &(&String, &StaffMember)| member.standing == Standing::SetAside;
@@ -116,12 +122,37 @@ impl Staff {
             lines.push(format!("worker {name} on {}: {threads} thread{plural}", notice.host));
             member.is_told = true;
         }
+        lines.extend(self.news_of_trouble(&notice));
+        let member = self.0.entry(name.clone()).or_insert_with(|| StaffMember::new(now));
         let left = notice.leaves && member.notice.as_ref().is_some_and(|before| !before.leaves);
         if left {
             lines.push(format!("worker {name} on {} left", notice.host));
         }
         member.notice = Some(notice);
         lines
+    }
+
+    /// Returns lines for the user about the trouble of a worker with its server, if that has changed since the worker's
+    /// notice before. What several workers suffer from is told of the first one, and is over with the last.
+    fn news_of_trouble(&self, notice: &WorkerNotice) -> Vec<String> {
+        let trouble_of = |name: &str| self.0.get(name)?.notice.as_ref()?.trouble.clone();
+        let before = trouble_of(&notice.worker);
+        if before == notice.trouble {
+            return Vec::new();
+        }
+        let is_alone = |trouble: &String| {
+            let mut others = self.0.keys().filter(|name| **name != notice.worker);
+            !others.any(|name| trouble_of(name).as_ref() == Some(trouble))
+        };
+        let WorkerNotice { worker, host, .. } = notice;
+        let line = |words: String| format!("worker {worker} on {host}: {words}");
+        let over = before.filter(is_alone).map(|trouble| line(format!("over: {trouble}")));
+        let new = notice
+            .trouble
+            .clone()
+            .filter(is_alone)
+            .map(|trouble| line(format!("{trouble}; it is trying again")));
+        over.into_iter().chain(new).collect()
     }
 
     /// Forgets workers that have been silent for `SILENCE`, except those that were set aside. Returns for each the
@@ -233,5 +264,26 @@ impl Staff {
         };
         let others: Vec<&String> = self.0.iter().filter(is_it).map(|(name, _)| name).collect();
         (!others.is_empty()).then(|| others[rng.random_range(0..others.len())].clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hello::tests::notice;
+
+    #[test]
+    fn f3_what_several_workers_wait_for_is_told_once_and_is_over_with_the_last() {
+        let (mut staff, now) = (Staff::default(), Instant::now());
+        let mut hear = |worker: &str, trouble: Option<&str>| {
+            let trouble = trouble.map(str::to_owned);
+            staff.on_notice(WorkerNotice { trouble, ..notice(worker, 1, "p") }, "p", now)
+        };
+        assert_eq!(hear("a", None), ["worker a on computer: 1 thread"]);
+        assert_eq!(hear("b", None), ["worker b on computer: 1 thread"]);
+        assert_eq!(hear("a", Some("full")), ["worker a on computer: full; it is trying again"]);
+        assert!(hear("a", Some("full")).is_empty() && hear("b", Some("full")).is_empty());
+        assert!(hear("a", None).is_empty(), "the other one still waits");
+        assert_eq!(hear("b", None), ["worker b on computer: over: full"]);
     }
 }

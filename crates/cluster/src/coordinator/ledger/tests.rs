@@ -71,6 +71,7 @@ impl Room {
                 LedgerAction::Deliver(call, index, outcome) => {
                     self.delivered.push((call, index, outcome))
                 }
+                LedgerAction::Withdraw => self.published.clear(),
                 LedgerAction::Say(line) => self.said.push(line),
                 LedgerAction::Taint(line) => self.taints.push(line),
                 LedgerAction::Audit(audit) => {
@@ -422,4 +423,29 @@ fn a_batch_that_is_too_large_stays_for_the_caller() {
     let actions = room.ledger.on_too_large(&batch);
     room.act(actions);
     assert!(matches!(room.delivered[..], [(1, 0, Outcome::Refused(_))]), "{:?}", room.delivered);
+}
+
+#[test]
+fn f3_batches_give_way_while_a_worker_waits_to_store_its_results() {
+    let mut room = Room::new();
+    room.open(1, 4);
+    room.hear("a", 1);
+    let published = std::mem::take(&mut room.published);
+    assert!(!published.is_empty());
+    let tell = |room: &mut Room, trouble: Option<&str>| {
+        let trouble = trouble.map(str::to_owned);
+        let notice = crate::hello::WorkerNotice { trouble, ..notice("a", 1, PROOF) };
+        let actions = room.ledger.on_notice(notice, room.now);
+        let withdraws = actions.contains(&LedgerAction::Withdraw);
+        room.act(actions);
+        withdraws
+    };
+    assert!(tell(&mut room, Some("full")), "once");
+    assert!(!tell(&mut room, Some("full")) && room.published.is_empty());
+    room.answer(results("a", &published[0], right));
+    assert!(room.published.is_empty(), "results count, and batches are held back");
+    assert!(!tell(&mut room, None));
+    assert!(!room.published.is_empty());
+    room.work("a", right);
+    assert_eq!(room.right_indices(1), [0, 1, 2, 3]);
 }
