@@ -11,15 +11,15 @@ use super::output::{cancel_on_interrupt, print, print_json, print_line};
 use snakes_core::check::Invalid;
 use snakes_core::evolve::RunPlan;
 use snakes_core::save::{
-    ExistingRun, PoetStudy, SaveError, load_poet_study, load_preset, settings_fingerprint,
-    store_csv, store_poet_study,
+    ControlRun, ExistingRun, PoetStudy, SaveError, load_poet_study, load_preset,
+    settings_fingerprint, store_csv, store_poet_study,
 };
 use snakes_core::world::PhysicsEngine;
 use snakes_lab::run::headless::{HeadlessError, say};
 use snakes_lab::run::progress_bar::{bar_of, beneath_bar};
 use snakes_lab::run::{Cancelled, Evaluator, RecordedRun, RunControl, RunSource};
 use snakes_lab::study::poet::{
-    ControlRun, hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
+    hardest_stairs, planned_controls, poet_claims, poet_records, run_controls,
 };
 
 /// Default seed of the run. No setting was chosen with this seed or with the seeds of the direct searches, which follow it.

@@ -19,7 +19,7 @@ use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::{Evaluator, THREADS_RANGE, available_cores};
 
 /// Reads the number of a flag, which is in `range`. The errors of all wrong texts name the same range.
-pub fn number<T: FromStr + PartialOrd + Display>(
+pub fn number<T: FromStr + PartialOrd + Display + Copy>(
     flag: &str,
     text: &str,
     range: RangeInclusive<T>,

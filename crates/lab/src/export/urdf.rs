@@ -184,7 +184,8 @@ mod tests {
 
     /// Returns the values of an attribute, each as one or two numbers.
     fn values(text: &str, attribute: &str) -> Vec<Vec<f32>> {
-        let found = text.split(&format!(" {attribute}=\"")).skip(1);
+        let start = format!(" {attribute}=\"");
+        let found = text.split(&start).skip(1);
         let value = found.map(|rest| rest.split('"').next().unwrap_or_default());
         let numbers = |value: &str| {
             value.split(' ').map(|number| number.parse().expect("a number")).collect()
