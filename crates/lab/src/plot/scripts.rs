@@ -13,25 +13,41 @@ use unicode_bidi::{BidiClass, BidiInfo, Level, bidi_class};
 use super::system_fonts::{SystemFont, system_font};
 
 /// Returns a text with its characters in the order in which they stand from left to right, except that the letters of each word of
-/// Hebrew or Arabic keep their order: whatever shapes such a word turns it round. The text as a whole runs from left to right.
+/// Hebrew or Arabic keep their order: whatever shapes such a word turns it round. The text as a whole runs from left to right, and so does
+/// what follows a name: in a label with a name and a number, the number stays a number.
 pub fn in_visual_order(text: &str) -> Cow<'_, str> {
-    if !text.chars().any(is_right_to_left) {
-        return Cow::Borrowed(text);
-    }
-    let order = BidiInfo::new(text, Some(Level::ltr()));
-    let mut visual = String::with_capacity(text.len());
-    for paragraph in &order.paragraphs {
-        let (levels, runs) = order.visual_runs(paragraph, paragraph.range.clone());
-        for run in runs {
-            let part = &text[run.clone()];
-            if levels[run.start].is_rtl() {
-                words_of(part).into_iter().rev().for_each(|word| visual += &word);
-            } else {
-                visual += part;
+    let mut visual = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find(is_right_to_left) {
+        let (before, part) = rest.split_at(start);
+        let end = end_of_part(part);
+        visual += before;
+        let order = BidiInfo::new(&part[..end], Some(Level::rtl()));
+        for paragraph in &order.paragraphs {
+            let (levels, runs) = order.visual_runs(paragraph, paragraph.range.clone());
+            for run in runs {
+                let words = &part[run.clone()];
+                if levels[run.start].is_rtl() {
+                    words_of(words).into_iter().rev().for_each(|word| visual += &word);
+                } else {
+                    visual += words;
+                }
             }
         }
+        rest = &part[end..];
     }
-    Cow::Owned(visual)
+    if visual.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(visual + rest) }
+}
+
+/// Returns where the part of a text ends that runs from right to left, as its beginning does: behind its last such letter, and behind the
+/// brackets that close there.
+fn end_of_part(text: &str) -> usize {
+    let own = text.find(|letter| bidi_class(letter) == BidiClass::L).unwrap_or(text.len());
+    let joins = |letter| is_right_to_left(letter) || bidi_class(letter) == BidiClass::NSM;
+    let last = text[..own].rfind(joins).unwrap_or_default();
+    let end = last + text[last..].chars().next().map_or(0, char::len_utf8);
+    let is_bracket = |letter: char| [')', ']', '}', '»'].contains(&letter);
+    text.len() - text[end..].trim_start_matches(is_bracket).len()
 }
 
 fn is_right_to_left(letter: char) -> bool {
@@ -214,7 +230,9 @@ mod tests {
             ("ж 中", "ж 中"),
             ("שלום", "שלום"),
             ("שלום עולם", "עולם שלום"),
-            ("نحش سريع 12", "12 سريع نحش"),
+            ("نحش 12 سريع", "سريع 12 نحش"),
+            ("نحش سريع  -3.7 m", "سريع نحش  -3.7 m"),
+            ("1. שלום: 2.0 m", "1. שלום: 2.0 m"),
             ("a שלום עולם b", "a עולם שלום b"),
             ("שלום (עולם)", "(עולם) שלום"),
         ] {

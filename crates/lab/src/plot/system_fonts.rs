@@ -57,12 +57,16 @@ struct Known {
 
 static KNOWN: Mutex<Known> = Mutex::new(Known { fonts: Vec::new(), answers: BTreeMap::new() });
 
-/// Returns a font of the system that can draw a character, if there is one. On Linux fontconfig's `fc-match` chooses it by the user's
+/// Returns a font, usually one of the system, that can draw a character, if there is one. On Linux fontconfig's `fc-match` chooses it by the user's
 /// settings. The first call for a script takes some hundredths of a second, because it starts that program and reads a file.
 pub fn system_font(letter: char) -> Option<&'static SystemFont> {
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(answer) = known.answers.get(&letter) {
         return *answer;
+    }
+    if known.fonts.is_empty() {
+        // The second font that is part of the program: pictures in one colour, which few systems have.
+        known.keep("emoji".to_owned(), epaint_default_fonts::NOTO_EMOJI_REGULAR, 0);
     }
     let with_letter = |known: &Known| known.fonts.iter().find(|font| font.has(letter)).copied();
     let mut answer = with_letter(&known);
@@ -87,8 +91,13 @@ impl Known {
         if self.fonts.iter().any(|font| font.name == name) {
             return;
         }
-        let Ok(bytes) = read_bytes(path, LARGEST_FONT_MIB) else { return };
-        if let Some(font) = SystemFont::of_bytes(name, bytes.leak(), index) {
+        if let Ok(bytes) = read_bytes(path, LARGEST_FONT_MIB) {
+            self.keep(name, bytes.leak(), index);
+        }
+    }
+
+    fn keep(&mut self, name: String, bytes: &'static [u8], index: u32) {
+        if let Some(font) = SystemFont::of_bytes(name, bytes, index) {
             self.fonts.push(Box::leak(Box::new(font)));
         }
     }
