@@ -11,7 +11,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::prelude::*;
 
-use super::{gpu_loss, variables};
+use super::gpu_loss;
+use super::variables;
 use crate::studio::error::StudioError;
 use crate::studio::state::run_context::RunInProgress;
 use snakes_lab::run::end_without_threads;

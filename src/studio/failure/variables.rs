@@ -58,7 +58,7 @@ mod linux {
     use std::os::unix::process::CommandExt;
     use std::path::{Path, PathBuf};
 
-    use super::{WAYLAND_DISPLAY, WAYLAND_SOCKET, X11_DISPLAY};
+    use crate::studio::failure::variables::{WAYLAND_DISPLAY, WAYLAND_SOCKET, X11_DISPLAY};
 
     /// The variable that names the folder of a session's sockets. Without it, a layer of the Vulkan drivers (Mesa's device
     /// selection) writes the same error to standard error each time devices are listed, twice at every start.
