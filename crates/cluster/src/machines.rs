@@ -10,6 +10,7 @@ use super::broker::Broker;
 use super::error::ClusterError;
 use super::hello::{RunNotice, WorkerNotice};
 use super::names::{NOTICE_INTERVAL, check_name, result_subject, work_subject, worker_consumer};
+use super::store::remove;
 use super::trouble::Trouble;
 use snakes_core::check::{Invalid, quoted};
 
@@ -121,9 +122,9 @@ pub fn purge(broker: &Broker, run: &str) -> Result<RunQueue, ClusterError> {
     }
     broker.ask("the removal", async {
         let (work, results) = (broker.work_stream().await?, broker.result_stream().await?);
-        let batches = work.purge().filter(work_subject("*", run)).await;
-        let found = results.purge().filter(result_subject(run)).await;
+        let batches = remove(&work, &work_subject("*", run)).await?;
+        let found = remove(&results, &result_subject(run)).await?;
         let _ = results.delete_consumer(run).await;
-        Ok(RunQueue { batches: batches?.purged, results: found?.purged })
+        Ok(RunQueue { batches, results: found })
     })
 }

@@ -23,7 +23,7 @@ use crate::names::{
 };
 use crate::outcome::Outcome;
 use crate::packing::pack;
-use crate::store::publish_until_stored;
+use crate::store::{publish_until_stored, remove};
 use crate::wire::{ResultBatch, TaskKind, WIRE_FORMAT, WorkBatch, line_of};
 use snakes_core::{ENGINE_VERSION, Processors};
 use snakes_lab::run::headless::say;
@@ -104,7 +104,7 @@ impl Actor {
     ) -> Result<Self, ClusterError> {
         let (workers, runs) = broker.ask("preparing the run", async {
             let stream = broker.work_stream().await?;
-            stream.purge().filter(work_subject(&options.proof, &options.run)).await?;
+            remove(&stream, &work_subject(&options.proof, &options.run)).await?;
             broker.consumer(&PullSource::Results(options.run.clone())).await?;
             // Subscribes before this run sends its first notice, because workers answer to it.
             broker.notices().await
@@ -206,7 +206,7 @@ impl Actor {
         self.tasks.push(self.broker.runtime().spawn(async move {
             // Batches that cannot be removed stay until a worker takes them.
             if let Ok(stream) = broker.work_stream().await {
-                let _ = stream.purge().filter(subject).await;
+                let _ = remove(&stream, &subject).await;
             }
         }));
     }
@@ -344,7 +344,8 @@ impl Actor {
     }
 }
 
-/// Runs a coordinator until the command to end arrives, or the server refuses for good what it needs. Then removes its batches, results and consumer from the server.
+/// Runs a coordinator until the command to end arrives. Then removes its batches, results and consumer from the server.
+/// Ends without this if the server refuses for good what the coordinator needs.
 pub fn run_actor(
     broker: &Broker,
     mut actor: Actor,
@@ -383,10 +384,10 @@ pub fn run_actor(
 async fn clean_up(actor: &Actor) {
     if let Ok(stream) = actor.broker.work_stream().await {
         let subject = work_subject(&actor.options.proof, &actor.options.run);
-        let _ = stream.purge().filter(subject).await;
+        let _ = remove(&stream, &subject).await;
     }
     if let Ok(stream) = actor.broker.result_stream().await {
-        let _ = stream.purge().filter(result_subject(&actor.options.run)).await;
+        let _ = remove(&stream, &result_subject(&actor.options.run)).await;
         let _ = stream.delete_consumer(&actor.options.run).await;
     }
 }
