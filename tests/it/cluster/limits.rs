@@ -112,17 +112,16 @@ fn f3_limits_of_connections_streams_and_consumers_are_waited_for() {
     assert!(line.starts_with(&format!("error: {url}: {connections}")), "{line}");
 
     let worker = worker_that_tells(&url);
-    sleep(Duration::from_secs(3));
+    sleep(Duration::from_secs(5));
     drop(taken);
     server.change(&limited(1, 1, 100));
-    sleep(Duration::from_secs(4));
+    sleep(Duration::from_secs(6));
     server.change(&limited(2, 1, 100));
-    sleep(Duration::from_secs(4));
-    let one = Run::start(place.path(), &RUN.replace("generations 4", "generations 400"), &url);
-    sleep(Duration::from_secs(4));
+    let mut one = Run::start(place.path(), &RUN.replace("generations 4", "generations 400"), &url);
+    one.wait_for_generations(1);
     let other = folder();
     let two = Run::start(other.path(), RUN, &url);
-    sleep(Duration::from_secs(4));
+    sleep(Duration::from_secs(10));
     one.stopped();
     let by_run = finished(two);
     let by_worker = stopped(worker);
