@@ -97,7 +97,7 @@ fn is_ignored(signal: i32) -> bool {
     let status = snakes_core::save::load_text(Path::new("/proc/self/status")).unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok());
-    ignored.is_none_or(|bits| bits >> (signal - 1) & 1 == 1)
+    ignored.is_none_or(|bits| (bits >> (signal - 1)) & 1 == 1)
 }
 
 /// Calls `act` at each request to end the program: Ctrl-C and Ctrl-Break. When the console is closed, Windows ends the program soon after
