@@ -24,6 +24,6 @@ pub use parse::{Parsed, parse};
 pub use robust::{ExamArgs, PerturbationArgs};
 pub use study::StudyArgs;
 pub use task::{Args, Task};
+pub use values::number_if;
 #[cfg(feature = "studio")]
-pub use values::size;
-pub use values::{number, number_if};
+pub use values::{number, size};

@@ -99,10 +99,10 @@ setting_group! {
     }
 
     fn check_together(&self) -> Result<(), Invalid> {
-        if self.too_hard_below < self.too_easy_above {
+        if self.too_hard_below <= self.too_easy_above {
             return Ok(());
         }
-        Err(Invalid::new("too_hard_below", self.too_hard_below, format!("less than {}, above which stairs are too easy", self.too_easy_above)))
+        Err(Invalid::new("too_hard_below", self.too_hard_below, format!("up to {}, above which stairs are too easy", self.too_easy_above)))
     }
 }
 

@@ -190,6 +190,24 @@ fn texts_of(number: f32, kind: &SettingKind) -> Vec<String> {
     }
 }
 
+/// Settings that go with extreme values of others: high stairs, small blocks, large blocks.
+const COMPANIONS: [&[(&str, &str)]; 4] = {
+    const LIMBS: (&str, &str) = ("genome.bodies.limbs_max", "2");
+    const WIDE: [(&str, &str); 3] = [
+        ("genome.bodies.length_max_m", "10"),
+        ("genome.bodies.thickness_max_m", "10"),
+        ("genome.bodies.longest_m", "24"),
+    ];
+    const LEAST: [(&str, &str); 2] =
+        [("genome.bodies.length_min_m", "0.1"), ("genome.bodies.thickness_min_m", "0.1")];
+    [
+        &[("trial.stairs.rise_m", "5")],
+        &[LIMBS, WIDE[0], WIDE[1], WIDE[2], LEAST[0], LEAST[1], ("genome.bodies.volume_m3", "0.1")],
+        &[LIMBS, WIDE[0], WIDE[1], WIDE[2], LEAST[0], LEAST[1], ("genome.bodies.volume_m3", "1")],
+        &[LIMBS, WIDE[0], WIDE[1], WIDE[2], ("genome.bodies.volume_m3", "1000")],
+    ]
+};
+
 #[test]
 fn f14_every_number_that_a_setting_documents_is_allowed_in_some_run() {
     let presets = crate::save::shipped_presets().expect("well formed");
@@ -198,37 +216,41 @@ fn f14_every_number_that_a_setting_documents_is_allowed_in_some_run() {
     for run in &runs {
         all.extend(schema::list(run).into_iter().map(|listed| (listed.path.clone(), listed)));
     }
+    let group_of = |path: &str| path.rsplit_once('.').map(|(group, _)| group.to_owned());
     let mut refused = Vec::new();
     for (path, listed) in &all {
         let (SettingKind::Number(range) | SettingKind::List(range)) = listed.setting.kind else {
             continue;
         };
-        // Limits that depend on each other are tried together with another number of the same group.
-        let group = path.rsplit_once('.').map_or("", |(group, _)| group);
-        let mut others = vec![None];
-        for (other, listed) in all.iter().filter(|(other, _)| {
-            *other != path && other.rsplit_once('.').is_some_and(|(of, _)| of == group)
-        }) {
-            let SettingKind::Number(range) = listed.setting.kind else { continue };
-            others.extend(
-                samples(&range).iter().map(|number| Some((other.as_str(), number.to_string()))),
-            );
+        // Limits that depend on each other are tried together with another number of the same group, or with companions.
+        let mut others: Vec<Vec<(&str, String)>> = vec![Vec::new()];
+        for (other, listed) in &all {
+            if let SettingKind::Number(range) = listed.setting.kind
+                && other != path
+                && group_of(other) == group_of(path)
+            {
+                let numbers = samples(&range).into_iter();
+                others.extend(numbers.map(|number| vec![(other.as_str(), number.to_string())]));
+            }
         }
+        others.extend(COMPANIONS.map(|companions| {
+            let besides = companions.iter().filter(|(other, _)| other != path);
+            besides.map(|(other, text)| (*other, (*text).to_owned())).collect()
+        }));
         for number in samples(&range) {
+            let texts = texts_of(number, &listed.setting.kind);
             let is_allowed = |run: &Settings| {
-                texts_of(number, &listed.setting.kind).iter().any(|text| {
-                    others.iter().any(|other| {
-                        let other = other.iter().map(|(path, text)| (*path, text.as_str()));
-                        with_fields(run, other.chain([(path.as_str(), text.as_str())])).is_ok()
+                others.iter().any(|others| {
+                    texts.iter().any(|text| {
+                        let others = others.iter().map(|(path, text)| (*path, text.as_str()));
+                        with_fields(run, others.chain([(path.as_str(), text.as_str())])).is_ok()
                     })
                 })
             };
             if !runs.iter().any(is_allowed) {
                 let allowed = listed.setting.allowed();
                 let problem = with_field(&runs[0], path, &number.to_string()).map(drop);
-                refused.push(format!(
-                    "{path} documents {allowed}, but {number} is refused: {problem:?}"
-                ));
+                refused.push(format!("{path}: {allowed}, but {number} is refused: {problem:?}"));
             }
         }
     }
