@@ -1,6 +1,7 @@
 //! The state of the world as a controller perceives it.
 
 use super::{ActiveSenses, Perception};
+use crate::genome::controllers::point_at;
 use crate::world::{ClimbProgress, JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Others are not computed.
@@ -63,6 +64,11 @@ impl Observation {
     pub fn periods(&self, frequency_hz: f32) -> f64 {
         let at_start_s = f64::from(self.step) / f64::from(self.steps_per_s);
         f64::from(frequency_hz) * (at_start_s + f64::from(self.lead_s))
+    }
+
+    /// Number of the point of a signal that holds in the step that begins; the first is 0.
+    pub fn point(&self, points_per_s: f32) -> usize {
+        point_at(self.step, points_per_s, self.steps_per_s)
     }
 
     /// State of each joint from the head at the moment for which the controller acts, if its rates stay; empty unless the

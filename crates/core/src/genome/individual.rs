@@ -31,7 +31,8 @@ impl Genome {
         self.genes(space, &mut Genes::to(&mut visit));
     }
 
-    /// Checks that neurons of parts belong to a branching body, and each node of such a body has its neurons.
+    /// Checks that neurons of parts belong to a branching body, and each node of such a body has its neurons, unless signals drive
+    /// its joints: those that a policy recorded.
     ///
     /// # Errors
     /// The first of both that does not hold.
@@ -41,8 +42,9 @@ impl Genome {
             ControllerGenes::PartNeurons(genes) => {
                 within("part_neurons.nodes", genes.nodes.len(), nodes..=nodes)
             }
+            ControllerGenes::Signal(_) | ControllerGenes::Targets(_) => Ok(()),
             other if nodes > 0 => {
-                let allowed = "part_neurons, which grow with a branching body";
+                let allowed = "part_neurons, which grow with a branching body, or signal or targets, a recorded episode";
                 Err(Invalid::new("controller", other.kind(), allowed))
             }
             _ => Ok(()),

@@ -95,7 +95,7 @@ impl Wave {
 }
 
 /// An offset or an amplitude of a target angle, to either side.
-const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
+pub(super) const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
 /// How the names of charts count the terms of a wave.
 const TERMS: [&str; MOST_HARMONICS as usize] = ["", " 2", " 3", " 4", " 5"];
 
