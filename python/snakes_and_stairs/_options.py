@@ -12,7 +12,7 @@ from gymnasium import spaces
 from ._core import Champion, Problem, Worlds, load_champion
 
 Path = Union[str, "os.PathLike[str]"]
-#: A body: None for that of the preset, the seed of a run for the body that it draws first, or a champion with its file's path.
+#: A body: None for that of the preset, the seed of a run for its first body, or a champion with its file's path.
 Body = Union[None, int, Champion, Path]
 
 

@@ -67,7 +67,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
             that has no effect here, such as one of the search, is refused.
         body: None for the body of the preset, where joint limits and density, which evolve in other uses, are in the middle of
             their ranges unless settings fix them. Where bodies evolve, as in ``bodies`` and ``creatures``, None stands for 1. A
-            number: the body that a run with this seed draws first. A champion, or the path of its file: its body. The policy takes
+            number: the first body of a run with this seed that comes to rest on the ground. A champion, or the path of its file: its body. The policy takes
             the place of the controller of the preset or champion.
         actions: ``"targets"`` or ``"torques"``.
         steps_per_action: physics steps for which an action holds.

@@ -12,6 +12,8 @@ use snakes_core::genome::{BodyGenes, ControllerKind, Genome};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::save::{load_preset, shipped_presets};
 use snakes_core::schema;
+use snakes_core::score::Rollout;
+use snakes_lab::run::caught;
 
 use crate::batch::{score_all, threads_of};
 use crate::champion::{Champion, evaluated};
@@ -19,6 +21,7 @@ use crate::convert::{changes_in, restorer, rows, seed_of, to_python, whole, whol
 use crate::errors::{crashed, invalid, refused, unusable};
 use crate::evaluations::Evaluations;
 use crate::purpose::Use;
+use crate::world_rules::at_rest;
 
 /// A preset with changed settings, as a Python class.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
@@ -55,6 +58,9 @@ pub fn presets(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     }
     Ok(dictionary)
 }
+
+/// Number of bodies of a run among which one is drawn.
+const MOST_DRAWN: u32 = 100;
 
 impl Problem {
     /// Returns whether the rows of an array can describe the genomes completely.
@@ -134,12 +140,25 @@ impl Problem {
         (0..count).map(genome).collect()
     }
 
-    /// Gives an environment a body: that of a champion with its blocks, that with which a run of a seed begins, or, without a choice,
-    /// that of the settings, and where bodies evolve that of seed 1.
+    /// Returns the first body of a run of this seed that comes to rest on the ground, which few random creatures do.
+    fn drawn_body(&self, seed: u64) -> PyResult<BodyGenes> {
+        let trial = &self.settings.trial;
+        let rests = |body: &BodyGenes| {
+            let genome = at_rest(body.clone(), trial);
+            trial.check_genome(&genome).is_ok()
+                && caught(|| !Rollout::new(&genome, trial).is_over()).unwrap_or(false)
+        };
+        let mut bodies = self.first_genomes(MOST_DRAWN, seed).into_iter().map(|genome| genome.body);
+        let allowed = "a seed with a body that comes to rest on the ground";
+        bodies.find(rests).ok_or_else(|| refused("body", seed, allowed))
+    }
+
+    /// Gives an environment a body: that of a champion with its blocks, that of a run of a seed, or, without a choice, that of the
+    /// settings, and where bodies evolve that of seed 1.
     fn choose_body(&mut self, body: Option<&Bound<'_, PyAny>>, has_agent: bool) -> PyResult<()> {
         let Some(body) = body.filter(|body| !body.is_none()) else {
             if self.settings.genome.bodies.vary {
-                self.body = self.first_genomes(1, 1).pop().map(|genome| genome.body);
+                self.body = Some(self.drawn_body(1)?);
             }
             return Ok(());
         };
@@ -155,7 +174,7 @@ impl Problem {
         }
         let allowed = "None, a seed, a champion or the path of its file";
         let seed = whole_as("body", body, 0..=u64::MAX, allowed)?;
-        self.body = self.first_genomes(1, seed).pop().map(|genome| genome.body);
+        self.body = Some(self.drawn_body(seed)?);
         Ok(())
     }
 

@@ -40,7 +40,7 @@ pub struct WorldRules {
 }
 
 /// Returns a genome with these genes of the body, whose controller does nothing.
-fn at_rest(body: BodyGenes, trial: &Trial) -> Genome {
+pub fn at_rest(body: BodyGenes, trial: &Trial) -> Genome {
     let joints = |genome: &Genome| trial.agent.body_plan(genome).joints.len();
     let controller = |joints| {
         let still = JointSignals { bend_nm: vec![0.0], twist_nm: vec![0.0] };

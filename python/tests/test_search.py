@@ -80,6 +80,11 @@ def test_a_search_makes_the_generations_of_the_command_line(preset, settings, sn
     assert search.is_over
 
 
+def small(preset):
+    """Settings of a small search. One generation of islands, those of "bodies", is larger than three of the other strategies."""
+    return {**SMALL, "evolution.generations": 20} if preset == "bodies" else SMALL
+
+
 def test_r4_a_ladder_is_refused_rather_than_ignored():
     with pytest.raises(ValueError, match="evolution.ladder.first_rise_m is .*; allowed: 0: a search has no ladder"):
         Search("ladder")
@@ -87,7 +92,7 @@ def test_r4_a_ladder_is_refused_rather_than_ignored():
 
 @pytest.mark.parametrize("preset", MORE_THAN_NUMBERS)
 def test_r4_dictionaries_that_were_asked_for_are_those_snakes_to_the_last_bit(preset):
-    search = Search(preset, seed=3, settings=SMALL)
+    search = Search(preset, seed=3, settings=small(preset))
     problem = Problem(preset, settings=SHORT)
     for _ in range(2):
         genomes, own = search.ask(), search.evaluate()
@@ -102,7 +107,7 @@ def test_r4_dictionaries_that_were_asked_for_are_those_snakes_to_the_last_bit(pr
 @pytest.mark.parametrize("preset", ["climb", "report", *MORE_THAN_NUMBERS])
 @pytest.mark.parametrize("copied", [copy.deepcopy, lambda search: pickle.loads(pickle.dumps(search))])
 def test_r10_a_search_that_was_pickled_or_copied_goes_on_with_the_same_bits(preset, copied):
-    search = Search(preset, seed=5, settings=SMALL)
+    search = Search(preset, seed=5, settings=small(preset))
     search.tell(search.evaluate())
     for is_asked in (False, True):
         if is_asked:
@@ -142,9 +147,7 @@ def test_a_row_that_was_asked_for_is_that_snake_to_the_last_bit(preset):
 
 @pytest.mark.parametrize("preset", ["report", "climb", *MORE_THAN_NUMBERS])
 def test_a_search_saves_the_snakes_that_it_found(preset, snakes, tmp_path):
-    # One generation of islands, those of "bodies", is larger than three of the other strategies.
-    settings = {**SMALL, "evolution.generations": 20} if preset == "bodies" else SMALL
-    search = Search(preset, seed=3, settings=settings)
+    search = Search(preset, seed=3, settings=small(preset))
     search.tell(search.evaluate())
     results = search.evaluate()
     best = results.ranking.argmax()

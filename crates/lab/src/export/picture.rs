@@ -11,8 +11,6 @@ use snakes_core::world::{Pose, Vector};
 /// Range of the width and the height of a picture, in pixels.
 pub const PICTURE_SIDES: RangeInclusive<u64> = 16..=4096;
 
-/// Rays per pixel along each side of the pixel, which smooth the edges.
-const RAYS: u32 = 2;
 /// Vertical field of view of the camera, in rad.
 const VIEW_RAD: f32 = 0.7;
 /// Direction in which the camera looks.
@@ -38,19 +36,22 @@ const PUPIL: Vector = Vector::new(0.05, 0.05, 0.06);
 pub fn snapshot(rollout: &Rollout, width: u32, height: u32) -> Picture {
     let solids = solids(rollout);
     let camera = Camera::of(rollout, width, height);
+    let sun = SUN.normalize();
+    // A ray through each corner of a pixel; neighbours share it. The mean of four smooths the edges.
+    let across = width as usize + 1;
+    let corners: Vec<Vector> = (0..=height)
+        .flat_map(|row| (0..=width).map(move |column| [column, row]))
+        .map(|corner| {
+            let direction = camera.direction(corner.map(|at| at as f32));
+            color_along(&solids, camera.place, direction, sun)
+        })
+        .collect();
     let mut picture = Picture::new(width, height);
-    let (rays, sun) = (RAYS * RAYS, SUN.normalize());
-    for (index, pixel) in (0_u32..).zip(picture.rgb.as_chunks_mut::<3>().0) {
-        let (column, row) = (index % width, index / width);
-        let color: Vector = (0..rays)
-            .map(|ray| {
-                let across = (column * RAYS + ray % RAYS) as f32 + 0.5;
-                let down = (row * RAYS + ray / RAYS) as f32 + 0.5;
-                let direction = camera.direction([across, down].map(|at| at / RAYS as f32));
-                color_along(&solids, camera.place, direction, sun)
-            })
-            .sum();
-        *pixel = (color / rays as f32 * 255.0).to_array().map(|part| part.round() as u8);
+    for (index, pixel) in picture.rgb.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        let first = index / width as usize * across + index % width as usize;
+        let four = [first, first + 1, first + across, first + across + 1];
+        let sum: Vector = four.iter().filter_map(|corner| corners.get(*corner)).sum();
+        *pixel = (sum / 4.0 * 255.0).to_array().map(|part| part.round() as u8);
     }
     picture
 }
@@ -90,7 +91,10 @@ impl Camera {
 
 /// A box or a ball.
 struct Solid {
-    pose: Pose,
+    centre: Vector,
+    /// Directions of its edges.
+    axes: [Vector; 3],
+    /// Half its edges; 0 for a ball.
     half_m: Vector,
     /// Radius of the ball; 0 for a box.
     ball_m: f32,
@@ -101,17 +105,19 @@ struct Solid {
 
 impl Solid {
     fn block(pose: Pose, half_m: Vector, color: Vector) -> Self {
-        Self { pose, half_m, ball_m: 0.0, around_m: half_m.length(), color }
+        let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
+        let (centre, around_m) = (pose.translation, half_m.length());
+        Self { centre, axes, half_m, ball_m: 0.0, around_m, color }
     }
 
     fn ball(centre: Vector, ball_m: f32, color: Vector) -> Self {
-        let pose = Pose::from_translation(centre);
-        Self { pose, half_m: Vector::ZERO, ball_m, around_m: ball_m, color }
+        let axes = [Vector::X, Vector::Y, Vector::Z];
+        Self { centre, axes, half_m: Vector::ZERO, ball_m, around_m: ball_m, color }
     }
 
     /// Returns the distance at which a ray meets the solid from outside, and the normal of the surface there.
     fn meets(&self, from: Vector, direction: Vector) -> Option<(f32, Vector)> {
-        let to = self.pose.translation - from;
+        let to = self.centre - from;
         let along_m = to.dot(direction);
         let beside_m2 = to.length_squared() - along_m * along_m;
         if beside_m2 > self.around_m * self.around_m || along_m < -self.around_m {
@@ -121,24 +127,22 @@ impl Solid {
             let distance_m = along_m - (self.ball_m * self.ball_m - beside_m2).max(0.0).sqrt();
             return Some((distance_m, (direction * distance_m - to).normalize()));
         }
-        let turn = self.pose.rotation.inverse();
-        let (origin, ray) = ((turn * -to).to_array(), (turn * direction).to_array());
         let half_m = self.half_m.to_array();
-        let (mut enters_m, mut leaves_m, mut face) = (f32::NEG_INFINITY, f32::INFINITY, 0);
-        for axis in 0..3 {
-            let to_faces = [-half_m[axis], half_m[axis]].map(|at| (at - origin[axis]) / ray[axis]);
+        let (mut enters_m, mut leaves_m, mut normal) =
+            (f32::NEG_INFINITY, f32::INFINITY, Vector::Z);
+        for (axis, half_m) in self.axes.into_iter().zip(half_m) {
+            let (away_m, speed) = (axis.dot(to), axis.dot(direction));
+            let to_faces = [(away_m - half_m) / speed, (away_m + half_m) / speed];
             let (near_m, far_m) = (to_faces[0].min(to_faces[1]), to_faces[0].max(to_faces[1]));
             if near_m > enters_m {
-                (enters_m, face) = (near_m, axis);
+                (enters_m, normal) = (near_m, axis * -speed.signum());
             }
             leaves_m = leaves_m.min(far_m);
         }
         if enters_m > leaves_m {
             return None;
         }
-        let mut normal = [0.0; 3];
-        normal[face] = -ray[face].signum();
-        Some((enters_m, self.pose.rotation * Vector::from(normal)))
+        Some((enters_m, normal))
     }
 }
 
