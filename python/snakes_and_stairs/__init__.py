@@ -15,7 +15,7 @@ Files
 A value that is not allowed raises ``ValueError`` with field, value and allowed range; a file that cannot be read, ``OSError``.
 """
 
-from ._core import ENGINE_VERSION, Champion, Evaluations, load_champion, load_run, presets, replay
+from ._core import __version__, ENGINE_VERSION, Champion, Evaluations, load_champion, load_run, presets, replay
 from .environment import SnakesAndStairsEnv
 from .frames import champions_frame, evaluations_frame, run_frame, trajectory_frame
 from .problem import Problem, Search, evaluate
@@ -31,6 +31,7 @@ __all__ = [
     "Evaluations",
     "Problem",
     "Search",
+    "__version__",
     "SnakesAndStairsEnv",
     "SnakesAndStairsVectorEnv",
     "champions_frame",

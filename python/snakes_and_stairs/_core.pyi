@@ -10,6 +10,7 @@ _Path = Union[str, os.PathLike[str]]
 
 __all__ = [
     "ENGINE_VERSION",
+    "__version__",
     "Champion",
     "Evaluations",
     "Problem",
@@ -19,8 +20,14 @@ __all__ = [
     "load_run",
     "presets",
     "replay",
+    "unpacked_champion",
     "unpacked_evaluations",
+    "unpacked_problem",
+    "unpacked_search",
 ]
+
+#: The version of the program.
+__version__: str
 
 #: The version of the engine. Trace hashes of different versions differ.
 ENGINE_VERSION: int
@@ -32,7 +39,7 @@ def load_champion(path: _Path) -> Champion:
     """Reads a champion's file."""
 
 def load_run(folder: _Path) -> dict[str, Any]:
-    """Reads a run's folder: ``preset``, ``seed``, ``founder``, ``settings``, ``generations`` (the records of its log), and
+    """Reads a run's folder: ``preset``, ``seed``, ``founder``, ``settings``, ``generations`` (its lines of JSON), and
     ``champions`` (each with ``generation`` and ``champion``)."""
 
 def replay(path: _Path) -> dict[str, Any]:
@@ -41,13 +48,29 @@ def replay(path: _Path) -> dict[str, Any]:
 def unpacked_evaluations(text: str) -> Evaluations:
     """Evaluations from the text into which pickle packed them."""
 
+def unpacked_champion(text: str, version: int, processors: str) -> Champion:
+    """A champion from its file's text and the engine that recorded it."""
+
+def unpacked_problem(text: str) -> Problem:
+    """A problem from the text into which pickle packed it."""
+
+def unpacked_search(
+    problem: Problem, seed: int, founder: Optional[Champion], text: str
+) -> Search:
+    """A search from its problem, seed and founder, and the text into which pickle packed its state."""
+
 @final
 class Champion:
-    """A saved champion, or a snake of a search as one."""
+    """A saved champion, or a snake of a search or the episode of an environment as one."""
 
     @property
-    def trace_hash(self) -> int:
-        """The recorded trace hash."""
+    def trace_hash(self) -> str:
+        """The recorded trace hash, 16 hexadecimal digits."""
+
+    def save(self, path: _Path) -> None:
+        """Writes it to a file that the program opens, replays and examines."""
+
+    def __reduce__(self) -> Any: ...
 
     def to_dict(self) -> dict[str, Any]:
         """Engine, origin, record, trial, genome and results of exams, as in the file. Hashes are hexadecimal there."""
@@ -56,8 +79,8 @@ class Champion:
         """Simulates it again in its own trial."""
 
     def trajectory(self) -> dict[str, NDArray[np.float64]]:
-        """Its motion, simulated again: ``time_s`` (T), ``position_m`` (T, limbs, 3), ``quaternion_xyzw`` (T, limbs, 4), and of shape
-        (T, joints) ``bend_rad``, ``twist_rad``, ``bend_rate_rad_s``, ``twist_rate_rad_s``. The first moment is the start."""
+        """Its motion, simulated again: ``time_s`` (T), ``position_m`` (T, limbs, 3), ``rotation_xyzw`` (T, limbs, 4), and of shape
+        (T, joints) ``joint_bend_rad``, ``joint_twist_rad``, ``joint_bend_rate_rad_s``, ``joint_twist_rate_rad_s``. The first moment is the start."""
 
 @final
 class Evaluations:
@@ -93,8 +116,8 @@ class Evaluations:
         """Healthy physics steps."""
 
     @property
-    def trace_hash(self) -> NDArray[np.uint64]:
-        """Hash over the bits of all poses: equal only if every step was."""
+    def trace_hash(self) -> NDArray[np.str_]:
+        """Hash over the bits of all poses, 16 hexadecimal digits: equal only if every step was."""
 
     @property
     def centre_y_m(self) -> NDArray[np.float64]:
@@ -151,7 +174,9 @@ class Problem:
         settings: Optional[dict[str, Any]] = None,
         purpose: str = "evaluation",
         strategy: Optional[str] = None,
+        body: Union[None, int, Champion] = None,
     ) -> Problem: ...
+    def __reduce__(self) -> Any: ...
     @property
     def preset(self) -> str: ...
     @property
@@ -166,16 +191,16 @@ class Problem:
     def settings(self) -> dict[str, str]: ...
     @property
     def genes(self) -> list[dict[str, Any]]: ...
-    def random(self, count: int, seed: int) -> NDArray[np.float64]: ...
-    def decode(self, points: NDArray[np.float64]) -> list[dict[str, Any]]: ...
-    def point_of(self, champion: Champion) -> NDArray[np.float64]: ...
+    def random(self, count: int, seed: int) -> Any: ...
+    def decode(self, genomes: Union[NDArray[np.float64], str]) -> list[dict[str, Any]]: ...
+    def genome_of(self, champion: Champion) -> Any: ...
     def evaluate(
-        self, points: NDArray[np.float64], threads: Optional[int] = None
+        self, genomes: Union[NDArray[np.float64], str], threads: Optional[int] = None
     ) -> Evaluations: ...
     def save_champion(
         self,
         path: _Path,
-        points: NDArray[np.float64],
+        genome: Union[NDArray[np.float64], str],
         seed: int,
         generation: int,
         individual: int,
@@ -188,6 +213,7 @@ class Search:
     def __new__(
         cls, problem: Problem, seed: int, founder: Optional[Champion] = None
     ) -> Search: ...
+    def __reduce__(self) -> Any: ...
     @property
     def problem(self) -> Problem: ...
     @property
@@ -202,7 +228,7 @@ class Search:
     def population(self) -> int: ...
     @property
     def is_over(self) -> bool: ...
-    def ask(self) -> NDArray[np.float64]: ...
+    def ask(self) -> Any: ...
     def evaluate(self, threads: Optional[int] = None) -> Evaluations: ...
     def champion(self, index: int) -> Champion: ...
     def save_champion(self, path: _Path, index: int) -> None: ...
@@ -248,3 +274,9 @@ class Worlds:
     def state(self) -> dict[str, NDArray[Any]]: ...
     def evaluations(self, flags: NDArray[np.bool_]) -> list[Optional[dict[str, Any]]]: ...
     def poses(self, index: int) -> NDArray[np.float32]: ...
+    def champion(self, index: int, seed: int, generation: int, individual: int) -> Champion: ...
+    def picture(self, index: int, width: int, height: int) -> NDArray[np.uint8]: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
+    def __getstate__(self) -> Any: ...
+    def __setstate__(self, state: Any) -> None: ...
+    def __deepcopy__(self, memo: Any, /) -> Worlds: ...

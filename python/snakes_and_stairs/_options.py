@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import os
+import shutil
 from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 from gymnasium import spaces
 
-from ._core import Problem, Worlds
+from ._core import Champion, Problem, Worlds, load_champion
 
 Path = Union[str, "os.PathLike[str]"]
+#: A body: None for that of the preset, the seed of a run for its first body, or a champion with its file's path.
+Body = Union[None, int, Champion, Path]
 
 
 def make_worlds(
     count: int,
     preset: Path,
     stairs: Optional[Mapping[str, Any]],
-    body: Any,
+    body: Body,
     settings: Optional[Mapping[str, Any]],
     actions: str,
     steps_per_action: int,
@@ -28,12 +31,9 @@ def make_worlds(
     threads: Optional[int],
 ) -> tuple[Problem, Worlds]:
     """The problem and the worlds of an environment; every argument is checked."""
-    if body is not None:
-        raise ValueError(
-            f"body is {body!r}; allowed: None: there are no evolved bodies yet; settings such as"
-            ' {"agent.limbs": 6} or {"agent.limb_length_m": 1.5} change the body of the preset'
-        )
-    problem = Problem(os.fspath(preset), plain(stairs), plain(settings), "environment")
+    if isinstance(body, (str, os.PathLike)):
+        body = load_champion(body)
+    problem = Problem(os.fspath(preset), plain(stairs), plain(settings), "environment", None, body)
     worlds = Worlds(
         problem,
         count,
@@ -46,6 +46,21 @@ def make_worlds(
         threads=threads,
     )
     return problem, worlds
+
+
+def program() -> Optional[str]:
+    """The path of the program: what the variable SNAKES names, or ``snakes`` on the PATH; None without it."""
+    return shutil.which(os.environ.get("SNAKES") or "snakes")
+
+
+def check_render_mode(render_mode: Optional[str], modes: list[str]) -> None:
+    """Refuses a way to render that an environment does not have."""
+    if render_mode is None or render_mode in modes:
+        return
+    allowed = ", ".join(["None", *map(repr, modes)])
+    if render_mode == "human":
+        allowed += "; 'human' needs one world without perturbation, and the program: on the PATH, or named by SNAKES"
+    raise ValueError(f"render_mode is {render_mode!r}; allowed: {allowed}")
 
 
 def plain(values: Any) -> Any:

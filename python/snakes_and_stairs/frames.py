@@ -42,13 +42,9 @@ def evaluations_frame(evaluations: Evaluations) -> pandas.DataFrame:
 
 
 def run_frame(folder: Union[str, os.PathLike[str]]) -> pandas.DataFrame:
-    """A row per generation of a run: evaluations, disqualified, on the landing, statistics of the fitness, its hash."""
-    rows = []
-    for record in _core.load_run(folder)["generations"]:
-        row = {name: value for name, value in record.items() if name not in ("statistics", "species")}
-        row.update(record["statistics"] or {})
-        rows.append(row)
-    return _pandas().DataFrame(rows)
+    """A row per generation of a run, with the names of its lines of JSON: evaluations, disqualified, on the landing, statistics of the
+    fitness, its hash."""
+    return _pandas().DataFrame(_core.load_run(folder)["generations"])
 
 
 def champions_frame(folder: Union[str, os.PathLike[str]]) -> pandas.DataFrame:
@@ -66,8 +62,9 @@ def champions_frame(folder: Union[str, os.PathLike[str]]) -> pandas.DataFrame:
 def trajectory_frame(champion: Union[str, os.PathLike[str], Champion]) -> pandas.DataFrame:
     """The motion of a champion (or of its file), simulated again: a row per moment and limb.
 
-    Columns: ``time_s``, ``limb`` (the head is 1), ``x_m``, ``y_m``, ``z_m``, the quaternion ``qx``, ``qy``, ``qz``, ``qw``, and of the
-    joint behind the limb ``bend_rad``, ``twist_rad``, ``bend_rate_rad_s``, ``twist_rate_rad_s`` (NaN for the last limb).
+    Columns, as in exported tables: ``time_s``, ``limb`` (the head is 1), ``x_m``, ``y_m``, ``z_m``, the unit quaternion
+    ``rotation_x``, ``rotation_y``, ``rotation_z``, ``rotation_w``, and of the joint in front of the limb ``joint_bend_rad``,
+    ``joint_twist_rad``, ``joint_bend_rate_rad_s``, ``joint_twist_rate_rad_s`` (NaN for the head).
     """
     import numpy as np
 
@@ -82,11 +79,12 @@ def trajectory_frame(champion: Union[str, os.PathLike[str], Champion]) -> pandas
     }
     for index, name in enumerate(("x_m", "y_m", "z_m")):
         columns[name] = motion["position_m"][:, :, index].ravel()
-    for index, name in enumerate(("qx", "qy", "qz", "qw")):
-        columns[name] = motion["quaternion_xyzw"][:, :, index].ravel()
-    for name in ("bend_rad", "twist_rad", "bend_rate_rad_s", "twist_rate_rad_s"):
-        of_tail = np.full((moments, 1), np.nan)
-        columns[name] = np.hstack([motion[name], of_tail]).ravel()
+    for index, name in enumerate(("rotation_x", "rotation_y", "rotation_z", "rotation_w")):
+        columns[name] = motion["rotation_xyzw"][:, :, index].ravel()
+    of_head = np.full((moments, 1), np.nan)
+    for name, values in motion.items():
+        if name.startswith("joint_"):
+            columns[name] = np.hstack([of_head, values]).ravel()
     return pandas.DataFrame(columns)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,8 @@ from ._core import Champion, Evaluations
 from ._options import Path, plain
 
 Settings = Optional[Mapping[str, Any]]
+#: Genomes: the rows of an array, or dictionaries with all genes.
+Genomes = Union[ArrayLike, Mapping[str, Any], Sequence[Mapping[str, Any]]]
 
 
 class Problem:
@@ -21,6 +24,10 @@ class Problem:
     A genome is a row of ``dimension`` numbers, each from 0 to 1: the position of a gene in its range (see :attr:`genes`).
     Numbers outside have a genome, too: an angle turns on, anything else is reflected at the ends of its range. So a method
     needs no bounds. All 64 bits of a number count: keep genomes as float64.
+
+    Where bodies or networks grow, or a controller learns (as in ``bodies``, ``creatures``, ``neat`` and ``xcs``), genomes have no
+    common length. There a genome is a dictionary with all genes as champions' files have them, in and out of every method, and
+    ``dimension`` and ``genes`` are refused.
 
     Arguments
         preset: a shipped preset (see :func:`presets`) or the path of a file.
@@ -36,11 +43,6 @@ class Problem:
         settings: Settings = None,
     ):
         self._core = _core.Problem(os.fspath(preset), plain(stairs), plain(settings), "evaluation")
-        self._arguments = (preset, plain(stairs), plain(settings))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        # So that it travels to other processes.
-        return _problem, self._arguments
 
     @property
     def preset(self) -> str:
@@ -72,36 +74,36 @@ class Problem:
         """Index, field (its path in a saved genome), name, unit and allowed values of each number of a genome."""
         return self._core.genes
 
-    def random(self, count: int, seed: int = 1) -> np.ndarray:
-        """``count`` random genomes as rows: the first generation of a run with this seed, bit for bit."""
+    def random(self, count: int, seed: int = 1) -> Union[np.ndarray, list[dict[str, Any]]]:
+        """``count`` random genomes: the first generation of a run with this seed, bit for bit."""
         return self._core.random(count, seed)
 
-    def evaluate(self, genomes: ArrayLike, *, threads: Optional[int] = None) -> Evaluations:
-        """Simulates genomes (an array of shape ``(n, dimension)``, or of ``(dimension,)`` for one) on all cores.
+    def evaluate(self, genomes: Genomes, *, threads: Optional[int] = None) -> Evaluations:
+        """Simulates genomes (an array of shape ``(n, dimension)``, or of ``(dimension,)`` for one; or dictionaries) on all cores.
 
         Each result depends on its genome alone, bit for bit: neither on the others nor on ``threads``. An interrupt ends it as
         soon as the snakes end that are being simulated.
         """
-        return self._core.evaluate(_rows(genomes), threads)
+        return self._core.evaluate(_packed(genomes), threads)
 
-    def decode(self, genomes: ArrayLike) -> list[dict[str, Any]]:
+    def decode(self, genomes: Genomes) -> list[dict[str, Any]]:
         """The genes of genomes as dictionaries, in their units, as champions' files have them."""
-        return self._core.decode(_rows(genomes))
+        return self._core.decode(_packed(genomes))
 
-    def genome_of(self, champion: Union[Path, Champion]) -> np.ndarray:
-        """The genome of a saved champion (or the path of its file) as a row.
+    def genome_of(self, champion: Union[Path, Champion]) -> Union[np.ndarray, dict[str, Any]]:
+        """The genome of a saved champion (or the path of its file): a row, or a dictionary.
 
-        It stands for the champion's genes to the last bit. A ``UserWarning`` tells where that is impossible: for an angle beyond
+        A row stands for the champion's genes to the last bit. A ``UserWarning`` tells where that is impossible: for an angle beyond
         a full turn, and for a gene so near to 0, between a negative and a positive end of its range, that 64 bits miss it.
         """
         if not isinstance(champion, Champion):
             champion = _core.load_champion(champion)
-        return self._core.point_of(champion)
+        return self._core.genome_of(champion)
 
     def save_champion(
         self,
         path: Path,
-        genome: ArrayLike,
+        genome: Union[ArrayLike, Mapping[str, Any]],
         *,
         seed: int = 0,
         generation: int = 1,
@@ -111,7 +113,7 @@ class Problem:
 
         ``seed``, ``generation`` and ``individual`` are written as its origin, for people. An interrupt leaves no file.
         """
-        self._core.save_champion(path, _rows(genome), seed, generation, individual)
+        self._core.save_champion(path, _packed(genome), seed, generation, individual)
 
     def __repr__(self) -> str:
         return f"<Problem {self.preset}: {self._core.controller}>"
@@ -128,13 +130,14 @@ class Search:
             search.tell(search.evaluate())
 
     Asked, evaluated by :meth:`evaluate` and told so, it makes the generations of ``snakes --no-render`` with the same settings
-    and seed, bit for bit. Strategies and controllers whose individuals are more than numbers (NEAT's networks, learners) do
-    the same, but :meth:`ask` refuses to describe them by an array; :meth:`save_champion` writes those, too.
+    and seed, bit for bit. Strategies whose individuals are more than numbers (bodies, NEAT's networks, learners) do the same;
+    their genomes are dictionaries: see :class:`Problem`. A search can be pickled and copied between any two calls, and goes on with
+    the same bits.
 
     Arguments
         preset, stairs, settings: as those of :class:`Problem`; here settings may also change the search.
         strategy: ``"halving"``, ``"ga"``, ``"cma_es"``, ``"map_elites"``, ``"novelty"``, ``"random"``, ``"neat"``, ``"q_learning"``,
-            ``"xcs"`` or ``"zcs"``; None for the preset's.
+            ``"xcs"``, ``"zcs"``, or one that varies bodies; None for the preset's. Those that evolve stairs are refused.
         seed: of all random numbers.
         founder: a champion, or the path of its file, from which the first generation descends.
     """
@@ -194,8 +197,8 @@ class Search:
         """Whether a run of these settings would end here. One may go on."""
         return self._core.is_over
 
-    def ask(self) -> np.ndarray:
-        """The genomes of the next generation as rows, each number from 0 to 1. Asking twice gives the same.
+    def ask(self) -> Union[np.ndarray, list[dict[str, Any]]]:
+        """The genomes of the next generation: rows of numbers from 0 to 1, or dictionaries. Asking twice gives the same.
 
         A row stands for the genome to the last bit; a ``UserWarning`` tells of one that does not (see :meth:`Problem.genome_of`).
         """
@@ -245,7 +248,7 @@ class Search:
 
 
 def evaluate(
-    genomes: ArrayLike,
+    genomes: Genomes,
     preset: Path = "climb",
     *,
     stairs: Settings = None,
@@ -256,11 +259,12 @@ def evaluate(
     return Problem(preset, stairs=stairs, settings=settings).evaluate(genomes, threads=threads)
 
 
-def _problem(preset: Path, stairs: Settings, settings: Settings) -> Problem:
-    return Problem(preset, stairs=stairs, settings=settings)
-
-
-def _rows(genomes: ArrayLike) -> np.ndarray:
+def _packed(genomes: Any) -> Union[np.ndarray, str]:
+    """Genomes as the core reads them: an array of rows, or a text of JSON."""
+    if isinstance(genomes, Mapping):
+        genomes = [genomes]
+    if isinstance(genomes, (list, tuple)) and any(isinstance(one, Mapping) for one in genomes):
+        return json.dumps(genomes)
     rows = np.atleast_2d(np.asarray(genomes, dtype=np.float64))
     if rows.ndim != 2:
         raise ValueError(f"genomes is of shape {rows.shape}; allowed: shape (n, dimension)")

@@ -9,10 +9,13 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from ._core import Champion
 from ._options import (
+    Body,
     Path,
     action_names,
     action_space,
+    check_render_mode,
     draw_seed,
     make_worlds,
     observation_space,
@@ -32,13 +35,17 @@ class SnakesAndStairsVectorEnv(VectorEnv):
             episode, with the reward 0), ``SAME_STEP`` (the last step begins the next episode; ``info["final_obs"]`` and
             ``info["final_info"]`` have what ended), or ``DISABLED`` (``reset(options={"reset_mask": mask})`` begins episodes).
 
-    ``info`` has arrays ``time_s``, ``y_m``, ``energy_j``, ``steps_climbed`` with a value per world; where an episode ended also
+    ``info`` has arrays ``time_s``, ``y_m``, ``energy_j``, ``fitness``, ``steps_climbed`` with a value per world; where an episode ended also
     ``evaluation``, a dictionary of arrays with the parts of an environment's ``evaluation``. As everywhere in Gymnasium, a mask
     beside each array, such as ``_evaluation``, tells in which worlds its values are valid: ``final_info`` tells only of worlds
     whose episode ended, and the information of a reset only of worlds that it reset.
     """
 
-    metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+    metadata = {
+        "render_modes": ["rgb_array"],
+        "render_fps": 60,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
 
     def __init__(
         self,
@@ -46,7 +53,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         preset: Path = "climb",
         *,
         stairs: Optional[Mapping[str, Any]] = None,
-        body: None = None,
+        body: Body = None,
         settings: Optional[Mapping[str, Any]] = None,
         actions: str = "targets",
         steps_per_action: int = 1,
@@ -56,13 +63,13 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         disqualification_penalty: float = 0.0,
         threads: Optional[int] = None,
         autoreset_mode: Union[str, AutoresetMode] = AutoresetMode.NEXT_STEP,
-        render_mode: None = None,
+        render_mode: Optional[str] = None,
+        width: int = 480,
+        height: int = 320,
     ):
-        if render_mode is not None:
-            raise ValueError(
-                f"render_mode is {render_mode!r}; allowed: None: save a champion and play it with `snakes replay`"
-            )
-        self.render_mode = None
+        check_render_mode(render_mode, ["rgb_array"])
+        self.render_mode = render_mode
+        self._size = (width, height)
         self.problem, self._worlds = make_worlds(
             num_envs,
             preset,
@@ -79,7 +86,6 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         )
         self.num_envs = num_envs
         self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self._actions = actions
         self.single_observation_space = observation_space(self._worlds)
         self.single_action_space = action_space(self._worlds)
@@ -87,6 +93,12 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         self.action_space = batch_space(self.single_action_space, num_envs)
         #: Actions per simulated second.
         self.actions_per_s = physics_rate_hz(self._worlds, steps_per_action)
+        fps = max(round(self.actions_per_s), 1)
+        self.metadata = {
+            **self.metadata,
+            "render_fps": fps,
+            "autoreset_mode": self.autoreset_mode,
+        }
         self._all = np.ones(num_envs, dtype=bool)
         # The worlds whose episode has ended.
         self._ended = np.zeros(num_envs, dtype=bool)
@@ -110,8 +122,27 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         return self._worlds.servo
 
     def poses(self, index: int) -> np.ndarray:
-        """Poses of the limbs of a world, head first: rows of x, y, z in m and a quaternion x, y, z, w."""
+        """Poses of the limbs of a world, head first: rows of x, y, z in m and the rotation as a unit quaternion x, y, z, w."""
         return self._worlds.poses(index)
+
+    def champion(
+        self, index: int, *, seed: int = 0, generation: int = 1, individual: int = 0
+    ) -> Champion:
+        """The episode of a world, which must be over and not begun anew, as a champion with recorded actions: see the single
+        environment. With ``AutoresetMode.SAME_STEP`` there is no moment for it."""
+        return self._worlds.champion(index, seed, generation, individual)
+
+    def save_episode(
+        self, index: int, path: Path, *, seed: int = 0, generation: int = 1, individual: int = 0
+    ) -> None:
+        """Writes :meth:`champion` to a file that the program replays, films, exports and examines, and shows in its window."""
+        self.champion(index, seed=seed, generation=generation, individual=individual).save(path)
+
+    def render(self) -> Optional[tuple[np.ndarray, ...]]:
+        """A picture of each world with ``render_mode="rgb_array"``: see the single environment."""
+        if self.render_mode != "rgb_array":
+            return None
+        return tuple(self._worlds.picture(index, *self._size) for index in range(self.num_envs))
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:

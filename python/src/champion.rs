@@ -8,30 +8,43 @@ use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Value, json};
-use snakes_core::Engine;
-use snakes_core::evolve;
+use snakes_core::evolve::{self, GenerationRecord};
 use snakes_core::genome::Genome;
 use snakes_core::save::{self, LoadedChampion, load_log};
 use snakes_core::schema::Choices;
-use snakes_core::score::{Rollout, Trial};
+use snakes_core::score::{Evaluation, Rollout, Trial};
 use snakes_core::world::Disqualification;
+use snakes_core::{Engine, Processors};
 use snakes_lab::run;
 use snakes_lab::run::headless::HeadlessError;
 
 use crate::batch::score_all;
-use crate::convert::{parsed, to_python};
-use crate::errors::{crashed, unusable};
+use crate::convert::{parsed, restorer, to_python};
+use crate::errors::{crashed, invalid, unusable};
 use crate::evaluations::Evaluations;
 
 /// A saved champion, as a Python class.
 #[pyclass(frozen, module = "snakes_and_stairs._core")]
 pub struct Champion {
-    loaded: LoadedChampion,
+    pub loaded: LoadedChampion,
+}
+
+/// Restores a champion from what pickle stored: the text of its file, and the engine that recorded it.
+#[pyfunction]
+pub fn unpacked_champion(text: &str, version: u32, processors: &str) -> PyResult<Champion> {
+    let mut loaded = save::parse_champion(Path::new("champion.ron"), text).map_err(unusable)?;
+    let processors = Processors::named("processors", processors).map_err(invalid)?;
+    loaded.engine = Engine { version, processors };
+    Ok(Champion { loaded })
 }
 
 impl Champion {
     pub fn genome(&self) -> &Genome {
         &self.loaded.champion.genome
+    }
+
+    pub fn evaluation(&self) -> &Evaluation {
+        &self.loaded.champion.evaluation
     }
 
     /// Makes a champion of this engine, without a recording and an exam.
@@ -116,7 +129,7 @@ pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, Py
     run.set_item("seed", plan.seed)?;
     run.set_item("founder", plan.founder.as_ref().map(|founder| founder.name().to_owned()))?;
     run.set_item("settings", to_python(py, &plan.settings)?)?;
-    run.set_item("generations", to_python(py, &records)?)?;
+    run.set_item("generations", to_python(py, &generations_of(&records)?)?)?;
     let list = PyList::empty(py);
     for (generation, loaded) in champions {
         let entry = PyDict::new(py);
@@ -126,6 +139,25 @@ pub fn load_run<'py>(py: Python<'py>, folder: PathBuf) -> PyResult<Bound<'py, Py
     }
     run.set_item("champions", list)?;
     Ok(run)
+}
+
+/// Returns the records of generations with the names that lines of JSON have for their values.
+fn generations_of(records: &[GenerationRecord]) -> PyResult<Vec<Value>> {
+    let mut before = 0;
+    let line = |record: &GenerationRecord| {
+        let mut line = serde_json::to_value(record).map_err(|error| crashed(error.to_string()))?;
+        if let Some(fields) = line.as_object_mut() {
+            fields.remove("first_on_landing");
+            let first = record.first_on_landing.map(|index| before + u64::from(index) + 1);
+            fields.insert("first_landing".to_owned(), json!(first));
+            if let Some(Value::Object(statistics)) = fields.remove("statistics") {
+                fields.extend(statistics);
+            }
+        }
+        before += u64::from(record.evaluations);
+        Ok(line)
+    };
+    records.iter().map(line).collect()
 }
 
 /// Returns the result that `snakes replay FILE --no-render --json` prints. Its `matches` is false if the replay differs from the
@@ -158,10 +190,26 @@ impl Champion {
         format!("<Champion of {}, seed {}: {}>", origin.preset, origin.seed, champion.reached())
     }
 
-    /// Trace hash of the record.
+    /// Packs the champion for pickle.
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (String, u32, &'static str))> {
+        let LoadedChampion { champion, engine, recording, exam } = &self.loaded;
+        let text = save::champion_text(champion, recording.as_ref(), exam).map_err(unusable)?;
+        let processors = engine.processors.choice().name;
+        Ok((restorer(py, "unpacked_champion")?, (text, engine.version, processors)))
+    }
+
+    /// Writes the champion to a file.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        self.store(&path)
+    }
+
+    /// Trace hash of the record, as files have it.
     #[getter]
-    fn trace_hash(&self) -> u64 {
-        self.loaded.champion.evaluation.trace_hash
+    fn trace_hash(&self) -> String {
+        format!("{:016x}", self.evaluation().trace_hash)
     }
 
     /// Simulates the champion again in its trial.
@@ -179,6 +227,10 @@ impl Champion {
         motion.to_python(py)
     }
 }
+
+/// Names of the numbers of a joint's state, as in tables of motion.
+const JOINT_STATES: [&str; 4] =
+    ["joint_bend_rad", "joint_twist_rad", "joint_bend_rate_rad_s", "joint_twist_rate_rad_s"];
 
 /// Motion of a snake, moment by moment: limbs from the head on, then joints from the head on.
 #[derive(Default)]
@@ -226,10 +278,8 @@ impl Motion {
         let time_s: Bound<'py, PyArray1<f64>> = self.time_s.clone().into_pyarray(py);
         arrays.set_item("time_s", time_s)?;
         arrays.set_item("position_m", of_limbs(&self.position_m, 3)?.into_pyarray(py))?;
-        arrays.set_item("quaternion_xyzw", of_limbs(&self.quaternion, 4)?.into_pyarray(py))?;
-        for (index, name) in
-            ["bend_rad", "twist_rad", "bend_rate_rad_s", "twist_rate_rad_s"].iter().enumerate()
-        {
+        arrays.set_item("rotation_xyzw", of_limbs(&self.quaternion, 4)?.into_pyarray(py))?;
+        for (index, name) in JOINT_STATES.iter().enumerate() {
             let values: Vec<f64> =
                 self.joint_state.iter().copied().skip(index).step_by(4).collect();
             let array = Array2::from_shape_vec((moments, joints), values).map_err(wrong)?;

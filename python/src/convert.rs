@@ -107,6 +107,11 @@ pub fn changes_in(
     settings.iter().map(change).collect()
 }
 
+/// Returns the function of the compiled module that restores what pickle stored.
+pub fn restorer<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("snakes_and_stairs._core")?.getattr(name)
+}
+
 /// Converts a value of the core into dictionaries, lists and numbers of Python. Numbers keep the digits that files have.
 pub fn to_python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(|error| crashed(error.to_string()))?;

@@ -9,6 +9,7 @@ use snakes_core::learn::Episode;
 use snakes_core::score::{Behaviour, Evaluation, Scored};
 use snakes_core::world::{Disqualification, Effort, Stairs};
 
+use crate::convert::restorer;
 use crate::errors::{crashed, invalid};
 
 /// The results of a batch of evaluations, one per snake, in order.
@@ -107,8 +108,7 @@ impl Evaluations {
         let results = self.scored.iter().zip(&self.genomes).map(packed).collect();
         let packed = Packed { stairs: self.stairs.clone(), results };
         let text = serde_json::to_string(&packed).map_err(|error| crashed(error.to_string()))?;
-        let unpack = py.import("snakes_and_stairs._core")?.getattr("unpacked_evaluations")?;
-        Ok((unpack, (text,)))
+        Ok((restorer(py, "unpacked_evaluations")?, (text,)))
     }
 
     fn __repr__(&self) -> String {
@@ -164,10 +164,12 @@ impl Evaluations {
         self.of(py, |of| of.steps.into())
     }
 
-    /// Hash over the bits of all poses. Equal hashes mean equal steps.
+    /// Hash over the bits of all poses, as files have it. Equal hashes mean equal steps.
     #[getter]
-    fn trace_hash<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
-        self.of(py, |of| of.trace_hash)
+    fn trace_hash<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let hashes = self.scored.iter().map(|scored| scored.evaluation.trace_hash);
+        let hashes: Vec<String> = hashes.map(|hash| format!("{hash:016x}")).collect();
+        py.import("numpy")?.call_method1("array", (hashes, "U16"))
     }
 
     /// y coordinate of the middle block at the end, in m.

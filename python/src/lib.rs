@@ -9,8 +9,11 @@ mod convert;
 mod errors;
 mod evaluations;
 mod problem;
+mod purpose;
 mod search;
 mod world;
+mod world_rules;
+mod world_threads;
 mod worlds;
 
 use pyo3::prelude::*;
@@ -27,6 +30,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(champion::replay, module)?)?;
     module.add_function(wrap_pyfunction!(problem::presets, module)?)?;
     module.add_function(wrap_pyfunction!(evaluations::unpacked_evaluations, module)?)?;
+    module.add_function(wrap_pyfunction!(problem::unpacked_problem, module)?)?;
+    module.add_function(wrap_pyfunction!(champion::unpacked_champion, module)?)?;
+    module.add_function(wrap_pyfunction!(search::unpacked_search, module)?)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("ENGINE_VERSION", snakes_core::ENGINE_VERSION)?;
     Ok(())
 }

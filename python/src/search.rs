@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard};
 
-use numpy::{IntoPyArray, PyArray2, PyReadonlyArray1};
-use pyo3::exceptions::PyRuntimeError;
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use snakes_core::evolve::{Candidate, Founder, Origin, RunPlan, Strategy, StrategyKind, begin};
+use serde::{Deserialize, Serialize};
+use snakes_core::evolve::{
+    Candidate, Founder, Origin, RunPlan, Strategy, StrategyKind, StrategyState, begin, resume,
+};
 use snakes_core::genome::{Genome, Segment};
 use snakes_core::score::{Evaluation, FITNESS_RANGE, Scored};
 use snakes_core::world::Disqualification;
@@ -15,7 +18,7 @@ use snakes_lab::run::caught;
 
 use crate::batch::{score_all, threads_of};
 use crate::champion::{Champion, evaluated};
-use crate::convert::{seed_of, whole};
+use crate::convert::{restorer, seed_of, whole};
 use crate::errors::{crashed, invalid, refused};
 use crate::evaluations::Evaluations;
 use crate::problem::Problem;
@@ -25,7 +28,38 @@ use crate::problem::Problem;
 pub struct Search {
     problem: Py<Problem>,
     plan: RunPlan,
+    founder: Option<Py<Champion>>,
     state: Mutex<SearchState>,
+}
+
+/// The state of a search in the form in which pickle stores it as text.
+#[derive(Serialize, Deserialize)]
+struct Packed {
+    strategy: StrategyState,
+    is_asked: bool,
+    finished: u32,
+    evaluated: u64,
+}
+
+/// Restores a search from what pickle stored.
+#[pyfunction]
+pub fn unpacked_search(
+    py: Python<'_>,
+    problem: Py<Problem>,
+    seed: u64,
+    founder: Option<Py<Champion>>,
+    text: &str,
+) -> PyResult<Search> {
+    let Packed { strategy, is_asked, finished, evaluated } =
+        serde_json::from_str(text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let plan = Search::plan(&problem, seed, founder.as_ref())?;
+    let strategy = py
+        .detach(|| caught(|| resume(&plan, finished, &strategy)))
+        .map_err(crashed)?
+        .map_err(invalid)?;
+    let asked = is_asked.then(|| strategy.ask());
+    let state = Mutex::new(SearchState { strategy, asked, finished, evaluated });
+    Ok(Search { problem, plan, founder, state })
 }
 
 struct SearchState {
@@ -56,6 +90,28 @@ impl Search {
     /// Locks the state. If another thread panicked during a change, the search cannot continue.
     fn state(&self) -> PyResult<MutexGuard<'_, SearchState>> {
         self.state.lock().map_err(|_| PyRuntimeError::new_err("the search failed before"))
+    }
+
+    /// Returns the plan of a search, checked.
+    fn plan(problem: &Py<Problem>, seed: u64, founder: Option<&Py<Champion>>) -> PyResult<RunPlan> {
+        let of = problem.get();
+        let mut plan = RunPlan::new(&of.preset, seed, of.settings.clone());
+        if let Some(champion) = founder {
+            let founder = Founder::new("a champion", champion.get().genome().clone());
+            plan = plan.starting_from(founder).map_err(invalid)?;
+        }
+        let evolution = &plan.settings.evolution;
+        let kind = evolution.strategy;
+        if kind.info().evolves_stairs {
+            let allowed = "a strategy whose snakes all have the stairs of the problem; the command snakes runs this one";
+            return Err(refused("evolution.strategy", kind.name(), allowed));
+        }
+        if evolution.ladder.is_used() {
+            let allowed = "0: a search has no ladder, whose rungs the command snakes climbs";
+            let field = "evolution.ladder.first_rise_m";
+            return Err(refused(field, evolution.ladder.first_rise_m, allowed));
+        }
+        Ok(plan)
     }
 
     /// Lets the strategy learn from results. `hashes` are those of the results' genomes; without hashes, results must be in the
@@ -97,23 +153,33 @@ impl Search {
         py: Python<'_>,
         problem: Py<Problem>,
         seed: &Bound<'_, PyAny>,
-        founder: Option<&Champion>,
+        founder: Option<Py<Champion>>,
     ) -> PyResult<Self> {
-        let seed = seed_of(seed)?;
-        let of = problem.get();
-        let mut plan = RunPlan::new(&of.preset, seed, of.settings.clone());
-        if let Some(champion) = founder {
-            let founder = Founder::new("a champion", champion.genome().clone());
-            plan = plan.starting_from(founder).map_err(invalid)?;
-        }
-        let kind = plan.settings.evolution.strategy;
-        if kind.info().evolves_stairs {
-            let allowed = "a strategy whose snakes all have the stairs of the problem; the command snakes runs this one";
-            return Err(refused("evolution.strategy", kind.name(), allowed));
-        }
+        let plan = Self::plan(&problem, seed_of(seed)?, founder.as_ref())?;
         let strategy = py.detach(|| caught(|| begin(&plan))).map_err(crashed)?;
         let state = SearchState { strategy, asked: None, finished: 0, evaluated: 0 };
-        Ok(Self { problem, plan, state: Mutex::new(state) })
+        Ok(Self { problem, plan, founder, state: Mutex::new(state) })
+    }
+
+    /// Packs the search for pickle: it goes on with the same bits.
+    #[expect(clippy::type_complexity, reason = "a function and its arguments")]
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Py<Problem>, u64, Option<Py<Champion>>, String))> {
+        let packed = {
+            let SearchState { strategy, asked, finished, evaluated } = &*self.state()?;
+            Packed {
+                strategy: strategy.state(),
+                is_asked: asked.is_some(),
+                finished: *finished,
+                evaluated: *evaluated,
+            }
+        };
+        let text = serde_json::to_string(&packed).map_err(|error| crashed(error.to_string()))?;
+        let founder = self.founder.as_ref().map(|founder| founder.clone_ref(py));
+        let arguments = (self.problem.clone_ref(py), self.plan.seed, founder, text);
+        Ok((restorer(py, "unpacked_search")?, arguments))
     }
 
     #[getter]
@@ -157,12 +223,10 @@ impl Search {
         Ok(self.plan.is_over(state.finished, state.evaluated, next))
     }
 
-    /// Returns the points of the next generation.
-    fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let problem = self.problem.get();
-        problem.check_is_array()?;
+    /// Returns the genomes of the next generation: the rows of an array, or dictionaries.
+    fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let genomes = self.state()?.genomes();
-        problem.points_of(py, &genomes)
+        self.problem.get().described(py, &genomes)
     }
 
     /// Evaluates the next generation as a run does.

@@ -1,79 +1,15 @@
 //! One world of an environment: a rollout whose torques come from outside, and the snake's senses.
 
 use pyo3::prelude::*;
-use snakes_core::control::{ExternalControl, Perception, SenseInfo, SenseKind};
-use snakes_core::genome::{ControllerKind, Genome, GenomeSpace};
-use snakes_core::rng::{Purpose, stream};
-use snakes_core::score::{Evaluation, Perturbation, PerturbationRange, Rollout, Trial};
-use snakes_core::world::{BodyPlan, Disqualification, JointTorque};
+use snakes_core::control::ExternalControl;
+use snakes_core::genome::Genome;
+use snakes_core::genome::controllers::RecordedActions;
+use snakes_core::score::{Evaluation, Rollout};
+use snakes_core::world::{Disqualification, JointTorque};
 use snakes_lab::run::caught;
 
 use crate::errors::{crashed, invalid};
-
-/// Meaning of an action's number for each joint axis.
-#[derive(Clone, Copy, PartialEq)]
-pub enum ActionKind {
-    /// The number is the target angle of a servo, in rad.
-    Targets,
-    /// The number is a torque, in N·m.
-    Torques,
-}
-
-/// Rules that all worlds of an environment share.
-pub struct WorldRules {
-    pub trial: Trial,
-    /// Genome that gives the snake its body. Its controller is not used.
-    pub genome: Genome,
-    pub actions: ActionKind,
-    pub steps_per_action: u32,
-    pub stiffness_nm_per_rad: f32,
-    pub damping_nms_per_rad: f32,
-    pub perturbation: Option<PerturbationRange>,
-    /// Penalty on the reward of the step in which the snake is disqualified.
-    pub disqualification_penalty: f64,
-}
-
-/// Returns the body in the middle of a space's ranges, with a controller that does nothing.
-pub fn middle_body(space: &GenomeSpace, trial: &Trial) -> Genome {
-    let space =
-        GenomeSpace { controller: ControllerKind::Signal, points_per_s: 1.0, ..space.clone() };
-    let shape = trial.genome_shape();
-    // A torque in the middle of its range is 0.
-    space.genome_at(&vec![0.5; space.dimension(shape)], shape)
-}
-
-impl WorldRules {
-    pub fn body(&self) -> BodyPlan {
-        self.trial.agent.body_plan(&self.genome)
-    }
-
-    /// Returns the greatest action of each joint axis in either direction: bend and twist, joint by joint.
-    pub fn action_limits(&self) -> Vec<f32> {
-        let limits = self.body().joints.into_iter().flat_map(|joint| match self.actions {
-            ActionKind::Targets => [joint.bend_limit_rad, joint.twist_limit_rad],
-            ActionKind::Torques => [joint.max_bend_torque_nm, joint.max_twist_torque_nm],
-        });
-        limits.collect()
-    }
-
-    /// Returns names and descriptions of the senses, in the order of an observation.
-    pub fn senses(&self) -> Vec<(String, SenseInfo)> {
-        let joints = self.trial.agent.joints();
-        let kinds = std::iter::repeat_n(&SenseKind::ALL[..4], joints)
-            .chain(std::iter::repeat_n(&SenseKind::ALL[4..12], joints + 1))
-            .chain([&SenseKind::ALL[12..]])
-            .flatten();
-        kinds.enumerate().map(|(i, kind)| (Perception::name(i, joints), kind.info())).collect()
-    }
-
-    /// Draws the perturbation of an episode from its seed.
-    fn draw(&self, seed: u64) -> Perturbation {
-        self.perturbation.map_or_else(Perturbation::default, |range| {
-            let mut rng = stream(seed, 0, 0, Purpose::Perturbation);
-            range.draw(self.trial.duration_s, self.trial.agent.limbs, &mut rng)
-        })
-    }
-}
+use crate::world_rules::{ActionKind, WorldRules};
 
 /// Outcome of a step of an environment.
 #[derive(Clone, Copy, Default)]
@@ -84,12 +20,17 @@ pub struct StepResult {
 }
 
 /// A world during an episode.
+#[derive(Clone)]
 pub struct World {
     rollout: Rollout,
     control: ExternalControl,
     torques: Vec<JointTorque>,
-    /// Score minus the cost of energy, after the last healthy step.
-    worth: f64,
+    /// Seed of the episode's perturbation.
+    pub seed: u64,
+    /// The actions so far, one after another, within their limits.
+    pub actions: Vec<f32>,
+    /// Fitness after the last healthy step.
+    fitness: f64,
     /// Whether the simulation panicked. The world can then only be reset.
     has_crashed: bool,
 }
@@ -116,8 +57,8 @@ impl World {
             );
             control.observe(0, rollout.simulation());
             let torques = vec![JointTorque::default(); plan.body.joints.len()];
-            let worth = f64::from(rollout.score());
-            Self { rollout, control, torques, worth, has_crashed: false }
+            let (fitness, actions) = (f64::from(rollout.fitness()), Vec::new());
+            Self { rollout, control, torques, seed, actions, fitness, has_crashed: false }
         })
         .map_err(crashed)
     }
@@ -133,13 +74,12 @@ impl World {
     }
 
     fn take_steps(&mut self, rules: &WorldRules, limits: &[f32], action: &[f32]) -> StepResult {
-        let clamped = |axis: usize| match (action.get(axis), limits.get(axis)) {
-            (Some(value), Some(limit)) => value.clamp(-limit, *limit),
-            _ => 0.0,
-        };
+        let first = self.actions.len();
+        let clamped = action.iter().zip(limits).map(|(value, limit)| value.clamp(-limit, *limit));
+        self.actions.extend(clamped);
+        let commands = self.actions.get(first..).unwrap_or_default().as_chunks::<2>().0;
         for _ in 0..rules.steps_per_action {
-            let joints = 0..self.torques.len();
-            let commands = joints.map(|joint| [clamped(2 * joint), clamped(2 * joint + 1)]);
+            let commands = commands.iter().copied();
             match rules.actions {
                 ActionKind::Targets => self.control.pull_towards(commands, &mut self.torques),
                 ActionKind::Torques => {
@@ -156,11 +96,9 @@ impl World {
                 break;
             }
         }
-        let energy_kj = f64::from(self.rollout.simulation().effort().energy_j) / 1000.0;
-        let cost = f64::from(rules.trial.energy_cost_per_kj) * energy_kj;
-        let worth = f64::from(self.rollout.score()) - cost;
-        let mut reward = worth - self.worth;
-        self.worth = worth;
+        let fitness = f64::from(self.rollout.fitness());
+        let mut reward = fitness - self.fitness;
+        self.fitness = fitness;
         let terminated = self.is_disqualified();
         if terminated {
             reward -= rules.disqualification_penalty;
@@ -177,6 +115,30 @@ impl World {
 
     pub fn rollout(&self) -> &Rollout {
         &self.rollout
+    }
+
+    /// Returns the genome that plays the actions of the episode back.
+    pub fn recorded(&self, rules: &WorldRules) -> Genome {
+        let servo = [rules.stiffness_nm_per_rad, rules.damping_nms_per_rad];
+        let recorded = RecordedActions {
+            values: &self.actions,
+            joints: self.torques.len(),
+            steps_per_action: rules.steps_per_action,
+            steps_per_s: rules.trial.physics.steps_per_s,
+            duration_s: rules.trial.duration_s,
+            servo: (rules.actions == ActionKind::Targets).then_some(servo),
+        };
+        Genome { controller: recorded.genes(), ..rules.genome.clone() }
+    }
+
+    /// Returns whether no step was taken yet.
+    pub fn is_fresh(&self) -> bool {
+        self.actions.is_empty()
+    }
+
+    /// Returns the fitness so far, as the program scores it.
+    pub fn fitness(&self) -> f64 {
+        self.fitness
     }
 
     /// Returns whether the episode has ended.

@@ -2,79 +2,42 @@
 
 use std::sync::Arc;
 
-use numpy::ndarray::{Array2, ArrayView1};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::ndarray::{Array2, Array3, ArrayView1};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use snakes_core::genome::{SERVO_DAMPING_RANGE, STIFFNESS_RANGE_NM_PER_RAD};
-use snakes_core::schema;
-use snakes_core::score::{Evaluation, PerturbationRange};
+use pyo3::types::{PyDict, PyList, PyTuple};
+use snakes_core::score::{Evaluation, Repeats, Trial};
+use snakes_lab::export::{PICTURE_SIDES, snapshot};
+use snakes_lab::run::caught;
 
 use crate::batch::threads_of;
-use crate::convert::{changes_in, whole};
+use crate::champion::{Champion, evaluated};
+use crate::convert::whole;
 use crate::errors::{crashed, invalid, refused};
 use crate::problem::Problem;
-use crate::world::{ActionKind, StepResult, World, WorldRules, middle_body};
+use crate::world::{StepResult, World};
+use crate::world_rules::WorldRules;
+use crate::world_threads::WorldThreads;
 
 /// Worlds of an environment. Methods take flags, one per world; worlds whose flag is not set stay unchanged.
 #[pyclass(module = "snakes_and_stairs._core")]
 pub struct Worlds {
+    /// Arguments of the constructor by name, from which a copy in another process is made.
+    arguments: Py<PyDict>,
+    problem: Py<Problem>,
     rules: Arc<WorldRules>,
     limits: Arc<[f32]>,
     senses: usize,
     worlds: Vec<Option<World>>,
     /// Values of the senses, one row for each world.
     sensed: Array2<f32>,
-    threads: usize,
-    /// Threads, and the id of the process that started them, because threads do not survive a fork.
-    pool: Option<(u32, ThreadPool)>,
+    threads: WorldThreads,
 }
 
-/// Maximum number of worlds of one environment. Each takes about 70 KiB.
+/// Maximum number of worlds of one environment. Each takes about 70 KiB, and four bytes for each number of the actions of its
+/// episode.
 const MOST_WORLDS: u64 = 65_536;
-/// Maximum number of physics steps of one action.
-const MOST_STEPS_PER_ACTION: u64 = 1000;
-
-fn within(field: &str, value: f64, range: std::ops::RangeInclusive<f64>) -> PyResult<f32> {
-    if range.contains(&value) {
-        return Ok(value as f32);
-    }
-    Err(refused(field, value, &format!("{} to {}", range.start(), range.end())))
-}
-
-/// Reads the ranges of perturbations from Python: None for no perturbation, True for the usual ranges, or a dictionary, in which
-/// missing ranges are 0.
-fn perturbation_of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<PerturbationRange>> {
-    let Some(value) = value.filter(|value| !value.is_none()) else { return Ok(None) };
-    if let Ok(is_usual) = value.extract::<bool>() {
-        return Ok(is_usual.then(PerturbationRange::default));
-    }
-    let mut range = PerturbationRange {
-        friction: 0.0,
-        rise: 0.0,
-        density: 0.0,
-        start_m: 0.0,
-        turn_deg: 0.0,
-        tread: 0.0,
-        step_rate: 0.0,
-        shove_m_s: 0.0,
-        ..PerturbationRange::default()
-    };
-    for (name, text) in changes_in("perturbation", "", Some(value))? {
-        let path = schema::find(&range, &name).map_err(|error| {
-            let allowed = error.allowed.replace("(nearest) ", "");
-            refused("perturbation", format!("{name:?}"), &allowed)
-        })?;
-        schema::set_text(&mut range, &path, &text)
-            .map_err(|error| invalid(error.inside("perturbation")))?;
-    }
-    schema::check(&range).map_err(|error| invalid(error.inside("perturbation")))?;
-    Ok(Some(range))
-}
-
 impl Worlds {
     fn check_flags(&self, field: &str, length: usize) -> PyResult<()> {
         let worlds = self.worlds.len();
@@ -84,50 +47,15 @@ impl Worlds {
         Err(refused(field, format!("of length {length}"), &format!("{worlds}, one per world")))
     }
 
-    /// Starts the threads, unless one is enough or they already run in this process.
-    fn prepare_pool(&mut self) -> PyResult<()> {
-        let process = std::process::id();
-        let is_ready = self.pool.as_ref().is_some_and(|(of, _)| *of == process);
-        if is_ready || self.threads <= 1 {
-            return Ok(());
-        }
-        let pool = ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .thread_name(|index| format!("worlds-{index}"))
-            .build()
-            .map_err(|error| PyRuntimeError::new_err(format!("threads: {error}")))?;
-        // The threads of a parent process's pool do not exist in this process, so the pool must not wait for their end.
-        std::mem::forget(self.pool.replace((process, pool)));
-        Ok(())
-    }
-
     /// Calls `work` on all threads with the index, the world and the row of senses of each world.
     fn each<T: Send>(
         &mut self,
         py: Python<'_>,
         work: impl Fn(usize, &mut Option<World>, &mut [f32]) -> T + Sync + Send,
     ) -> PyResult<Vec<T>> {
-        self.prepare_pool()?;
-        let Self { worlds, sensed, pool, threads, senses, .. } = self;
+        let Self { worlds, sensed, threads, senses, .. } = self;
         let Some(rows) = sensed.as_slice_mut() else { return Ok(Vec::new()) };
-        let width = (*senses).max(1);
-        let results = py.detach(|| match pool {
-            Some((_, pool)) if worlds.len() > 1 => {
-                // With a few portions per thread their durations even out, and distributing them costs little.
-                let portion = (worlds.len() / (8 * *threads)).max(1);
-                pool.install(|| {
-                    let each = worlds.par_iter_mut().zip(rows.par_chunks_mut(width)).enumerate();
-                    each.with_min_len(portion)
-                        .map(|(index, (world, row))| work(index, world, row))
-                        .collect()
-                })
-            }
-            _ => {
-                let each = worlds.iter_mut().zip(rows.chunks_mut(width)).enumerate();
-                each.map(|(index, (world, row))| work(index, world, row)).collect()
-            }
-        });
-        Ok(results)
+        threads.each(py, worlds, rows, *senses, work)
     }
 
     /// Returns a value of each world, or `missing` for worlds without an episode.
@@ -159,7 +87,8 @@ impl Worlds {
         perturbation=None, disqualification_penalty=0.0, threads=None,
     ))]
     fn new(
-        problem: &Problem,
+        py: Python<'_>,
+        problem: Py<Problem>,
         count: &Bound<'_, PyAny>,
         actions: &str,
         steps_per_action: &Bound<'_, PyAny>,
@@ -169,55 +98,41 @@ impl Worlds {
         disqualification_penalty: f64,
         threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (trial, space) = (problem.settings.trial.clone(), &problem.settings.genome);
+        let arguments = PyDict::new(py);
+        arguments.set_item("problem", &problem)?;
+        arguments.set_item("count", count)?;
+        arguments.set_item("actions", actions)?;
+        arguments.set_item("steps_per_action", steps_per_action)?;
+        arguments.set_item("stiffness_nm_per_rad", stiffness_nm_per_rad)?;
+        arguments.set_item("damping_nms_per_rad", damping_nms_per_rad)?;
+        arguments.set_item("perturbation", perturbation)?;
+        arguments.set_item("disqualification_penalty", disqualification_penalty)?;
+        arguments.set_item("threads", threads)?;
         let count = whole("num_envs", count, 1..=MOST_WORLDS)? as usize;
-        let steps_per_action =
-            whole("steps_per_action", steps_per_action, 1..=MOST_STEPS_PER_ACTION)? as u32;
-        let actions = match actions {
-            "targets" => ActionKind::Targets,
-            "torques" => ActionKind::Torques,
-            _ => return Err(refused("actions", format!("{actions:?}"), "targets, torques")),
-        };
-        let servo = [
-            ("stiffness_nm_per_rad", stiffness_nm_per_rad, STIFFNESS_RANGE_NM_PER_RAD),
-            ("damping_nms_per_rad", damping_nms_per_rad, SERVO_DAMPING_RANGE),
-        ];
-        let wave = &space.wave;
-        let middle = (wave.stiffness_min_nm_per_rad + wave.stiffness_max_nm_per_rad) / 2.0;
-        let mut servo_values = [middle, wave.servo_damping_nms_per_rad];
-        for ((field, given, range), value) in servo.into_iter().zip(&mut servo_values) {
-            let Some(given) = given else { continue };
-            if actions == ActionKind::Torques {
-                return Err(refused(
-                    field,
-                    given,
-                    "None with actions=\"torques\", which no servo follows",
-                ));
-            }
-            *value = within(field, given, f64::from(*range.start())..=f64::from(*range.end()))?;
-        }
-        let [stiffness_nm_per_rad, damping_nms_per_rad] = servo_values;
-        within("disqualification_penalty", disqualification_penalty, 0.0..=1.0e6)?;
-        let rules = WorldRules {
-            genome: middle_body(space, &trial),
-            trial,
+        let rules = WorldRules::new(
+            problem.get(),
             actions,
             steps_per_action,
-            stiffness_nm_per_rad,
-            damping_nms_per_rad,
-            perturbation: perturbation_of(perturbation)?,
+            [stiffness_nm_per_rad, damping_nms_per_rad],
+            perturbation,
             disqualification_penalty,
-        };
-        rules.trial.check_genome(&rules.genome).map_err(invalid)?;
+        )?;
+        if rules.perturbation.is_none()
+            && let Some(reason) = World::new(&rules, 0)?.evaluation().disqualified
+        {
+            let value = format!("disqualified at the start: {}", reason.words());
+            return Err(refused("body", value, "a body that comes to rest on the ground"));
+        }
         let senses = rules.senses().len();
         Ok(Self {
+            arguments: arguments.unbind(),
+            problem,
             limits: rules.action_limits().into(),
             senses,
             rules: Arc::new(rules),
             worlds: (0..count).map(|_| None).collect(),
             sensed: Array2::zeros((count, senses)),
-            threads: threads_of(threads)?.min(count),
-            pool: None,
+            threads: WorldThreads::new(threads_of(threads)?.min(count)),
         })
     }
 
@@ -339,6 +254,7 @@ impl Worlds {
         state.set_item("y_m", of(|world| world.rollout().middle_m().y.into()))?;
         let energy_j = of(|world| world.rollout().simulation().effort().energy_j.into());
         state.set_item("energy_j", energy_j)?;
+        state.set_item("fitness", of(World::fitness))?;
         let steps_climbed = |world: &World| {
             let (rollout, middle) = (world.rollout(), world.rollout().middle_m());
             i64::from(rollout.stairs().steps_under(middle.to_array()))
@@ -374,18 +290,13 @@ impl Worlds {
         Ok(list)
     }
 
-    /// Returns the poses of a world's limbs, head first: x, y, z in m and a quaternion x, y, z, w.
+    /// Returns the poses of a world's limbs, head first: x, y, z in m and a unit quaternion x, y, z, w.
     fn poses<'py>(
         &self,
         py: Python<'py>,
         index: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let last = (self.worlds.len() as u64).saturating_sub(1);
-        let index = whole("index", index, 0..=last)?;
-        let Some(world) = self.worlds.get(index as usize).and_then(Option::as_ref) else {
-            return Err(PyRuntimeError::new_err("poses before reset: call reset() first"));
-        };
-        let rollout = world.rollout();
+        let rollout = self.world("poses", index)?.rollout();
         let poses = rollout.body().limb_poses(rollout.poses());
         let numbers = poses.iter().flat_map(|pose| {
             let (at, turn) = (pose.translation, pose.rotation);
@@ -394,9 +305,112 @@ impl Worlds {
         let array = Array2::from_shape_vec((poses.len(), 7), numbers.collect());
         Ok(array.map_err(|error| crashed(error.to_string()))?.into_pyarray(py))
     }
+
+    /// Returns the episode of a world, which must be over, as a champion whose genes are the actions.
+    fn champion(
+        &self,
+        py: Python<'_>,
+        index: &Bound<'_, PyAny>,
+        seed: &Bound<'_, PyAny>,
+        generation: &Bound<'_, PyAny>,
+        individual: &Bound<'_, PyAny>,
+    ) -> PyResult<Champion> {
+        let world = self.world("champion", index)?;
+        if self.rules.perturbation.is_some() {
+            let allowed = "None for an episode that becomes a champion, whose file has a trial and no perturbed world";
+            return Err(refused("perturbation", "set", allowed));
+        }
+        if !world.is_over() {
+            let allowed = "an episode that was terminated or truncated";
+            return Err(refused("the episode", "not over", allowed));
+        }
+        let trial = &self.rules.trial;
+        let repeats = Repeats { trials: 1, champion_trials: 0, ..trial.repeats.clone() };
+        let trial = Trial { repeats, ..trial.clone() };
+        let genome = world.recorded(&self.rules);
+        trial.check_genome(&genome).map_err(invalid)?;
+        let origin = self.problem.get().origin(seed, generation, individual)?;
+        let champion = evaluated(py, genome, trial, origin)?;
+        if champion.evaluation().trace_hash == world.evaluation().trace_hash {
+            return Ok(champion);
+        }
+        Err(crashed("the recorded actions move the snake otherwise than the episode".to_owned()))
+    }
+
+    /// Draws a world as a camera at its side sees it: rows of pixels of red, green and blue.
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        index: &Bound<'py, PyAny>,
+        width: &Bound<'py, PyAny>,
+        height: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let size = |field, value| whole(field, value, PICTURE_SIDES).map(|side| side as u32);
+        let (width, height) = (size("width", width)?, size("height", height)?);
+        let rollout = self.world("render", index)?.rollout();
+        let picture = py.detach(|| caught(|| snapshot(rollout, width, height))).map_err(crashed)?;
+        let shape = (height as usize, width as usize, 3);
+        let array = Array3::from_shape_vec(shape, picture.rgb);
+        Ok(array.map_err(|error| crashed(error.to_string()))?.into_pyarray(py))
+    }
+
+    /// The arguments with which pickle makes the worlds again, without their episodes.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyTuple>, Bound<'py, PyDict>) {
+        (PyTuple::empty(py), self.arguments.bind(py).clone())
+    }
+
+    /// Returns the episodes for pickle: the seed of each, and its actions so far, from which the world follows to the last bit.
+    fn __getstate__<'py>(&self, py: Python<'py>) -> Vec<Option<(u64, Bound<'py, PyArray1<f32>>)>> {
+        let episode = |world: &World| (world.seed, world.actions.clone().into_pyarray(py));
+        self.worlds.iter().map(|world| world.as_ref().map(episode)).collect()
+    }
+
+    /// Simulates the episodes again that pickle stored.
+    fn __setstate__(
+        &mut self,
+        py: Python<'_>,
+        state: Vec<Option<(u64, Vec<f32>)>>,
+    ) -> PyResult<()> {
+        self.check_flags("state", state.len())?;
+        let (rules, limits) = (Arc::clone(&self.rules), Arc::clone(&self.limits));
+        let restored = self.each(py, |index, world, row| {
+            let Some(Some((seed, actions))) = state.get(index) else { return Ok(()) };
+            let mut new = World::new(&rules, *seed)?;
+            for action in actions.chunks(limits.len().max(1)) {
+                new.step(&rules, &limits, action);
+            }
+            new.sense(row);
+            *world = Some(new);
+            Ok::<(), PyErr>(())
+        })?;
+        restored.into_iter().collect()
+    }
+
+    /// Copies the worlds in the middle of their episodes.
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> Self {
+        Self {
+            arguments: self.arguments.clone_ref(py),
+            problem: self.problem.clone_ref(py),
+            rules: Arc::clone(&self.rules),
+            limits: Arc::clone(&self.limits),
+            senses: self.senses,
+            worlds: self.worlds.clone(),
+            sensed: self.sensed.clone(),
+            threads: self.threads.unstarted(),
+        }
+    }
 }
 
 impl Worlds {
+    /// Returns a world in an episode, for a method with this name.
+    fn world(&self, method: &str, index: &Bound<'_, PyAny>) -> PyResult<&World> {
+        let last = (self.worlds.len() as u64).saturating_sub(1);
+        let index = whole("index", index, 0..=last)?;
+        let world = self.worlds.get(index as usize).and_then(Option::as_ref);
+        let message = || format!("{method} before reset: call reset() first");
+        world.ok_or_else(|| PyRuntimeError::new_err(message()))
+    }
+
     /// Refuses a step in a flagged world that has no episode, or whose episode is over.
     fn check_step(&self, index: usize, flag: bool, action: ArrayView1<'_, f32>) -> PyResult<()> {
         if !flag {
@@ -404,7 +418,7 @@ impl Worlds {
         }
         match &self.worlds[index] {
             None => return Err(PyRuntimeError::new_err("step before reset: call reset() first")),
-            Some(world) if world.is_over() => {
+            Some(world) if world.is_over() && !world.is_fresh() => {
                 let message = format!("the episode of world {index} is over: call reset() first");
                 return Err(PyRuntimeError::new_err(message));
             }

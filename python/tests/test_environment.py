@@ -5,7 +5,7 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
-from conftest import SHORT
+from conftest import SAVES, SHORT
 from gymnasium.utils.env_checker import check_env
 
 import snakes_and_stairs as sns
@@ -38,7 +38,7 @@ def wave(env):
 
 @pytest.mark.parametrize("actions", ["targets", "torques"])
 @pytest.mark.parametrize("perturbation", [None, True])
-@pytest.mark.parametrize("preset", ["climb", "report", "ice"])
+@pytest.mark.parametrize("preset", ["climb", "report", "ice", "squishy", "bodies", "creatures", "neat"])
 def test_gymnasiums_checker_has_no_complaints(preset, actions, perturbation):
     env = make(preset=preset, actions=actions, perturbation=perturbation)
     with warnings.catch_warnings():
@@ -69,15 +69,20 @@ def test_an_episode_is_truncated_at_the_end_of_the_trial():
     assert info["evaluation"]["physics_steps"] == 180
 
 
-def test_rewards_add_up_to_the_way_up_the_stairs():
-    env = make(settings={"trial.duration_s": 4})
-    env.reset()
-    start_m = env.unwrapped.poses()[2, 1]
+@pytest.mark.parametrize("fitness", ["climb", "furthest_y", "share", "height"])
+@pytest.mark.parametrize("steps_per_action", [1, 7])
+def test_r3_rewards_add_up_to_the_fitness(fitness, steps_per_action):
+    settings = {"trial.duration_s": 4, "trial.fitness": fitness, "trial.energy_cost_per_kj": 0.5}
+    env = make(settings=settings, steps_per_action=steps_per_action)
+    _, start = env.reset()
     _, rewards, _, info = episode(env, wave(env))
-    assert info["y_m"] != pytest.approx(start_m, abs=0.05)
-    assert rewards.sum() == pytest.approx(info["y_m"] - start_m, abs=1e-4)
-    # The evaluation takes the mean over the last half second, so it is near.
-    assert info["evaluation"]["fitness"] == pytest.approx(info["y_m"], abs=0.5)
+    assert info["fitness"] == info["evaluation"]["fitness"] != start["fitness"]
+    assert rewards.sum() == pytest.approx(info["fitness"] - start["fitness"], abs=1e-9)
+    if fitness == "climb":
+        # The mean over the last half second is not where the snake ended.
+        cost = 0.5 * info["energy_j"] / 1000
+        assert 1e-4 < abs(info["fitness"] + cost - info["y_m"]) < 0.5
+        assert start["fitness"] == pytest.approx(start["y_m"], abs=1e-6)
 
 
 def test_energy_costs_reward_as_it_costs_fitness():
@@ -86,7 +91,8 @@ def test_energy_costs_reward_as_it_costs_fitness():
     _, dear_rewards, _, same = episode(dear, wave(dear))
     assert info["energy_j"] == same["energy_j"] > 0
     cost = 2 * info["energy_j"] / 1000
-    assert free_rewards.sum() - dear_rewards.sum() == pytest.approx(cost)
+    # The fitness has 32 bits.
+    assert free_rewards.sum() - dear_rewards.sum() == pytest.approx(cost, abs=2e-6)
     lost = info["evaluation"]["fitness"] - same["evaluation"]["fitness"]
     assert lost == pytest.approx(cost, rel=1e-3)
 
@@ -238,7 +244,9 @@ def test_perturbations_follow_the_seed():
         ({"settings": {"genome.wave.harmonics": 3}}, "an environment has no genome and no search"),
         ({"settings": {"repeats.trials": 3}}, "an environment has no genome and no search"),
         ({"settings": {"surface.friction": object()}}, "surface.friction is a object; allowed: a number"),
-        ({"body": "centipede"}, "body is 'centipede'; allowed: None"),
+        ({"body": -1}, "body is -1; allowed: None, a seed, a champion or the path of its file"),
+        ({"body": SAVES / "six.ron", "settings": {"agent.limbs": 7}}, "settings is of trial.agent; allowed: no settings"),
+        ({"body": SAVES / "foam.ron", "preset": "bodies"}, "trial.physics.engine|physics.engine is lanes; allowed: rapier"),
         ({"actions": "muscles"}, 'actions is "muscles"; allowed: targets, torques'),
         ({"steps_per_action": 0}, "steps_per_action is 0; allowed: 1 to 1000"),
         ({"steps_per_action": -1}, "steps_per_action is -1; allowed: 1 to 1000"),
@@ -249,7 +257,8 @@ def test_perturbations_follow_the_seed():
         ({"perturbation": {"wind": 2}}, 'perturbation is "wind"'),
         ({"perturbation": 3}, "perturbation is a int; allowed: a dictionary"),
         ({"disqualification_penalty": float("inf")}, "disqualification_penalty is inf; allowed: 0 to"),
-        ({"render_mode": "human"}, "render_mode is 'human'; allowed: None"),
+        ({"render_mode": "ansi"}, "render_mode is 'ansi'; allowed: None, "),
+        ({"render_mode": "human", "perturbation": True}, "render_mode is 'human'; allowed: None, 'rgb_array'; 'human' needs one"),
     ],
 )
 def test_what_is_not_allowed_is_refused_in_one_line(arguments, message):

@@ -1,8 +1,10 @@
 """Runs, champions and results as dictionaries and data frames."""
 
+import json
 import sys
 
 import numpy as np
+import pandas
 import pytest
 from conftest import SAVES, SHORT
 
@@ -32,8 +34,36 @@ def test_a_run_is_a_dictionary_and_a_frame(run):
     assert len(champions) == len(loaded["champions"]) > 0
     for entry, (_, row) in zip(loaded["champions"], champions.iterrows()):
         results = entry["champion"].evaluate()
-        assert f"{results.trace_hash[0]:016x}" == row["trace_hash"]
+        assert results.trace_hash[0] == row["trace_hash"]
         assert row["energy_j"] == pytest.approx(results.energy_j[0], rel=1e-6)
+
+
+def test_r6_a_runs_frame_has_the_names_and_values_of_its_lines_of_json(snakes, tmp_path):
+    settings = {"trial.duration_s": 15, "evolution.population": 8, "evolution.generations": 2, "newborns": 6}
+    flags = [flag for name, value in settings.items() for flag in ("--set", f"{name}={value}")]
+    founder = ["--from", SAVES / "climber.ron"]
+    printed = snakes("run", "--json", "--preset", "climb", "--out", tmp_path, *founder, *flags)
+    lines = [json.loads(line) for line in printed.splitlines()]
+    lines = [line for line in lines if "generation" in line and "mean" in line]
+    [folder] = [path for path in tmp_path.iterdir() if path.is_dir()]
+    frame = sns.run_frame(folder)
+    assert len(frame) == len(lines) > 1
+    same = ["generation", "evaluations", "disqualified", "crashed", "on_landing", "first_landing", "hash"]
+    for line, (_, row) in zip(lines, frame.iterrows()):
+        for name in same:
+            assert row[name] == line[name] or line[name] is None and row[name] != row[name], name
+        for name in ("mean", "best", "median", "std", "worst"):
+            assert row[name] == pytest.approx(line[name], rel=1e-5), name
+    assert "first_on_landing" not in frame and frame["first_landing"].notna().any()
+
+
+def test_r6_a_trajectory_has_the_columns_of_an_exported_table(snakes, tmp_path):
+    path = tmp_path / "climber.csv"
+    snakes("export", SAVES / "climber.ron", "-o", path)
+    table, frame = pandas.read_csv(path), sns.trajectory_frame(SAVES / "climber.ron")
+    assert len(table) == len(frame) and set(frame.columns) <= set(table.columns)
+    for name in frame.columns:
+        assert np.allclose(table[name], frame[name], atol=1e-6, equal_nan=True), name
 
 
 def test_results_are_a_frame():
@@ -50,8 +80,8 @@ def test_a_trajectory_is_a_frame_with_a_row_per_moment_and_limb():
     frame, results = sns.trajectory_frame(path), sns.load_champion(path).evaluate()
     limbs = frame["limb"].max()
     assert len(frame) == (results.physics_steps[0] + 1) * limbs
-    assert frame[frame["limb"] == limbs]["bend_rad"].isna().all()
-    assert frame[frame["limb"] < limbs]["bend_rad"].notna().all()
+    assert frame[frame["limb"] == 1]["joint_bend_rad"].isna().all()
+    assert frame[frame["limb"] > 1]["joint_bend_rad"].notna().all()
     last = frame[frame["limb"] == limbs // 2 + 1].iloc[-1]
     assert last["y_m"] == pytest.approx(results.centre_y_m[0])
 

@@ -1,5 +1,6 @@
 """The package as its readers see it: stubs, docstrings, and the README's code."""
 
+import importlib.metadata
 import inspect
 import re
 import subprocess
@@ -15,6 +16,10 @@ def test_the_stub_agrees_with_the_compiled_module(tmp_path):
     command = [sys.executable, "-m", "mypy.stubtest", "snakes_and_stairs._core", "--ignore-disjoint-bases"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_r10_the_package_has_the_version_of_its_distribution():
+    assert sns.__version__ == importlib.metadata.version("snakes-and-stairs")
 
 
 def test_everything_public_has_a_docstring():

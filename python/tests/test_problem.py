@@ -42,7 +42,7 @@ def test_results_are_arrays_with_one_value_per_snake():
     results = problem.evaluate(problem.random(5))
     for name in sns.frames.EVALUATION_COLUMNS:
         assert getattr(results, name).shape == (5,), name
-    assert results.trace_hash.dtype == np.uint64
+    assert results.trace_hash.dtype == np.dtype("U16")
     assert results.disqualified.dtype == results.on_landing.dtype == bool
     assert results.steps_climbed.dtype == np.int64
     assert (results.frequency_hz > 0).all()
@@ -114,13 +114,40 @@ def test_every_kind_of_genome_that_is_an_array_can_be_evaluated(preset):
     assert np.isfinite(results.fitness).all()
 
 
-@pytest.mark.parametrize("preset", ["neat", "q-learning", "xcs", "zcs"])
-def test_genomes_that_are_more_than_numbers_are_refused(preset):
+@pytest.mark.parametrize("preset", ["bodies", "creatures", "neat", "q-learning", "xcs", "zcs"])
+def test_r4_genomes_that_are_more_than_numbers_are_dictionaries(preset, tmp_path, snakes):
     problem = Problem(preset, settings=SHORT)
-    with pytest.raises(ValueError, match="controller is .*; allowed: a controller whose genomes are arrays"):
-        problem.random(2)
-    with pytest.raises(ValueError, match="controller is"):
-        problem.evaluate(np.zeros((1, problem.dimension)))
+    genomes = problem.random(3, seed=2)
+    assert len(genomes) == 3 and problem.decode(genomes) == genomes
+    results = problem.evaluate(genomes)
+    assert problem.evaluate(genomes[1]).trace_hash[0] == results.trace_hash[1]
+    path = tmp_path / "found.ron"
+    problem.save_champion(path, genomes[2])
+    assert "equal to the record, bit for bit" in snakes("replay", path, "--no-render")
+    assert problem.genome_of(path) == genomes[2]
+    for name in ("dimension", "genes"):
+        with pytest.raises(ValueError, match=f"{name} is asked for; allowed: a problem whose genomes are arrays"):
+            getattr(problem, name)
+    with pytest.raises(ValueError, match="genomes is an array; allowed: a list of dictionaries"):
+        problem.evaluate(np.zeros((1, 1)))
+    with pytest.raises(ValueError, match="genomes is unreadable .*; allowed: genomes as"):
+        problem.evaluate([{"body": 3}])
+
+
+def test_r4_bodies_of_a_preset_differ_and_are_checked():
+    problem = Problem("bodies", settings=SHORT)
+    genomes = problem.random(20)
+    assert len({len(genome["body"]["segments"]) for genome in genomes}) > 3
+    genomes[1]["body"]["segments"][0]["length_m"] = 99.0
+    with pytest.raises(ValueError, match=r"genomes\[1\]\.segments is .*; allowed: 2 to 12 blocks"):
+        problem.evaluate(genomes)
+
+
+def test_dictionaries_of_an_array_are_the_same_snakes():
+    problem = Problem("climb", settings=SHORT)
+    genomes = problem.random(3)
+    same = problem.evaluate(problem.decode(genomes))
+    assert np.array_equal(problem.evaluate(genomes).trace_hash, same.trace_hash)
 
 
 @pytest.mark.parametrize(

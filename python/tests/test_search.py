@@ -1,5 +1,7 @@
 """The project's own strategies, driven from Python."""
 
+import copy
+import pickle
 import warnings
 
 import numpy as np
@@ -72,15 +74,65 @@ def test_a_search_makes_the_generations_of_the_command_line(preset, settings, sn
         assert len(results) == record["evaluations"]
         healthy = results.fitness[~results.disqualified]
         assert int(results.disqualified.sum()) == record["disqualified"]
-        assert healthy.max() == pytest.approx(record["statistics"]["best"], rel=1e-6)
-        assert healthy.mean() == pytest.approx(record["statistics"]["mean"], rel=1e-6)
+        assert healthy.max() == pytest.approx(record["best"], rel=1e-6)
+        assert healthy.mean() == pytest.approx(record["mean"], rel=1e-6)
         search.tell(results)
     assert search.is_over
 
 
+def small(preset):
+    """Settings of a small search. One generation of islands, those of "bodies", is larger than three of the other strategies."""
+    return {**SMALL, "evolution.generations": 20} if preset == "bodies" else SMALL
+
+
+def test_r4_a_ladder_is_refused_rather_than_ignored():
+    with pytest.raises(ValueError, match="evolution.ladder.first_rise_m is .*; allowed: 0: a search has no ladder"):
+        Search("ladder")
+
+
+@pytest.mark.parametrize("preset", MORE_THAN_NUMBERS)
+def test_r4_dictionaries_that_were_asked_for_are_those_snakes_to_the_last_bit(preset):
+    search = Search(preset, seed=3, settings=small(preset))
+    problem = Problem(preset, settings=SHORT)
+    for _ in range(2):
+        genomes, own = search.ask(), search.evaluate()
+        assert len(genomes) == search.population and all(isinstance(one, dict) for one in genomes)
+        from_genomes = problem.evaluate(genomes)
+        assert np.array_equal(own.trace_hash, from_genomes.trace_hash)
+        search.tell(from_genomes)
+    with pytest.raises(ValueError, match="dimension is asked for; allowed: a problem whose genomes are arrays"):
+        search.dimension
+
+
+@pytest.mark.parametrize("preset", ["climb", "report", *MORE_THAN_NUMBERS])
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda search: pickle.loads(pickle.dumps(search))])
+def test_r10_a_search_that_was_pickled_or_copied_goes_on_with_the_same_bits(preset, copied):
+    search = Search(preset, seed=5, settings=small(preset))
+    search.tell(search.evaluate())
+    for is_asked in (False, True):
+        if is_asked:
+            search.ask()
+        other = copied(search)
+        assert (other.generation, other.evaluations) == (search.generation, search.evaluations)
+        for _ in range(2):
+            results = [one.evaluate() for one in (search, other)]
+            assert np.array_equal(results[0].trace_hash, results[1].trace_hash)
+            for one, its in zip((search, other), results):
+                one.tell(its)
+
+
+def test_r10_a_search_from_a_founder_travels_with_it():
+    settings = {**SMALL, "trial.duration_s": 20}
+    search = Search("climb", strategy="ga", settings=settings, founder=str(SAVES / "climber.ron"))
+    other = pickle.loads(pickle.dumps(search))
+    assert np.array_equal(search.ask(), other.ask())
+
+
 @pytest.mark.parametrize("preset", ARRAYS)
 def test_a_row_that_was_asked_for_is_that_snake_to_the_last_bit(preset):
-    search = Search(preset, seed=3, settings=SMALL)
+    # A search has no ladder.
+    settings = {**SMALL, "ladder.first_rise_m": 0} if preset == "ladder" else SMALL
+    search = Search(preset, seed=3, settings=settings)
     problem = Problem(preset, settings=SHORT)
     with warnings.catch_warnings():
         # A row that stands for another snake would be warned of.
@@ -95,9 +147,7 @@ def test_a_row_that_was_asked_for_is_that_snake_to_the_last_bit(preset):
 
 @pytest.mark.parametrize("preset", ["report", "climb", *MORE_THAN_NUMBERS])
 def test_a_search_saves_the_snakes_that_it_found(preset, snakes, tmp_path):
-    # One generation of islands, those of "bodies", is larger than three of the other strategies.
-    settings = {**SMALL, "evolution.generations": 20} if preset == "bodies" else SMALL
-    search = Search(preset, seed=3, settings=settings)
+    search = Search(preset, seed=3, settings=small(preset))
     search.tell(search.evaluate())
     results = search.evaluate()
     best = results.ranking.argmax()
@@ -257,9 +307,6 @@ def test_what_is_not_allowed_is_refused():
         search.ask()
         with pytest.raises(ValueError, match="fitness alone; allowed: the result of evaluate"):
             search.tell(np.zeros(8))
-    for preset in ("neat", "q-learning"):
-        with pytest.raises(ValueError, match="controller is"):
-            Search(preset, settings=SMALL).ask()
     learner = Search("q-learning", settings=SMALL)
     count = len(learner.evaluate())
     with pytest.raises(ValueError, match="fitness alone"):

@@ -44,6 +44,7 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
         Ok(loaded)
     };
     let champions = files.iter().map(load).collect::<Result<Vec<_>, SaveError>>()?;
+    check_suites(suite, &suites, &champions)?;
     // On a server, the name of the first file identifies the command.
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
@@ -87,6 +88,22 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
         return print_json(&json!({"type": "done", "files": files.len()}));
     }
     print(&table(&suites, &rows))
+}
+
+/// Refuses a named suite that can say nothing of any of the champions.
+fn check_suites(
+    named: &[String],
+    suites: &[ExamSuite],
+    champions: &[LoadedChampion],
+) -> Result<(), Invalid> {
+    let concerns =
+        |suite: ExamSuite| champions.iter().any(|loaded| suite.concerns(&loaded.champion.genome));
+    let idle = suites.iter().copied().find(|suite| !named.is_empty() && !concerns(*suite));
+    let Some(suite) = idle else { return Ok(()) };
+    let others = ExamSuite::OPTIONS.iter().copied().filter(|suite| concerns(*suite));
+    let names: Vec<&str> = others.map(|suite| suite.choice().name).collect();
+    let allowed = format!("{} for these champions", names.join(", "));
+    Err(Invalid::new("--suite", suite.choice().name, allowed))
 }
 
 /// Returns the suites that the user names, or the usual suites if none is named; and whether MuJoCo is named.
@@ -256,6 +273,23 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use snakes_core::save::shipped_champion;
+
+    #[test]
+    fn r10_a_named_suite_that_says_nothing_of_the_champions_is_refused() {
+        let champions = [shipped_champion().expect("well formed")];
+        let checked = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            let (suites, _) = asked(&names).expect("suites");
+            check_suites(&names, &suites, &champions).map_err(|error| error.to_string())
+        };
+        assert_eq!(checked(&[]), Ok(()), "usual suites that say nothing are left out");
+        assert_eq!(checked(&["stairs", "step-rate"]), Ok(()));
+        let message = checked(&["stairs", "lesion"]).expect_err("a gait has no senses");
+        let expected = "--suite is lesion; allowed: trials, step-rate, stairs, surprise, shove, held-out, engine for \
+                        these champions";
+        assert_eq!(message, expected);
+    }
 
     fn result(suite: ExamSuite, each: &[(&str, f32)]) -> SuiteResult {
         SuiteResult {

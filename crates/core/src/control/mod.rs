@@ -28,6 +28,7 @@ mod sense;
 mod servo;
 mod signal;
 mod situation;
+mod targets;
 mod wave;
 mod wave_choice;
 mod wave_uses;
@@ -57,6 +58,7 @@ fn controller_of(genome: &Genome, body: &BodyPlan) -> Box<dyn Controller> {
         ControllerGenes::Signal(signals) => Box::new(signal::SignalPlayer(signals.clone())),
         ControllerGenes::Wave(waves) => Box::new(wave::WavePlayer(waves.clone())),
         ControllerGenes::Gait(gait) => Box::new(gait::GaitFollower::new(gait.clone())),
+        ControllerGenes::Targets(genes) => Box::new(targets::TargetFollower::new(genes.clone())),
         ControllerGenes::Reflex(genes) => Box::new(reflex::ReflexFollower::new(genes.clone())),
         ControllerGenes::Modular(genes) => Box::new(network::ModularController::new(genes.clone())),
         ControllerGenes::Central(genes) => Box::new(network::CentralController::new(genes.clone())),

@@ -1,6 +1,7 @@
 //! The observation: the state of the world as a controller perceives it.
 
 use super::{ActiveSenses, Perception};
+use crate::genome::controllers::point_at;
 use crate::world::{ClimbProgress, JointState, PhysicsSettings, Simulation};
 
 /// The senses that a controller needs. Other senses are not computed.
@@ -61,6 +62,11 @@ impl Observation {
     pub fn periods(&self, frequency_hz: f32) -> f64 {
         let at_start_s = f64::from(self.step) / f64::from(self.steps_per_s);
         f64::from(frequency_hz) * (at_start_s + f64::from(self.lead_s))
+    }
+
+    /// Returns the number of the point of a signal that holds in the step that begins; the first is 0.
+    pub fn point(&self, points_per_s: f32) -> usize {
+        point_at(self.step, points_per_s, self.steps_per_s)
     }
 
     /// Returns the state of each joint from the head at the moment for which the controller acts, extrapolated with its present rates;

@@ -10,8 +10,7 @@ pub struct SignalPlayer(pub TorqueSignals);
 
 impl Controller for SignalPlayer {
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
-        let points_per_step = f64::from(self.0.points_per_s) / f64::from(observation.steps_per_s);
-        let point = (f64::from(observation.step) * points_per_step) as usize;
+        let point = observation.point(self.0.points_per_s);
         let at_point = |signal: &[f32]| signal.get(point).or(signal.last()).copied().unwrap_or(0.0);
         for (torque, joint) in torques.iter_mut().zip(&self.0.joints) {
             torque.bend_nm = at_point(&joint.bend_nm);

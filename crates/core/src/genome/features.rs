@@ -41,6 +41,7 @@ mod tests {
             let features = space.features(&genome);
             let expected = match kind {
                 ControllerKind::Signal => 3 + 1 + 8,
+                ControllerKind::Targets => 3 + 2 + 8,
                 _ => space.dimension(shape),
             };
             assert_eq!(features.len(), expected, "{kind}");

@@ -32,7 +32,7 @@ impl Genome {
     }
 
     /// Checks that a controller of the kind `part_neurons` has neurons for each node of a branching body, and that a branching body has a
-    /// controller of this kind.
+    /// controller of this kind, or signals that a policy recorded.
     ///
     /// # Errors
     /// Returns the first of these two conditions that does not hold.
@@ -42,8 +42,9 @@ impl Genome {
             ControllerGenes::PartNeurons(genes) => {
                 within("part_neurons.nodes", genes.nodes.len(), nodes..=nodes)
             }
+            ControllerGenes::Signal(_) | ControllerGenes::Targets(_) => Ok(()),
             other if nodes > 0 => {
-                let allowed = "part_neurons, which grow with a branching body";
+                let allowed = "part_neurons, which grow with a branching body, or signal or targets, a recorded episode";
                 Err(Invalid::new("controller", other.kind(), allowed))
             }
             _ => Ok(()),

@@ -12,6 +12,8 @@ choices! {
         Signal = "signal", "Signal", "Free torque signals, point by point, as in the report.";
         Wave = "wave", "Wave", "Periodic torques: a wave per joint axis, one frequency.";
         Gait = "gait", "Gait", "Periodic joint angles, followed by a servo that senses the joint.";
+        Targets = "targets", "Targets",
+            "Free joint angles, point by point, followed by a servo: what a policy in Python did.";
         Reflex = "reflex", "Reflex", "A gait whose target angles and phases yield to what the snake senses.";
         Modular = "modular", "Modular", "The same small network at each joint; neighbours exchange messages.";
         Central = "central", "Central", "One network for the whole snake, from all senses to all joints.";
@@ -50,7 +52,7 @@ impl ControllerKind {
 
     /// Returns whether the controller senses contacts, attitude and the stairs ahead, besides its joints.
     pub fn senses_surroundings(self) -> bool {
-        !matches!(self, Self::Signal | Self::Wave | Self::Gait)
+        !matches!(self, Self::Signal | Self::Wave | Self::Gait | Self::Targets)
     }
 }
 

@@ -214,6 +214,25 @@ mod tests {
     }
 
     #[test]
+    fn r10_a_disqualified_champion_is_read_back_and_equals_its_replay() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("champion.ron");
+        let mut champion = champion();
+        champion.trial.health.speed_m_s = 1.0;
+        champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        assert!(champion.evaluation.disqualified.is_some());
+        store_champion(&path, &champion, None).expect("written");
+        let loaded = load_champion(&path).expect("read").champion;
+        assert_eq!(loaded, champion);
+        assert!(evaluate(&loaded.genome, &loaded.trial).agrees_with(&loaded.evaluation));
+        let healthy = champion_text(&self::champion(), None, &[]).expect("written");
+        assert!(
+            !healthy.contains("disqualified: Some"),
+            "files of healthy champions stay as they were"
+        );
+    }
+
+    #[test]
     fn only_files_of_rules_have_uses_of_waves_and_their_conditions_are_readable() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("champion.ron");

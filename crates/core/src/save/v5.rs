@@ -16,6 +16,7 @@ use crate::evolve::{Champion, Origin};
 use crate::genome::Genome;
 use crate::schema::is_default;
 use crate::score::{Evaluation, FITNESS_RANGE, Recording, SuiteResult, Trial};
+use crate::world::Disqualification;
 
 /// Maximum number of results of an exam.
 const MOST_RESULTS: usize = 100;
@@ -38,6 +39,9 @@ pub struct ChampionV5 {
     pub processors: Processors,
     pub origin: Origin,
     pub recorded: Evaluation,
+    /// Reason of a disqualification: of a snake that a user saved all the same, such as a policy's episode.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disqualified: Option<Disqualification>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen_by: Option<f32>,
     pub trial: Trial,
@@ -57,6 +61,7 @@ impl ChampionV5 {
             engine: ENGINE_VERSION,
             processors: Processors::THIS,
             origin,
+            disqualified: evaluation.disqualified,
             recorded: evaluation,
             chosen_by,
             trial,
@@ -79,7 +84,7 @@ impl ChampionV5 {
         let limbs = trial.agent.body_plan(&genome).parts.len() as u32;
         let recording = self.poses.map(|poses| poses.recording(limbs));
         let recording = recording.transpose().map_err(|error| error.inside("poses"))?;
-        let evaluation = self.recorded;
+        let evaluation = Evaluation { disqualified: self.disqualified, ..self.recorded };
         evaluation.check().map_err(|error| error.inside("recorded"))?;
         if let Some(fitness) = self.chosen_by {
             within("chosen_by", fitness, FITNESS_RANGE)?;

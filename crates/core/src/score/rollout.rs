@@ -217,7 +217,6 @@ impl Rollout {
     pub fn evaluation(&self) -> Evaluation {
         let effort = self.simulation.effort();
         let middle = self.middle_m();
-        let cost = self.conditions.energy_cost_per_kj * effort.energy_j / 1000.0;
         let world = &self.conditions.world;
         let moment = BehaviourMoment {
             middle_m: middle.to_array(),
@@ -228,14 +227,8 @@ impl Rollout {
             wave_uses: self.control.wave_uses(),
         };
         let behaviour = self.observer.behaviour(self.stairs(), &moment);
-        let duration_s = self.last_step() as f32 * world.physics.step_s();
-        let score = self.conditions.fitness.over(&self.recent).unwrap_or_else(|| self.score());
-        let score = match self.conditions.fitness {
-            Fitness::Share => score + self.way.bonus(duration_s),
-            _ => score,
-        };
         Evaluation {
-            fitness: score - cost,
+            fitness: self.fitness(),
             centre_y_m: middle.y,
             disqualified: self.disqualified,
             trace_hash: self.trace.digest(),
@@ -243,6 +236,21 @@ impl Rollout {
             effort: Some(effort),
             behaviour: Some(behaviour),
         }
+    }
+
+    /// Returns the fitness of the evaluation so far: by the trial's measure over the last half second, less the cost of energy.
+    pub fn fitness(&self) -> f32 {
+        let Conditions { fitness, energy_cost_per_kj, world, .. } = &*self.conditions;
+        let cost = energy_cost_per_kj * self.simulation.effort().energy_j / 1000.0;
+        let score = fitness.over(&self.recent).unwrap_or_else(|| self.score());
+        let score = match fitness {
+            Fitness::Share => {
+                let duration_s = self.last_step() as f32 * world.physics.step_s();
+                score + self.way.bonus(duration_s)
+            }
+            _ => score,
+        };
+        score - cost
     }
 
     /// Returns the score of the present state alone, by the trial's measure of fitness and without the cost of energy.

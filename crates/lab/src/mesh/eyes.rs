@@ -30,9 +30,14 @@ impl Eyes {
 
     /// Adds the pupils, which look forward and to the side.
     pub fn add_pupils_to(&self, solid: &mut MeshBuilder, sides: usize) {
-        for eye in self.centres_m {
+        self.pupils_m().into_iter().for_each(|(pupil, radius)| solid.ball(pupil, radius, sides));
+    }
+
+    /// Returns centre and radius of each pupil in the frame of the head, in metres.
+    pub fn pupils_m(&self) -> [(Vector, f32); 2] {
+        self.centres_m.map(|eye| {
             let gaze = Vector::new(eye.x.signum() * 0.8, 0.62, 0.22).normalize();
-            solid.ball(eye + gaze * self.radius_m * 0.5, self.radius_m * 0.64, sides);
-        }
+            (eye + gaze * self.radius_m * 0.5, self.radius_m * 0.64)
+        })
     }
 }

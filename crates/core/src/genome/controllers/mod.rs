@@ -18,11 +18,13 @@ mod neuron;
 mod neuron_choices;
 mod neuron_function;
 mod part_neurons;
+mod recorded;
 mod reflex;
 mod rules;
 mod servo;
 mod signal;
 mod tanh;
+mod targets;
 mod wave;
 mod wave_rule;
 
@@ -48,11 +50,14 @@ pub use part_neurons::{
     MOST_CREATURE_NEURONS, MOST_PART_NEURONS, NodeNeurons, PartInput, PartNeuron, PartNeurons,
     PartSense, PartSource,
 };
+pub use recorded::RecordedActions;
 pub use reflex::{REFLEX_INPUTS, ReflexGait};
 pub use rules::RuleGenes;
 pub use servo::ServoGenes;
+pub(crate) use signal::point_at;
 pub use signal::{JointSignals, TorqueSignals};
 pub use tanh::tanh_each;
+pub use targets::{JointTargets, TargetSignals};
 pub use wave::{Harmonic, JointWaves, Wave, Waves};
 pub use wave_rule::{JointGroup, RULE_SENSES, WaveRule};
 
@@ -107,6 +112,8 @@ registry! {
     Wave(Waves),
     /// Periodic joint angles, followed by a servo.
     Gait(Gait),
+    /// Free target angles, followed by a servo.
+    Targets(TargetSignals),
     /// A gait whose targets and phases are changed by reflexes.
     Reflex(ReflexGait),
     /// One small network, which is applied at each joint.

@@ -93,12 +93,7 @@ impl ControllerEncoding for TorqueSignals {
     }
 
     fn estimated_frequency_hz(&self) -> Option<f32> {
-        let changes = |signal: &Vec<f32>| {
-            signal.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count()
-        };
-        let points: usize = self.all().map(Vec::len).sum();
-        let changes: usize = self.all().map(changes).sum();
-        Some(self.points_per_s * changes as f32 / points.max(1) as f32 / 2.0)
+        Some(sign_changes_hz(self.points_per_s, self.all()))
     }
 
     fn widen(&self, space: &mut GenomeSpace) {
@@ -138,36 +133,71 @@ impl ControllerEncoding for TorqueSignals {
     }
 
     fn summary(&self, space: &GenomeSpace) -> Option<Vec<Feature>> {
-        let feature = |name: String, unit, value, most: f32| {
-            let range = GeneRange::Between(0.0, most.max(f32::MIN_POSITIVE));
-            Feature::new(name, unit, value, range)
-        };
-        // Torques that change their sign at every point have the highest frequency.
-        let most_hz = self.points_per_s / 2.0;
         let rhythm_hz = self.estimated_frequency_hz().unwrap_or(0.0);
-        let mut features = vec![feature("rhythm".to_owned(), "Hz", rhythm_hz, most_hz)];
+        let mut features = vec![rhythm(rhythm_hz, self.points_per_s)];
         for (joint, signals) in (1..).zip(&self.joints) {
             for (_, axis, torques) in signals.axes() {
-                let sum: f32 = torques.iter().map(|torque| torque.abs()).sum();
-                let mean = sum / torques.len().max(1) as f32;
-                let name = format!("joint {joint} {axis}, strength");
-                features.push(feature(name, "N·m", mean, space.torque_range_nm));
+                features.push(strength(joint, axis, "N·m", torques, space.torque_range_nm));
             }
         }
         Some(features)
     }
 
     fn commands(&self, _duration_s: f64) -> Option<JointCommands> {
-        let at_s = |index: usize| index as f64 / f64::from(self.points_per_s);
-        let points = |torques: &[f32]| {
-            let points = torques.iter().enumerate();
-            points.map(|(index, &torque_nm)| (at_s(index), f64::from(torque_nm))).collect()
-        };
+        let points = |torques: &[f32]| held_points(torques, self.points_per_s);
         let joint = |joint: &JointSignals| [points(&joint.bend_nm), points(&joint.twist_nm)];
         let joints = self.joints.iter().map(joint).collect();
         let quantity = "torque in N·m";
         Some(JointCommands { quantity, least_range: 1000.0, is_held: true, joints })
     }
+}
+
+/// Returns the number of the point of a signal that holds in physics step number `step`; the first of both is 0.
+pub fn point_at(step: u32, points_per_s: f32, steps_per_s: u32) -> usize {
+    let points_per_step = f64::from(points_per_s) / f64::from(steps_per_s);
+    (f64::from(step) * points_per_step) as usize
+}
+
+/// Returns half the number of sign changes per second, which is the frequency of a sine.
+pub(super) fn sign_changes_hz<'a>(
+    points_per_s: f32,
+    signals: impl Iterator<Item = &'a Vec<f32>>,
+) -> f32 {
+    let (mut points, mut changes) = (0, 0);
+    for signal in signals {
+        points += signal.len();
+        changes += signal.windows(2).filter(|pair| (pair[0] < 0.0) != (pair[1] < 0.0)).count();
+    }
+    points_per_s * changes as f32 / points.max(1) as f32 / 2.0
+}
+
+/// Returns times in seconds and values of a signal whose points hold until the next.
+pub(super) fn held_points(signal: &[f32], points_per_s: f32) -> Vec<(f64, f64)> {
+    let at_s = |index: usize| index as f64 / f64::from(points_per_s);
+    let points = signal.iter().enumerate();
+    points.map(|(index, &value)| (at_s(index), f64::from(value))).collect()
+}
+
+/// Makes the feature of the frequency of signals. Signals that change their sign with every point have the highest.
+pub(super) fn rhythm(rhythm_hz: f32, points_per_s: f32) -> Feature {
+    size_feature("rhythm".to_owned(), "Hz", rhythm_hz, points_per_s / 2.0)
+}
+
+/// Makes the feature of the mean size of the points of a signal, which are at most `most`.
+pub(super) fn strength(
+    joint: usize,
+    axis: &str,
+    unit: &'static str,
+    signal: &[f32],
+    most: f32,
+) -> Feature {
+    let sum: f32 = signal.iter().map(|value| value.abs()).sum();
+    let mean = sum / signal.len().max(1) as f32;
+    size_feature(format!("joint {joint} {axis}, strength"), unit, mean, most)
+}
+
+fn size_feature(name: String, unit: &'static str, value: f32, most: f32) -> Feature {
+    Feature::new(name, unit, value, GeneRange::Between(0.0, most.max(f32::MIN_POSITIVE)))
 }
 
 /// Fills a signal by the random walk of the report: the first point lies anywhere in ±`range_nm`, each next one within ±`step_nm` of the

@@ -96,7 +96,7 @@ impl Wave {
 }
 
 /// Quantity of the offset or an amplitude of a target angle, to either side.
-const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
+pub(super) const ANGLE: Quantity = Quantity::new("rad", -LARGEST_LIMIT_RAD..=LARGEST_LIMIT_RAD);
 /// Suffixes by which the names in charts count the terms of a wave.
 const TERMS: [&str; MOST_HARMONICS as usize] = ["", " 2", " 3", " 4", " 5"];
 
