@@ -146,8 +146,10 @@ fn mode_of(about: &Metadata) -> Option<u32> {
     mode
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
+    #![cfg(unix)]
+
     use super::*;
     use crate::save::files::names_in;
     use crate::save::library::fixtures::{champion_in, run_in, saves};

@@ -11,8 +11,6 @@ use crate::schema::{
     Need, Parts, PerPart, Section, SettingGroup, Walk, is_default, number, per_part, setting_group,
     settings, whole,
 };
-pub use limits::LEAST_RISE_M;
-use limits::LEAST_SLOPE_M;
 
 setting_group! {
     /// A straight staircase towards +y, with a landing behind its last step. A deep tread is an intermediate landing. A negative rise is a
@@ -113,6 +111,10 @@ impl SettingGroup for Stairs {
 
 /// Height over the ground, in metres, below which a tread counts as the ground itself: sums of rises are not exact.
 const GROUND_M: f32 = 1.0e-4;
+/// Least height difference between two steps, up or down, in metres. Below a centimetre, the engine's tolerances are as large as the step.
+pub const LEAST_RISE_M: f32 = 0.01;
+/// Least depth of a slope, in metres: a shallower slope would be a board without depth.
+const LEAST_SLOPE_M: f32 = 0.01;
 
 impl Stairs {
     /// Returns the position of riser number `index` (0 is the first) on the y axis, in metres.

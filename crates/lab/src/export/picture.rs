@@ -90,7 +90,7 @@ impl Camera {
 }
 
 /// A box or a ball.
-struct Solid {
+struct DrawnSolid {
     centre: Vector,
     /// Directions of its edges.
     axes: [Vector; 3],
@@ -103,7 +103,7 @@ struct Solid {
     color: Vector,
 }
 
-impl Solid {
+impl DrawnSolid {
     fn block(pose: Pose, half_m: Vector, color: Vector) -> Self {
         let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
         let (centre, around_m) = (pose.translation, half_m.length());
@@ -146,15 +146,16 @@ impl Solid {
     }
 }
 
-fn solids(rollout: &Rollout) -> Vec<Solid> {
+fn solids(rollout: &Rollout) -> Vec<DrawnSolid> {
     let colors = |colors: [[f32; 3]; 2]| colors.map(Vector::from);
     let (steps, limbs) = (colors(STEP_COLORS), colors(LIMB_COLORS));
     let stairs = rollout.stairs().solids().into_iter();
-    let mut solids: Vec<Solid> =
-        stairs.map(|of| Solid::block(of.pose, of.half_m, steps[of.step as usize % 2])).collect();
+    let mut solids: Vec<DrawnSolid> = stairs
+        .map(|of| DrawnSolid::block(of.pose, of.half_m, steps[of.step as usize % 2]))
+        .collect();
     for (pose, part) in rollout.poses().iter().zip(&rollout.body().parts) {
         let half_m = Vector::from(part.size_m()) / 2.0;
-        solids.push(Solid::block(*pose, half_m, limbs[part.limb % 2]));
+        solids.push(DrawnSolid::block(*pose, half_m, limbs[part.limb % 2]));
     }
     if let Some((pose, head)) = rollout.poses().first().zip(rollout.body().parts.first()) {
         let size_m = Vector::from(head.size_m());
@@ -162,17 +163,19 @@ fn solids(rollout: &Rollout) -> Vec<Solid> {
         let balls = eyes.centres_m.map(|centre| (centre, eyes.radius_m, EYE)).into_iter();
         let pupils = eyes.pupils_m().map(|(centre, radius_m)| (centre, radius_m, PUPIL));
         let balls = balls.chain(pupils);
-        solids.extend(balls.map(|(at, radius_m, color)| Solid::ball(*pose * at, radius_m, color)));
+        solids.extend(
+            balls.map(|(at, radius_m, color)| DrawnSolid::ball(*pose * at, radius_m, color)),
+        );
     }
     solids
 }
 
 /// Returns the first surface that a ray meets: its distance, its normal and its colour.
 fn first<'a>(
-    solids: &'a [Solid],
+    solids: &'a [DrawnSolid],
     from: Vector,
     direction: Vector,
-) -> Option<(f32, Vector, &'a Solid)> {
+) -> Option<(f32, Vector, &'a DrawnSolid)> {
     let met = solids.iter().filter_map(|solid| {
         let (distance_m, normal) = solid.meets(from, direction)?;
         (distance_m > APART_M).then_some((distance_m, normal, solid))
@@ -181,7 +184,7 @@ fn first<'a>(
 }
 
 /// Returns the colour that a ray sees, each part from 0 to 1.
-fn color_along(solids: &[Solid], from: Vector, direction: Vector, sun: Vector) -> Vector {
+fn color_along(solids: &[DrawnSolid], from: Vector, direction: Vector, sun: Vector) -> Vector {
     let to_ground_m = if direction.z < 0.0 { -from.z / direction.z } else { f32::INFINITY };
     let met = first(solids, from, direction).filter(|(distance_m, ..)| *distance_m < to_ground_m);
     let (distance_m, normal, color) = match met {

@@ -192,7 +192,7 @@ fn the_ranges_in_tooltips_are_those_of_the_settings() {
             }
             let wrong = if range.is_whole { wrong.floor() } else { wrong };
             let refused = with_field(settings, &full, &text(wrong)).expect_err(&full);
-            assert_eq!(refused.allowed, format!("{least} to {most}"), "{full} = {wrong}");
+            assert_eq!(refused.allowed, range.in_words(), "{full} = {wrong}");
         }
         let ends = range.slider.unwrap_or([range.least, range.most]);
         assert!(least <= ends[0] && ends[0] < ends[1] && ends[1] <= most, "{full}");

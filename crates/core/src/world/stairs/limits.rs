@@ -1,15 +1,11 @@
 //! Limits between the settings of a staircase: which stairs can be built.
 
-use super::{GROUND_M, Stairs, no_slope};
+use super::{GROUND_M, LEAST_RISE_M, LEAST_SLOPE_M, Stairs, no_slope};
 use crate::check::Invalid;
 use crate::schema::PerPart;
 
-/// Least height difference between two steps, up or down, in metres. Below a centimetre, the engine's tolerances are as large as the step.
-pub const LEAST_RISE_M: f32 = 0.01;
 /// Least depth of the flat part of a tread, in metres.
 const LEAST_FLAT_M: f32 = 0.1;
-/// Least depth of a slope, in metres: a shallower slope would be a board without depth.
-pub(super) const LEAST_SLOPE_M: f32 = 0.01;
 
 impl Stairs {
     /// Checks that no step leads below the ground, and that slopes and nosings have room.
