@@ -3,8 +3,6 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-use std::thread;
-use std::time::Duration;
 
 use serde_json::{Value, json};
 use xxhash_rust::xxh3::xxh3_64;
@@ -13,8 +11,8 @@ use super::args::{Args, CredentialFlags};
 use super::error::CliError;
 use super::output::{cancel_on_interrupt, is_interrupted, print, print_json};
 use snakes_cluster::{
-    Broker, BrokerOptions, ClusterError, Coordinator, CoordinatorOptions, Machines, RunNotice,
-    RunQueue, Simulator, WorkerOptions, host_name, machines, patiently, proof, purge, unique_name,
+    Broker, BrokerOptions, Coordinator, CoordinatorOptions, Machines, RunNotice, RunQueue,
+    Simulator, WorkerOptions, host_name, machines, proof, purge, unique_name, when_there_is_room,
     work,
 };
 use snakes_lab::run::Evaluator;
@@ -23,26 +21,6 @@ use snakes_lab::run::headless::say;
 fn server(args: &Args) -> BrokerOptions {
     let CredentialFlags { creds, tls_ca } = args.workers.credentials.clone();
     BrokerOptions { url: args.workers.nats.clone().unwrap_or_default(), creds, tls_ca }
-}
-
-/// Pause before an attempt is repeated for which the server lacked room.
-const PAUSE: Duration = Duration::from_secs(1);
-
-/// Repeats an attempt until the server has room for it, and tells the user once of each lack.
-fn when_there_is_room<T>(
-    attempt: impl FnMut() -> Result<T, ClusterError>,
-) -> Result<T, ClusterError> {
-    let mut told = None;
-    let waits = |error: &ClusterError| {
-        let line = format!("{error}; waiting");
-        if told.as_ref() != Some(&line) {
-            say(&line);
-            told = Some(line);
-        }
-        thread::sleep(PAUSE);
-        !is_interrupted()
-    };
-    patiently(waits, attempt)
 }
 
 /// Starts an evaluator on the workers of a server. Waits while the server lacks room.
@@ -61,7 +39,7 @@ pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Eva
         ends_if_refused: true,
         compute: Arc::new(Simulator),
     };
-    let coordinator = when_there_is_room(|| {
+    let coordinator = when_there_is_room(is_interrupted, || {
         Coordinator::start(Broker::connect(&server, &run)?, options.clone())
     })?;
     say(&format!("computing on the workers of {}, as run {run}", server.url));
@@ -72,7 +50,8 @@ pub fn coordinator(args: &Args, words: &str, place: &Path) -> Result<Arc<dyn Eva
 pub fn worker(args: &Args) -> Result<(), CliError> {
     let (threads, server) = (args.threads()?, server(args));
     let name = unique_name();
-    let broker = when_there_is_room(|| Broker::connect(&server, &name).map(Arc::new))?;
+    let broker =
+        when_there_is_room(is_interrupted, || Broker::connect(&server, &name).map(Arc::new))?;
     let options = WorkerOptions {
         name: name.clone(),
         threads,
@@ -85,7 +64,8 @@ pub fn worker(args: &Args) -> Result<(), CliError> {
         broker.url()
     ));
     let control = cancel_on_interrupt()?;
-    let evaluations = when_there_is_room(|| work(&broker, options.clone(), &control))?;
+    let evaluations =
+        when_there_is_room(is_interrupted, || work(&broker, options.clone(), &control))?;
     say(&format!("worker {name}: stopped; {evaluations} evaluations"));
     Ok(())
 }

@@ -1,10 +1,13 @@
 //! Errors of the connection to a server and of the work on it. Each message is one line.
 
 use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
 
 use super::trouble::Trouble;
 use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
+use snakes_lab::run::headless::say;
 
 /// Why the cluster cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -131,6 +134,30 @@ pub fn patiently<T>(
         }
         has_waited = true;
     }
+}
+
+/// Pause before an attempt is repeated for which the server lacked room.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// Repeats an attempt until the server has room for it, and prints each lack once. Gives up when `is_interrupted` returns `true`.
+///
+/// # Errors
+/// Returns the error of the last attempt.
+pub fn when_there_is_room<T>(
+    is_interrupted: impl Fn() -> bool,
+    attempt: impl FnMut() -> Result<T, ClusterError>,
+) -> Result<T, ClusterError> {
+    let mut told = None;
+    let waits = |error: &ClusterError| {
+        let line = format!("{error}; waiting");
+        if told.as_ref() != Some(&line) {
+            say(&line);
+            told = Some(line);
+        }
+        thread::sleep(PAUSE);
+        !is_interrupted()
+    };
+    patiently(waits, attempt)
 }
 
 #[cfg(test)]

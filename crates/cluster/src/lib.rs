@@ -33,7 +33,7 @@ pub use any_message::kinds_of_message;
 pub use broker::Broker;
 pub use compute::{Compute, Shared, Simulator};
 pub use coordinator::{Coordinator, CoordinatorOptions};
-pub use error::{ClusterError, patiently};
+pub use error::{ClusterError, when_there_is_room};
 pub use hello::{RunNotice, WorkerNotice, host_name, unique_name};
 pub use machines::{Machines, RunQueue, machines, purge};
 pub use outcome::Outcome;
