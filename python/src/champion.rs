@@ -177,6 +177,9 @@ pub fn replay<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyAny>
     }
 }
 
+/// Function that restores a champion, with its arguments: text of the file, version of the engine, name of the kind of processors.
+type Reduced<'py> = (Bound<'py, PyAny>, (String, u32, &'static str));
+
 #[pymethods]
 impl Champion {
     /// Returns the champion as a dictionary with the contents of its file, without the poses.
@@ -191,10 +194,7 @@ impl Champion {
     }
 
     /// Packs the champion for pickle.
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, u32, &'static str))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let LoadedChampion { champion, engine, recording, exam } = &self.loaded;
         let text = save::champion_text(champion, recording.as_ref(), exam).map_err(unusable)?;
         let processors = engine.processors.choice().name;

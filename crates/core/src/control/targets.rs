@@ -61,7 +61,7 @@ mod tests {
             let (mut values, mut torques) = (Vec::new(), [JointTorque::default(); 4]);
             while !outside.is_over() {
                 control.observe(outside.step(), outside.simulation());
-                if outside.step() % steps_per_action == 0 {
+                if outside.step().is_multiple_of(steps_per_action) {
                     // A policy of senses, whose actions no formula of the time gives.
                     let swing = if servo.is_some() { 0.8 } else { 600.0 };
                     let senses: Vec<f32> = control.perception().values().take(8).collect();

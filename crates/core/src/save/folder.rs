@@ -202,7 +202,7 @@ mod tests {
             let folders: Vec<&PathBuf> = runs.iter().map(|(folder, _)| folder).collect();
             assert!(folders.len() == 2 && folders.contains(&&bad), "{folders:?}");
             let readable: Vec<PathBuf> = saves.runs().into_iter().map(|run| run.folder).collect();
-            assert_eq!(readable, [good.clone()]);
+            assert_eq!(readable, std::slice::from_ref(&good));
         }
     }
 

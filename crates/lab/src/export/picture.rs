@@ -171,11 +171,11 @@ fn solids(rollout: &Rollout) -> Vec<DrawnSolid> {
 }
 
 /// Returns the first surface that a ray meets: its distance, its normal and its colour.
-fn first<'a>(
-    solids: &'a [DrawnSolid],
+fn first(
+    solids: &[DrawnSolid],
     from: Vector,
     direction: Vector,
-) -> Option<(f32, Vector, &'a DrawnSolid)> {
+) -> Option<(f32, Vector, &DrawnSolid)> {
     let met = solids.iter().filter_map(|solid| {
         let (distance_m, normal) = solid.meets(from, direction)?;
         (distance_m > APART_M).then_some((distance_m, normal, solid))
