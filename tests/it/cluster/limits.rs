@@ -113,8 +113,9 @@ fn f3_limits_of_connections_streams_and_consumers_are_waited_for() {
 
     let worker = worker_that_tells(&url);
     sleep(Duration::from_secs(5));
-    drop(taken);
+    // The limits change while the connection is taken, so that the worker finds them as soon as there is room for it.
     server.change(&limited(1, 1, 100));
+    drop(taken);
     sleep(Duration::from_secs(6));
     server.change(&limited(2, 1, 100));
     let mut one = Run::start(place.path(), &RUN.replace("generations 4", "generations 400"), &url);
