@@ -1,14 +1,15 @@
 """Writes the tables of `docs/baselines.md` from the finished runs.
 
-    python python/baselines/page.py
+python python/baselines/page.py
 """
 
 from __future__ import annotations
 
 import argparse
 from collections import defaultdict
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 from run import METHODS, ROOT, SEEDS, stored
@@ -66,9 +67,7 @@ def superiority(values: list[float], others: list[float]) -> float:
 def superiority_cell(values: list[float], others: list[float]) -> str:
     """The same with its 95 % interval (bootstrap)."""
     random = np.random.default_rng(1)
-    drawn = [
-        superiority(random.choice(values, len(values)), random.choice(others, len(others))) for _ in range(2000)
-    ]
+    drawn = [superiority(random.choice(values, len(values)), random.choice(others, len(others))) for _ in range(2000)]
     low, high = np.percentile(drawn, [2.5, 97.5])
     return f"{superiority(values, others):.2f} ({low:.2f}–{high:.2f})"
 
@@ -141,11 +140,24 @@ def comparisons(runs: dict[tuple[str, str], list[Row]]) -> tuple[str, list[str]]
         verdict = ("better" if better else "worse") if counts else "–"
         medians = f"{np.median(values):.1f}, {np.median(others):.1f}"
         cell = superiority_cell(values, others)
-        lines.append([NAMES[method], f"`{world}`", measure, medians, cell, f"{probability:.4f}", f"{holms:.4f}", verdict])
+        lines.append(
+            [NAMES[method], f"`{world}`", measure, medians, cell, f"{probability:.4f}", f"{holms:.4f}", verdict]
+        )
         if counts and better:
             sentences.append(f"**{NAMES[method]} beats our CMA-ES in `{world}`, {measure}: medians {medians}.**")
     head = ["method", "world", "measure", "medians: it, ours", "it exceeds ours", "p", "p, Holm", "it is"]
     return table(head, lines), sentences
+
+
+def greatest(world: str, runs: dict[str, list[Row]]) -> str:
+    """A sentence with the methods that lead in a world, whether or not by chance."""
+    medians = {NAMES[method]: float(np.median([row["fitness_m"] for row in of])) for method, of in runs.items() if of}
+    means = {NAMES[method]: float(np.mean([held_out(row) for row in of])) for method, of in runs.items() if of}
+    far, wide = max(medians, key=medians.__getitem__), max(means, key=means.__getitem__)
+    return (
+        f"In `{world}`, {far} has the greatest median fitness ({medians[far]:.1f} m), and {wide} climbs most held-out stairs"
+        f" ({means[wide]:.1f} of 60)."
+    )
 
 
 def hashes(runs: dict[tuple[str, str], list[Row]]) -> str:
@@ -153,6 +165,8 @@ def hashes(runs: dict[tuple[str, str], list[Row]]) -> str:
     seeds = sorted({row["seed"] for rows in runs.values() for row in rows})
     lines = []
     for (world, method), rows in runs.items():
+        if not rows:
+            continue
         of_seed = {row["seed"]: f"`{row['trace_hash']}`" for row in rows}
         lines.append([NAMES[method], f"`{world}`", *(of_seed.get(seed, "") for seed in seeds)])
     return table(["method", "world", *(str(seed) for seed in seeds)], lines)
@@ -164,6 +178,7 @@ def tables(rows: list[Row]) -> str:
     for row in rows:
         grouped[row["world"], row["method"]].append(row)
     runs = {(world, method): grouped[world, method] for world in WORLDS for method in METHODS}
+    present = [world for world in WORLDS if any(row["world"] == world for row in rows)]
     compared, sentences = comparisons(runs)
     wanted = len(METHODS) * len(WORLDS) * SEEDS
     spent = [row["simulated_s"] for row in rows]
@@ -171,12 +186,17 @@ def tables(rows: list[Row]) -> str:
     versions = rows[0]["versions"]
     if any(row["versions"] != versions or row["engine"] != rows[0]["engine"] for row in rows):
         raise ValueError("versions differ between runs; allowed: runs of one set of versions")
+    minutes = sum(row["cpu_s"] for row in rows) / 60
+    counted = (
+        f"{len(rows)} of {wanted} runs are done. Each may spend {', '.join(f'{b:,.0f}' for b in budgets)} simulated seconds"
+        f" and spent {min(spent):,.0f} to {max(spent):,.0f}; all together took {minutes:.0f} minutes of one core, without the"
+        " held-out stairs."
+    )
     parts = [
-        f"{len(rows)} of {wanted} runs are done. Each may spend {', '.join(f'{b:,.0f}' for b in budgets)} simulated seconds and spent"
-        f" {min(spent):,.0f} to {max(spent):,.0f}; all together took {sum(row['cpu_s'] for row in rows) / 60:.0f} minutes"
-        " of one core, without the held-out stairs.",
-        "\n".join(sentences) or "No method beats our CMA-ES by more than chance.",
-        *(results(world, {method: runs[world, method] for method in METHODS}) for world in WORLDS),
+        counted,
+        "\n".join(greatest(world, {method: runs[world, method] for method in METHODS}) for world in present),
+        "\n".join(sentences) or "No difference in favour of another method is more than chance (p < 0.05, corrected).",
+        *(results(world, {method: runs[world, method] for method in METHODS}) for world in present),
         "### Against our CMA-ES\n\n" + compared,
         "### Hashes\n\nTrace hash of the best snake of each run in its own world:\n\n" + hashes(runs),
         f"Engine {rows[0]['engine']}; " + ", ".join(f"{name} {number}" for name, number in versions.items()) + ".",

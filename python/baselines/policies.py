@@ -11,7 +11,6 @@ import gymnasium
 import numpy as np
 import torch
 from stable_baselines3 import PPO, SAC
-from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 from worlds import DURATION_S, HELD_OUT_DURATION_S, STEPS_PER_S, Arrival, Played, held_out
 
@@ -23,7 +22,7 @@ WORLDS_AT_ONCE = 8
 STEPS_PER_ACTION = 4
 #: Greatest target of a bend, in rad: that of the genomes' gaits (`genome.wave.angle_range_rad`).
 BEND_RAD = 1.0
-#: Part of the budget after which the policy is tried without chance.
+#: Parts of the budget, after each of which the policy is tried without chance.
 CHECKS = 20
 
 #: What each method changes of stable-baselines3's defaults.
@@ -149,20 +148,18 @@ class Learned:
 
 
 def learn(method: str, world: str, seed: int, budget_s: float, changes: dict[str, Any] | None = None) -> Learned:
-    """Learns until the budget is spent. Twenty times the policy plays the trial without chance, which counts; the best stays."""
+    """Learns until the budget is spent. About twenty times the policy plays the trial without chance, which counts; the best stays."""
     torch.set_num_threads(1)
     algorithm = {"ppo": PPO, "sac": SAC}[method]
     settings = {**SETTINGS[method], **(changes or {})}
-    single = DummyVecEnv(
-        [lambda: environment(world, steps_per_action=STEPS_PER_ACTION) for _ in range(WORLDS_AT_ONCE)]
-    )
+    single = DummyVecEnv([lambda: environment(world, steps_per_action=STEPS_PER_ACTION) for _ in range(WORLDS_AT_ONCE)])
     worlds = VecNormalize(single, norm_obs=True, norm_reward=True, gamma=settings.get("gamma", 0.99))
     model = algorithm("MlpPolicy", worlds, seed=seed, device="cpu", **settings)
     trial = own_world(world)
     learned, best = Learned(), None
     action_s = STEPS_PER_ACTION / STEPS_PER_S
-    # Whole roll-outs of PPO.
-    unit = WORLDS_AT_ONCE * settings.get("n_steps", 1)
+    # Both methods learn for whole roll-outs.
+    unit = WORLDS_AT_ONCE * settings["n_steps" if method == "ppo" else "train_freq"]
     portion = max(1, int((budget_s / CHECKS - DURATION_S) / action_s) // unit) * unit
     while learned.simulated_s + portion * action_s + DURATION_S <= budget_s:
         model.learn(portion, reset_num_timesteps=learned.steps == 0)

@@ -78,9 +78,7 @@ class Arrival:
     def observe(self, position_m: np.ndarray, time_s: float) -> None:
         """Takes in the middles of the blocks, rows of x, y and z in m, after a physics step."""
         x, y, z = position_m.T
-        on_top = (
-            (y >= self._from_m) & (y <= self._to_m) & (abs(x) <= self._half_width_m) & (z >= self._height_m)
-        )
+        on_top = (y >= self._from_m) & (y <= self._to_m) & (abs(x) <= self._half_width_m) & (z >= self._height_m)
         if not on_top.all():
             self._since_s = None
             return
