@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import hashlib
+import json
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -25,6 +26,9 @@ BEND_RAD = 1.0
 #: Parts of the budget, after each of which the policy is tried without chance.
 CHECKS = 20
 
+#: Settings of a trial that decide which places count.
+PLACES = ("stairs.tread_m", "stairs.first_riser_y_m", "agent.limbs", "agent.limb_length_m")
+
 #: What each method changes of stable-baselines3's defaults.
 SETTINGS: dict[str, dict[str, Any]] = {
     "ppo": {"n_steps": 256, "batch_size": 256, "n_epochs": 5},
@@ -39,19 +43,40 @@ SETTINGS: dict[str, dict[str, Any]] = {
 }
 
 
-class Bends(gymnasium.ActionWrapper):
-    """Actions from -1 to 1 for the bends alone. Twists are held straight: the genomes do not drive them either."""
+class Bends(gymnasium.Wrapper):
+    """Actions from -1 to 1 for the bends alone, and rewards at once.
 
-    def __init__(self, env: SnakesAndStairsEnv, bend_rad: float = BEND_RAD):
+    Twists are held straight: the genomes do not drive them either. A reward is the change of the place that the fitness `climb`
+    counts, without its mean over the last half second, so that it follows the action.
+    """
+
+    def __init__(self, env: SnakesAndStairsEnv):
         super().__init__(env)
         axes = env.action_space.shape[0]
-        self._bend_rad = bend_rad
         self._targets = np.zeros(axes, dtype=np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (axes // 2,), np.float32)
+        values = {name: json.loads(env.problem.settings[f"trial.{name}"]) for name in PLACES}
+        treads = np.broadcast_to(values["stairs.tread_m"], env.problem.steps).astype(np.float32)
+        self._riser_m = np.float32(values["stairs.first_riser_y_m"])
+        half_m = np.float32(values["agent.limbs"] * values["agent.limb_length_m"] / 2)
+        # Where the whole snake stands on the landing.
+        self._arrived_m = self._riser_m + treads[:-1].sum() + half_m
+        self._place_m = 0.0
 
-    def action(self, action: np.ndarray) -> np.ndarray:
-        self._targets[0::2] = action * self._bend_rad
-        return self._targets
+    def reset(self, **options: Any) -> tuple[np.ndarray, dict[str, Any]]:
+        senses, info = super().reset(**options)
+        self._place_m = self._place(info)
+        return senses, info
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        self._targets[0::2] = action * BEND_RAD
+        senses, _, terminated, truncated, info = super().step(self._targets)
+        before_m, self._place_m = self._place_m, self._place(info)
+        return senses, self._place_m - before_m, terminated, truncated, info
+
+    def _place(self, info: dict[str, Any]) -> float:
+        """The y that counts, in m: beside the stairs up to the first riser, on the landing up to where the snake fits on it."""
+        return min(info["y_m"], float(self._arrived_m if info["steps_climbed"] > 0 else self._riser_m))
 
 
 def environment(world: str, **arguments: Any) -> Bends:

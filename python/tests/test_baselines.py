@@ -120,3 +120,17 @@ def test_r13_a_policy_learns_alike_twice_and_within_its_budget():
     single = policies.environment("climb")
     single.arrival = worlds.Arrival(worlds.held_out()[0]["stairs"])
     assert policies.play(first.best, [single])[0].trace_hash == first.played.trace_hash
+
+
+def test_r13_a_policy_is_rewarded_at_once_for_what_the_fitness_counts():
+    policies = pytest.importorskip("policies", reason="stable-baselines3 is not installed", exc_type=ImportError)
+    world = policies.environment("climb", steps_per_action=policies.STEPS_PER_ACTION)
+    _, info = world.reset()
+    start_m, total_m, step, is_over = info["y_m"], 0.0, 0, False
+    while not is_over:
+        # A wave at first; at rest the mean over the last half second is the last place.
+        wave = 0.8 * np.sin(0.2 * step + np.arange(4)) if step < 200 else np.zeros(4)
+        _, reward, terminated, truncated, info = world.step(wave.astype(np.float32))
+        step, total_m, is_over = step + 1, total_m + reward, terminated or truncated
+    assert abs(info["y_m"] - start_m) > 0.5
+    assert total_m == pytest.approx(info["evaluation"]["fitness"] - start_m, abs=0.01)
