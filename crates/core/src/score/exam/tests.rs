@@ -123,3 +123,17 @@ fn the_held_out_stairs_keep_the_place_of_the_champions_own_and_count_whole_bodie
         ["equal", "irregular", "house", "nosing"].map(|class| (class, 1, 15)).to_vec();
     assert_eq!(result.classes(), classes);
 }
+
+#[test]
+fn r13_other_programs_read_the_held_out_stairs_of_the_exam() {
+    let conditions = ExamSuite::HeldOut.conditions(&Trial::default());
+    let lines = conditions.iter().map(|condition| {
+        let name = serde_json::to_string(&condition.label).expect("a text");
+        let stairs = serde_json::to_string(&condition.trial.stairs).expect("numbers");
+        format!("{{\"name\": {name}, \"stairs\": {stairs}}}\n")
+    });
+    let expected: String = lines.collect();
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/baselines/held_out.jsonl");
+    let found = std::fs::read_to_string(path).expect("the file of held-out stairs");
+    assert!(found == expected, "{path} should contain:\n{expected}");
+}
