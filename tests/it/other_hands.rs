@@ -88,9 +88,12 @@ fn f12_every_request_to_end_stops_a_run_after_its_generation_but_nohup_ignores_h
         ("HUP", vec!["-HUP", "-TERM"]),
     ] {
         let folder = folder();
-        let trap = if ignored.is_empty() { String::new() } else { format!("trap '' {ignored}; ") };
+        let begin = match ignored {
+            "" => "exec env --default-signal=HUP,INT".to_owned(),
+            ignored => format!("trap '' {ignored}; exec"),
+        };
         let mut child = Command::new("bash")
-            .args(["-c", &format!("{trap}exec {program} {order}")])
+            .args(["-c", &format!("{begin} {program} {order}")])
             .current_dir(folder.path())
             .env("HOME", folder.path())
             .stdout(Stdio::piped())

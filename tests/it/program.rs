@@ -15,6 +15,22 @@ pub fn snakes(folder: &Path, arguments: &str) -> Command {
     command
 }
 
+/// Returns a command like [`snakes`] whose program obeys SIGHUP and SIGINT even where the tests ignore them: under `nohup`, or in the
+/// background of a script.
+pub fn interruptible_snakes(folder: &Path, arguments: &str) -> Command {
+    let snakes = snakes(folder, arguments);
+    let mut command = Command::new("env");
+    command.arg("--default-signal=HUP,INT").arg(snakes.get_program()).args(snakes.get_args());
+    for (name, value) in snakes.get_envs() {
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+    }
+    command.current_dir(folder);
+    command
+}
+
 /// Runs the program until it ends.
 pub fn run(folder: &Path, arguments: &str) -> Output {
     snakes(folder, arguments).output().expect("the program starts")
