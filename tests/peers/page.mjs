@@ -28,7 +28,7 @@ async function visitor(options) {
   page.on("console", (message) => { if (message.type() === "error") notes.errors.push(message.text()); });
   page.on("dialog", async (dialog) => { notes.errors.push(`a dialog: ${dialog.message()}`); await dialog.dismiss(); });
   const began = Date.now();
-  await page.goto(pathToFileURL(file).href);
+  await page.goto(pathToFileURL(file).href, LONG);
   return { page, notes, began };
 }
 const drawn = (page) => page.waitForFunction(() => document.documentElement.dataset.drawn === "yes", null, LONG);
