@@ -96,13 +96,14 @@ fn f3_a_full_store_is_named_by_both_sides_and_the_run_goes_on_once_there_is_room
 fn f3_limits_of_connections_streams_and_consumers_are_waited_for() {
     let limited = |streams: u32, consumers: u32, connections: u32| {
         format!(
-            "max_connections: {connections}\njetstream {{ }}\nno_auth_user: a\naccounts {{ A {{ users = [ {{ user: a, \
+            "max_connections: {connections}\nauthorization {{ timeout: 60 }}\njetstream {{ }}\nno_auth_user: a\naccounts {{ A {{ users = [ {{ user: a, \
              password: b }} ], jetstream {{ max_streams: {streams}, max_consumers: {consumers} }} }} }}\n"
         )
     };
     let Some(mut server) = Server::start_as(&limited(2, 2, 1)) else { return };
     let (place, url) = (folder(), server.url());
     let address = url.trim_start_matches("nats://").to_owned();
+    // Without an own limit, the server would close a connection that says nothing after two seconds.
     let taken = TcpStream::connect(&address).expect("the only connection");
     sleep(Duration::from_millis(300));
     let listed = run(place.path(), &format!("machines --nats {url}"));
