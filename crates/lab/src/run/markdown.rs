@@ -41,21 +41,12 @@ mod tests {
         let row = |name: &str| vec![name.to_owned(), "1".to_owned()];
         let rows = ["champion", "a|b", "a\\|b", "a\nb", "\u{1b}[31mred"].map(row);
         let expected = "\
-<<<<<<< HEAD
-| champion       |  1 |
-|:---------------|---:|
-| a\\|b           |  1 |
-| a\\\\\\|b         |  1 |
-| a b            |  1 |
-| \\\\u001b[31mred |  1 |
-=======
 | champion       | 1 |
 |:---------------|--:|
 | a\\|b           | 1 |
 | a\\\\\\|b         | 1 |
 | a b            | 1 |
 | \\\\u001b[31mred | 1 |
->>>>>>> rowB
 ";
         assert_eq!(markdown_table(&rows, 1), expected);
     }
