@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from run import METHODS, ROOT, SEEDS, stored
 from scipy.stats import binomtest, bootstrap, mannwhitneyu
-from worlds import CLASSES, WORLDS
+from worlds import CLASSES, ROOT, SEEDS, WORLDS, stored
 
 Row = dict[str, Any]
 
@@ -28,6 +27,7 @@ NAMES = {
     "ppo": "PPO",
     "sac": "SAC",
 }
+METHODS = tuple(NAMES)
 OURS = "cma-es"
 #: Probability, corrected by Holm's method, below which a difference counts.
 ALPHA = 0.05
@@ -151,12 +151,13 @@ def comparisons(runs: dict[tuple[str, str], list[Row]]) -> tuple[str, list[str]]
 
 def greatest(world: str, runs: dict[str, list[Row]]) -> str:
     """A sentence with the methods that lead in a world, whether or not by chance."""
-    medians = {NAMES[method]: float(np.median([row["fitness_m"] for row in of])) for method, of in runs.items() if of}
-    means = {NAMES[method]: float(np.mean([held_out(row) for row in of])) for method, of in runs.items() if of}
+    shown = {method: f"{NAMES[method]} ({len(of)} run{'s' * (len(of) > 1)})" for method, of in runs.items() if of}
+    medians = {shown[method]: float(np.median([row["fitness_m"] for row in runs[method]])) for method in shown}
+    means = {shown[method]: float(np.mean([held_out(row) for row in runs[method]])) for method in shown}
     far, wide = max(medians, key=medians.__getitem__), max(means, key=means.__getitem__)
     return (
-        f"In `{world}`, {far} has the greatest median fitness ({medians[far]:.1f} m), and {wide} climbs most held-out stairs"
-        f" ({means[wide]:.1f} of 60)."
+        f"In `{world}`, {far} has the greatest median fitness, {medians[far]:.1f} m, and {wide} climbs most held-out stairs,"
+        f" {means[wide]:.1f} of 60 in the mean."
     )
 
 
@@ -192,6 +193,8 @@ def tables(rows: list[Row]) -> str:
         f" and spent {min(spent):,.0f} to {max(spent):,.0f}; all together took {minutes:.0f} minutes of one core, without the"
         " held-out stairs."
     )
+    if len(rows) < wanted:
+        counted += " **The others are still to be computed, and medians of few runs say little.**"
     parts = [
         counted,
         "\n".join(greatest(world, {method: runs[world, method] for method in METHODS}) for world in present),

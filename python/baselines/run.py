@@ -18,28 +18,16 @@ from pathlib import Path
 from typing import Any
 
 import genomes
-from worlds import WORLDS, by_class, combined_hash
+from worlds import ROOT, SEEDS, WORLDS, by_class, combined_hash, stored
 
 from snakes_and_stairs import ENGINE_VERSION
 
-ROOT = Path(__file__).resolve().parents[2]
 METHODS = (*genomes.METHODS, "ppo", "sac")
 #: Seeds of the table. Settings were chosen on others.
-FIRST_SEED, SEEDS = 401, 10
+FIRST_SEED = 401
 #: Simulated seconds that a run may spend.
 BUDGET_S = 12_000.0
 PACKAGES = ("snakes-and-stairs", "stable-baselines3", "torch", "cma", "ribs", "gymnasium", "numpy")
-
-
-def stored(path: Path) -> list[dict[str, Any]]:
-    """The finished runs. A last line that was cut off is left out; another bad line is an error."""
-    if not path.exists():
-        return []
-    text = path.read_text(encoding="utf-8")
-    complete = text[: text.rfind("\n") + 1]
-    if complete != text:
-        path.write_text(complete, encoding="utf-8")
-    return [json.loads(line) for line in complete.splitlines()]
 
 
 def store(path: Path, row: dict[str, Any]) -> None:

@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+ROOT = Path(__file__).resolve().parents[2]
+#: Number of seeds of the table.
+SEEDS = 10
 #: Presets in which every method learns.
 WORLDS = ("climb", "house")
 #: Physics steps per simulated second in both presets.
@@ -44,6 +47,17 @@ def held_out() -> list[dict[str, Any]]:
     """Names and stairs of the program's 60 held-out staircases; a test of the core compares this file with them."""
     text = Path(__file__).with_name("held_out.jsonl").read_text(encoding="utf-8")
     return [json.loads(line) for line in text.splitlines()]
+
+
+def stored(path: Path) -> list[dict[str, Any]]:
+    """The finished runs. A last line that was cut off is left out; another bad line is an error."""
+    if not path.exists():
+        return []
+    text = path.read_text(encoding="utf-8")
+    complete = text[: text.rfind("\n") + 1]
+    if complete != text:
+        path.write_text(complete, encoding="utf-8")
+    return [json.loads(line) for line in complete.splitlines()]
 
 
 def by_class(landed: list[bool]) -> dict[str, int]:
