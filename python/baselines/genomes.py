@@ -164,7 +164,7 @@ def play(problem: Problem, genome: np.ndarray) -> Played:
         steps=int(results.steps_climbed[0]),
         landed=bool(results.on_landing[0]),
         disqualified=bool(results.disqualified[0]),
-        trace_hash=f"{int(results.trace_hash[0]):016x}",
+        trace_hash=str(results.trace_hash[0]),
     )
 
 
