@@ -13,7 +13,7 @@ import json
 import os
 import platform
 import time
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,14 @@ FIRST_SEED = 401
 #: Simulated seconds that a run may spend.
 BUDGET_S = 12_000.0
 PACKAGES = ("snakes-and-stairs", "stable-baselines3", "torch", "cma", "ribs", "gymnasium", "numpy")
+
+
+def version_of(package: str) -> str | None:
+    """Version of a package; None if it is not installed, because not every method needs it."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
 
 
 def store(path: Path, row: dict[str, Any]) -> None:
@@ -87,7 +95,7 @@ def run(method: str, world: str, seed: int, budget_s: float, snakes: str) -> dic
         "progress": spent.progress,
         **own,
         "engine": ENGINE_VERSION,
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in PACKAGES}},
+        "versions": {"python": platform.python_version(), **{name: version_of(name) for name in PACKAGES}},
     }
 
 
