@@ -299,7 +299,7 @@ fn f12_every_request_to_end_cancels_a_film_and_ends_ffmpeg() {
 }
 
 #[test]
-fn f12_the_next_export_removes_what_a_kill_left() {
+fn f12_the_next_film_removes_what_a_kill_left() {
     if lacks("tidy", true) {
         return;
     }
@@ -317,9 +317,8 @@ fn f12_the_next_export_removes_what_a_kill_left() {
     // The second export has removed what the first left.
     let left = names_in(folder.path());
     assert!(left.len() == 1 && left[0].starts_with(".unfinished-"), "{left:?}");
-    let exported = stdout_of(folder.path(), &format!("export {CLIMBER} -o climber.urdf"));
-    assert_eq!(exported, "saved to climber.urdf\n");
-    assert_eq!(names_in(folder.path()), ["climber.urdf"]);
+    stdout_of(folder.path(), &format!("export {CLIMBER} -o climber.gif --size 160x90 --fps 10"));
+    assert_eq!(names_in(folder.path()), ["climber.gif"]);
 }
 
 #[test]
