@@ -1,4 +1,4 @@
-//! What all worlds of an environment have in common.
+//! Rules that all worlds of an environment share.
 
 use pyo3::prelude::*;
 use snakes_core::control::{Perception, SenseInfo, SenseKind};

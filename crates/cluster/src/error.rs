@@ -23,7 +23,7 @@ pub enum ClusterError {
     Credentials {
         /// Path of the file.
         path: PathBuf,
-        /// What is wrong with the file.
+        /// Description of the problem with the file.
         problem: String,
     },
     /// A file contains no certificate. Holds its path.

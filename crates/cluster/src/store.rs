@@ -28,7 +28,7 @@ pub async fn remove(stream: &Stream, subject: &str) -> Result<u64, Trouble> {
         match (refused.take(), stream.delete_message(sequence).await) {
             (_, Ok(is_deleted)) => removed += u64::from(is_deleted),
             (Some(before), Err(error)) if before == sequence => return Err(error.into()),
-            // Somebody else may have taken the message meanwhile; then another one is the latest.
+            // Another program may have taken the message meanwhile, so that an earlier message is the latest now.
             (_, Err(_)) => refused = Some(sequence),
         }
     }

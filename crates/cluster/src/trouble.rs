@@ -26,12 +26,12 @@ pub enum Trouble {
     Never(String),
 }
 
-/// What to do about credentials that the server refuses.
+/// Remedy for credentials that the server refuses.
 pub const NO_RIGHT: &str = "the server refuses the credentials (--creds FILE)";
-/// What makes room in the server's store.
+/// Remedy for a full store of the server.
 const MORE_STORE: &str = "make room in its store (snakes machines --purge RUN removes what a stopped run left), or raise \
                           max_file_store";
-/// What lets more programs connect.
+/// Remedy for too many connections.
 const MORE_CONNECTIONS: &str = "end other programs that use it, or raise max_connections";
 /// The rights that every user of the server needs.
 const RIGHTS: &str = "let this user publish and subscribe to snakes.>, $JS.> and _INBOX.>";

@@ -70,7 +70,7 @@ mod linux {
         variable: &'static str,
         /// The value to use instead, or `None` to remove the variable.
         value: Option<OsString>,
-        /// What is wrong and what is used instead.
+        /// Description of the fault, and of the value that is used instead.
         note: String,
     }
 

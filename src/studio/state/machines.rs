@@ -38,7 +38,7 @@ pub(crate) enum LinkState {
     Failed(String),
 }
 
-/// What is known about a connected server.
+/// Information about a connected server.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct KnownServer {
     /// Proof of this program's engine, which workers must match.

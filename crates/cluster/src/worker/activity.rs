@@ -19,7 +19,7 @@ pub struct WorkerActivity(Mutex<ActivityState>);
 struct ActivityState {
     /// Names of the computers of the runs, by the name of the run, from the runs' notices.
     hosts: BTreeMap<String, String>,
-    /// What the runs wait for, by the name of the run, from the runs' notices.
+    /// Reasons for which runs wait, by the names of the runs, from the runs' notices.
     troubles: BTreeMap<String, String>,
     /// Names of the runs for which batches were computed.
     computed: BTreeSet<String>,

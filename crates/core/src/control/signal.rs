@@ -1,7 +1,7 @@
 //! The controller that plays back torque signals.
 
 use super::{Controller, Observation};
-use crate::genome::controllers::TorqueSignals;
+use crate::genome::controllers::{TorqueSignals, held_value};
 use crate::world::JointTorque;
 
 /// Plays back torque signals. Each point holds until the next one takes effect, the last one to the end.
@@ -11,10 +11,9 @@ pub struct SignalPlayer(pub TorqueSignals);
 impl Controller for SignalPlayer {
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let point = observation.point(self.0.points_per_s);
-        let at_point = |signal: &[f32]| signal.get(point).or(signal.last()).copied().unwrap_or(0.0);
         for (torque, joint) in torques.iter_mut().zip(&self.0.joints) {
-            torque.bend_nm = at_point(&joint.bend_nm);
-            torque.twist_nm = at_point(&joint.twist_nm);
+            torque.bend_nm = held_value(&joint.bend_nm, point);
+            torque.twist_nm = held_value(&joint.twist_nm, point);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::servo::JointServos;
 use super::{Controller, Observation, Senses};
-use crate::genome::controllers::{JointTargets, TargetSignals};
+use crate::genome::controllers::{JointTargets, TargetSignals, held_value};
 use crate::world::JointTorque;
 
 /// Pulls every joint towards its target: each target holds until the next takes effect, the last one to the end.
@@ -14,7 +14,7 @@ pub struct TargetFollower {
 }
 
 impl TargetFollower {
-    /// The follower of targets before the first step.
+    /// Creates the follower of targets before the first step.
     pub fn new(targets: TargetSignals) -> Self {
         let TargetSignals { stiffness_nm_per_rad, servo_damping_nms_per_rad, points_per_s, joints } =
             targets;
@@ -30,9 +30,10 @@ impl Controller for TargetFollower {
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let point = observation.point(self.points_per_s);
-        let at_point = |signal: &[f32]| signal.get(point).or(signal.last()).copied().unwrap_or(0.0);
-        let targets =
-            self.joints.iter().map(|joint| [at_point(&joint.bend_rad), at_point(&joint.twist_rad)]);
+        let at_point = |JointTargets { bend_rad, twist_rad }: &JointTargets| {
+            [bend_rad, twist_rad].map(|signal| held_value(signal, point))
+        };
+        let targets = self.joints.iter().map(at_point);
         self.servo.pull(observation, targets, torques);
     }
 }

@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 
 use crate::check::Invalid;
 
-/// What determines the layout of a genome: the number of joints that it drives, and the length of the trial.
+/// Values that determine the layout of a genome: the number of joints that it drives, and the length of the trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GenomeShape {
     /// Number of joints of the snake.

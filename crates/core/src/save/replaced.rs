@@ -1,4 +1,4 @@
-//! What a new file or folder takes over from the one that it replaces: the place to which links lead, the mode and the owner.
+//! Properties that a new file or folder takes over from the replaced one: the place to which links lead, the mode and the owner.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Result};

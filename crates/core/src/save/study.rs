@@ -85,8 +85,9 @@ pub struct Protocol {
 
 impl PartialEq for Protocol {
     fn eq(&self, other: &Self) -> bool {
-        let all = |of: &Self| (of.settings.clone(), of.budget, of.stops_at_goal);
-        all(self) == all(other)
+        self.settings == other.settings
+            && self.budget == other.budget
+            && self.stops_at_goal == other.stops_at_goal
     }
 }
 

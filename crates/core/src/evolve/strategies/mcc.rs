@@ -40,7 +40,7 @@ pub struct Mcc<S> {
     batch: Vec<Attempt<MccRole>>,
 }
 
-/// What an attempt tests. Children are numbered within the generation.
+/// Candidate that an attempt tests. Children are numbered within the generation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MccRole {
     /// The attempt tests whether a candidate can be one of the first snakes.

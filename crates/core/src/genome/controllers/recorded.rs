@@ -5,7 +5,7 @@ use super::signal::{JointSignals, TorqueSignals, point_at};
 use super::targets::{JointTargets, TargetSignals};
 use crate::genome::space::{GenomeSpace, POINTS_PER_S_RANGE};
 
-/// What a policy did in an episode.
+/// Actions of a policy in an episode.
 #[derive(Debug, Clone, Copy)]
 pub struct RecordedActions<'a> {
     /// One action after another: bend and twist of each joint, from the head. An action is a target angle in radians if there is a
@@ -24,7 +24,7 @@ pub struct RecordedActions<'a> {
 }
 
 impl RecordedActions<'_> {
-    /// The genes that play the actions back.
+    /// Returns the genes that play the actions back.
     pub fn genes(&self) -> ControllerGenes {
         let (points_per_s, copies) = self.rate();
         let points = GenomeSpace { points_per_s, ..GenomeSpace::default() }.points(self.duration_s);
@@ -56,7 +56,7 @@ impl RecordedActions<'_> {
         }
     }
 
-    /// Points per second at which each action begins in its step, and the number of points for each action. A rate that 32 bits
+    /// Returns the points per second at which each action begins in its step, and the number of points for each action. A rate that 32 bits
     /// cannot hold is rounded up, so that no action begins a step late.
     fn rate(&self) -> (f32, usize) {
         let Self { steps_per_action, steps_per_s, .. } = *self;

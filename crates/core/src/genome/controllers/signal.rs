@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::encoding::{ControllerEncoding, JointCommands, LengthVisitor, SettingNames};
 use crate::genome::body::BodyGenes;
-use crate::genome::gene::{Feature, GeneRange, Genes, GenomeShape, shifted};
+use crate::genome::gene::{Feature, GeneRange, Genes, GenomeShape, Quantity, shifted};
 use crate::genome::space::{GenomeSpace, LARGEST_GENOME_TORQUES, POINTS_PER_S, TORQUE};
 
 /// One torque signal per joint axis. Each point's torque holds until the next point.
@@ -66,26 +66,13 @@ impl ControllerEncoding for TorqueSignals {
         genes.gene("points_per_s", name, POINTS_PER_S, range, &mut self.points_per_s);
         let range = GeneRange::around_zero(space.torque_range_nm);
         for (joint, signals) in self.joints.iter_mut().enumerate() {
-            for (axis, signal) in [("bend", &mut signals.bend_nm), ("twist", &mut signals.twist_nm)]
-            {
-                for (point, torque_nm) in signal.iter_mut().enumerate() {
-                    let field = format_args!("joints[{joint}].{axis}_nm[{point}]");
-                    let name = format_args!("joint {} {axis}, point {}", joint + 1, point + 1);
-                    genes.gene(field, name, TORQUE, range, torque_nm);
-                }
-            }
+            point_genes(joint, ["bend", "bend_nm"], TORQUE, range, &mut signals.bend_nm, genes);
+            point_genes(joint, ["twist", "twist_nm"], TORQUE, range, &mut signals.twist_nm, genes);
         }
     }
 
     fn lengths(&self, visit: LengthVisitor<'_>) {
-        for (index, joint) in self.joints.iter().enumerate() {
-            for (field, _, signal) in joint.axes() {
-                let name = format_args!("points of joints[{index}].{field}");
-                visit(name, signal.len(), 1..=LARGEST_GENOME_TORQUES);
-            }
-        }
-        let all = self.all().map(Vec::len).sum();
-        visit(format_args!("torque points"), all, 1..=LARGEST_GENOME_TORQUES);
+        signal_lengths(self.joints.iter().map(JointSignals::axes), "torque points", visit);
     }
 
     fn joints(&self) -> usize {
@@ -156,6 +143,44 @@ impl ControllerEncoding for TorqueSignals {
 pub fn point_at(step: u32, points_per_s: f32, steps_per_s: u32) -> usize {
     let points_per_step = f64::from(points_per_s) / f64::from(steps_per_s);
     (f64::from(step) * points_per_step) as usize
+}
+
+/// Returns the value of a signal that holds at a point: the last one after the end, 0 for a signal without points.
+pub fn held_value(signal: &[f32], point: usize) -> f32 {
+    signal.get(point).or(signal.last()).copied().unwrap_or(0.0)
+}
+
+/// Visits the points of a signal of a joint as genes. `axis` and `field` name the signal in words and in files.
+pub(super) fn point_genes(
+    joint: usize,
+    [axis, field]: [&str; 2],
+    quantity: Quantity,
+    range: GeneRange<'_>,
+    signal: &mut [f32],
+    genes: &mut Genes<'_>,
+) {
+    for (point, value) in signal.iter_mut().enumerate() {
+        let field = format_args!("joints[{joint}].{field}[{point}]");
+        let name = format_args!("joint {} {axis}, point {}", joint + 1, point + 1);
+        genes.gene(field, name, quantity, range, value);
+    }
+}
+
+/// Visits the length of each signal by its field, and the sum of all lengths by the name `all`.
+pub(super) fn signal_lengths<'a>(
+    joints: impl Iterator<Item = [(&'static str, &'static str, &'a Vec<f32>); 2]>,
+    all: &str,
+    visit: LengthVisitor<'_>,
+) {
+    let mut sum = 0;
+    for (index, signals) in joints.enumerate() {
+        for (field, _, signal) in signals {
+            sum += signal.len();
+            let name = format_args!("points of joints[{index}].{field}");
+            visit(name, signal.len(), 1..=LARGEST_GENOME_TORQUES);
+        }
+    }
+    visit(format_args!("{all}"), sum, 1..=LARGEST_GENOME_TORQUES);
 }
 
 /// Returns half the number of sign changes per second, which is the frequency of a sine.

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::encoding::{
     ControllerEncoding, JointCommands, LengthVisitor, SERVO_SETTINGS, SettingNames, TWIST_SETTINGS,
 };
-use super::signal::{held_points, rhythm, sign_changes_hz, strength};
+use super::signal::{held_points, point_genes, rhythm, sign_changes_hz, signal_lengths, strength};
 use super::wave::ANGLE;
 use crate::genome::gene::{Feature, GeneRange, Genes, GenomeShape};
-use crate::genome::space::{GenomeSpace, LARGEST_GENOME_TORQUES, POINTS_PER_S};
+use crate::genome::space::{GenomeSpace, POINTS_PER_S};
 
 /// One signal of target angles per joint axis, and the servo that follows them: a torque of
 /// `stiffness · (target − angle) − damping · rate`, clamped to the joint's limit. Each target holds until the next.
@@ -35,14 +35,21 @@ pub struct JointTargets {
     pub twist_rad: Vec<f32>,
 }
 
+impl JointTargets {
+    /// Returns the signals with the names of their fields and of their axes.
+    fn axes(&self) -> [(&'static str, &'static str, &Vec<f32>); 2] {
+        [("bend_rad", "bend", &self.bend_rad), ("twist_rad", "twist", &self.twist_rad)]
+    }
+}
+
 impl TargetSignals {
-    /// Every signal of the snake in a fixed order: joints from the head, bend before twist.
+    /// Returns every signal of the snake in a fixed order: joints from the head, bend before twist.
     fn all(&self) -> impl Iterator<Item = &Vec<f32>> {
         self.joints.iter().flat_map(|joint| [&joint.bend_rad, &joint.twist_rad])
     }
 }
 
-/// The greatest targets of bends and twists in a space. A joint that cannot turn needs no search.
+/// Returns the greatest targets of bends and twists in a space. A joint that cannot turn needs no search.
 fn ranges_rad(space: &GenomeSpace) -> [f32; 2] {
     let [bend_turns, twist_turns] = space.turning_axes();
     let within = |turns: bool, range_rad: f32| if turns { range_rad } else { 0.0 };
@@ -75,29 +82,14 @@ impl ControllerEncoding for TargetSignals {
         genes.gene("points_per_s", name, POINTS_PER_S, range, &mut self.points_per_s);
         let [bend_rad, twist_rad] = ranges_rad(space).map(GeneRange::around_zero);
         for (joint, signals) in self.joints.iter_mut().enumerate() {
-            for (axis, range, signal) in [
-                ("bend", bend_rad, &mut signals.bend_rad),
-                ("twist", twist_rad, &mut signals.twist_rad),
-            ] {
-                for (point, target_rad) in signal.iter_mut().enumerate() {
-                    let field = format_args!("joints[{joint}].{axis}_rad[{point}]");
-                    let name = format_args!("joint {} {axis}, point {}", joint + 1, point + 1);
-                    genes.gene(field, name, ANGLE, range, target_rad);
-                }
-            }
+            let JointTargets { bend_rad: bend, twist_rad: twist } = signals;
+            point_genes(joint, ["bend", "bend_rad"], ANGLE, bend_rad, bend, genes);
+            point_genes(joint, ["twist", "twist_rad"], ANGLE, twist_rad, twist, genes);
         }
     }
 
     fn lengths(&self, visit: LengthVisitor<'_>) {
-        for (index, joint) in self.joints.iter().enumerate() {
-            for (field, signal) in [("bend_rad", &joint.bend_rad), ("twist_rad", &joint.twist_rad)]
-            {
-                let name = format_args!("points of joints[{index}].{field}");
-                visit(name, signal.len(), 1..=LARGEST_GENOME_TORQUES);
-            }
-        }
-        let all = self.all().map(Vec::len).sum();
-        visit(format_args!("target points"), all, 1..=LARGEST_GENOME_TORQUES);
+        signal_lengths(self.joints.iter().map(JointTargets::axes), "target points", visit);
     }
 
     fn joints(&self) -> usize {
@@ -133,11 +125,8 @@ impl ControllerEncoding for TargetSignals {
             ));
         }
         features.push(rhythm(hz, self.points_per_s));
-        let [bend_rad, twist_rad] = ranges_rad(space);
         for (joint, signals) in (1..).zip(&self.joints) {
-            for (axis, signal, most_rad) in
-                [("bend", &signals.bend_rad, bend_rad), ("twist", &signals.twist_rad, twist_rad)]
-            {
+            for ((_, axis, signal), most_rad) in signals.axes().into_iter().zip(ranges_rad(space)) {
                 features.push(strength(joint, axis, "rad", signal, most_rad));
             }
         }
