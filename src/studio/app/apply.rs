@@ -1,5 +1,6 @@
 //! Passes each command to the module that executes its group.
 
+mod excursions;
 pub mod stage;
 
 use std::path::PathBuf;
@@ -31,6 +32,7 @@ use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoS
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
+use excursions::Frames;
 use stage::StageParams;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -58,6 +60,12 @@ pub(super) fn apply(
     let notices = &mut *notices;
     for command in commands.read() {
         let before = run.next_plan().clone();
+        let left = stage.scene(&view.rig);
+        let frames = |workspace: &Workspace, lessons: &Lessons| Frames {
+            is_presenting: workspace.is_presenting(),
+            is_lesson: lessons.view().is_some(),
+        };
+        let frames_before = frames(&workspace, &lessons);
         let done = match command {
             command if lessons.view().is_some() && changes_own_run(command) => {
                 Err(LESSON.to_owned())
@@ -130,7 +138,7 @@ pub(super) fn apply(
                 if matches!(command, LessonCommand::Begin(_)) {
                     workspace.open(PanelKind::Lessons);
                 }
-                let show = lessons.apply(command, &mut run, stage.on_show(), &mut history);
+                let show = lessons.apply(command, &mut run, &mut history);
                 show.map(|show| {
                     let is_new = show.is_some();
                     stage.present_for_now(show);
@@ -186,6 +194,8 @@ pub(super) fn apply(
                 Ok(())
             }
         };
+        let frames = (frames_before, frames(&workspace, &lessons));
+        stage.finish(command, left, frames, &mut view.rig);
         history.note(command, before, run.next_plan());
         notices.refusal(done.err());
     }
@@ -195,7 +205,7 @@ pub(super) fn apply(
 fn replaces_run(command: &RunCommand, run: &CurrentRun) -> bool {
     match command {
         RunCommand::Start => run.status() == RunStatus::Finished,
-        RunCommand::Reset | RunCommand::Continue(_) => true,
+        RunCommand::New | RunCommand::Reset | RunCommand::Continue(_) => true,
         _ => false,
     }
 }
@@ -211,6 +221,7 @@ fn changes_own_run(command: &Command) -> bool {
         Command::Run(
             RunCommand::Start
                 | RunCommand::SingleGeneration
+                | RunCommand::New
                 | RunCommand::Reset
                 | RunCommand::Continue(_)
         ) | Command::Body(BodyCommand::Evolve)

@@ -9,9 +9,9 @@ use bevy_egui::input::EguiWantsInput;
 use crate::studio::commands::actions::{Situation, of_keys};
 use crate::studio::commands::turn::Turn;
 use crate::studio::commands::{Command, PlayerCommand, StageCommand, WindowCommand};
+use crate::studio::panels::situation::CurrentSituation;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::viewport::StageArea;
-use crate::studio::workspace::situation::CurrentSituation;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, read.in_set(FrameSet::TakeIn));

@@ -1,5 +1,5 @@
 //! The presenting mode outside the panels: full screen, a following camera, looping playback, and a hidden pointer
-//! while the mouse rests. Its end restores the previous state.
+//! while the mouse rests. Its end restores the window; [`super::apply`] restores the scene.
 
 use std::time::Duration;
 
@@ -19,14 +19,6 @@ use crate::studio::workspace::Workspace;
 /// Time after which a resting mouse pointer is hidden.
 const POINTER_RESTS: Duration = Duration::from_secs(2);
 
-/// State before the presenting mode, which its end restores.
-#[derive(Debug)]
-struct BeforePresenting {
-    window_mode: WindowMode,
-    camera: CameraRig,
-    loops: bool,
-}
-
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         Update,
@@ -34,10 +26,10 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-/// Begins and ends the presenting mode.
+/// Begins and ends the presenting mode, after the scene was stored or brought back.
 fn present(
     workspace: Res<Workspace>,
-    mut before: Local<Option<BeforePresenting>>,
+    mut before: Local<Option<WindowMode>>,
     mut window: Single<&mut Window, With<PrimaryWindow>>,
     mut rig: ResMut<CameraRig>,
     (mut playback, mut following): (ResMut<Playback>, ResMut<Following>),
@@ -52,19 +44,11 @@ fn present(
     following.set_repeats(is_presenting);
     turns.set_on(is_presenting);
     notices.set_quiet(is_presenting);
-    if let Some(BeforePresenting { window_mode, camera, loops }) = before.take() {
+    if let Some(window_mode) = before.take() {
         window.mode = window_mode;
-        rig.restore(&camera);
-        if playback.loops() != loops {
-            playback.toggle_loop();
-        }
         return;
     }
-    *before = Some(BeforePresenting {
-        window_mode: window.mode,
-        camera: rig.clone(),
-        loops: playback.loops(),
-    });
+    *before = Some(window.mode);
     window.mode = WindowMode::BorderlessFullscreen(MonitorSelection::Current);
     rig.take(CameraMode::Follow);
     if !playback.loops() {

@@ -75,8 +75,10 @@ pub(crate) struct Situation {
     pub is_what_if: bool,
     /// Whether the latest changed lane of the what-if can stay while another one is added.
     pub can_try_another: bool,
-    /// Whether the stage shows a race or a whole generation.
-    pub is_race: bool,
+    /// Whether the current run is finished.
+    pub is_finished: bool,
+    /// Whether the stage can return to an earlier scene.
+    pub can_leave: bool,
     /// Whether a modal view is open, the panels are hidden, or the stage is presented in full screen.
     pub is_covered: bool,
     /// Whether the stage is presented in full screen with no modal view over it.
@@ -115,10 +117,14 @@ impl Action {
                 let shown = |generation| Stage(StageCommand::Show(Pick::Generation(generation)));
                 return now.digit.map(shown);
             }
-            Stage(StageCommand::Single) if now.is_covered => {
+            Run(RunCommand::Start) if now.is_finished => {
+                let text = "This run is finished. \"New run\" begins another one.".to_owned();
+                return Some(Command::Notify(text));
+            }
+            Stage(StageCommand::Leave) if now.is_covered => {
                 return Some(Window(WindowCommand::CloseModal));
             }
-            Stage(StageCommand::Single) if now.is_what_if => {
+            Stage(StageCommand::Leave) if now.is_what_if => {
                 return Some(Command::Plan(PlanCommand::DropChange));
             }
             _ => {}
@@ -130,7 +136,7 @@ impl Action {
             Share(ShareCommand::Ask(_)) => !now.is_sharing,
             Stage(StageCommand::KeepChange) => now.is_what_if,
             Stage(StageCommand::TryAnother) => now.can_try_another,
-            Stage(StageCommand::Single) => now.is_race,
+            Stage(StageCommand::Leave) => now.can_leave,
             _ => true,
         };
         is_possible.then(|| self.command.clone())
@@ -159,7 +165,7 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
         Situation::default(),
         Situation { is_running: true, ..Situation::default() },
         Situation { is_what_if: true, ..Situation::default() },
-        Situation { is_race: true, ..Situation::default() },
+        Situation { can_leave: true, ..Situation::default() },
     ];
     let gives = |action: &&Action| {
         situations.iter().any(|now| action.command(*now).as_ref() == Some(command))
@@ -214,7 +220,7 @@ pub(crate) fn actions() -> &'static [Action] {
 /// Returns the rows of the file menu.
 fn file_rows() -> [ActionRow; 8] {
     [
-        ("New run…", &["Ctrl N"], Window(WindowCommand::OpenPanel(PanelKind::Run))),
+        ("New run", &["Ctrl N"], Run(RunCommand::New)),
         ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
         ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
         ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
@@ -243,7 +249,7 @@ fn run_rows() -> [ActionRow; 12] {
     [
         ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
         ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
-        ("Reset the run", &[], Run(RunCommand::Reset)),
+        ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
         (
             "Show a generation's champion",
             &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
@@ -261,13 +267,14 @@ fn run_rows() -> [ActionRow; 12] {
 }
 
 /// Returns the rows of the edit menu.
-fn edit_rows() -> [ActionRow; 5] {
+fn edit_rows() -> [ActionRow; 6] {
     [
         ("Undo", &["Ctrl Z"], Command::Undo),
         ("Redo", &["Ctrl Shift Z", "Ctrl Y"], Command::Redo),
         ("Keep this change", &[], Stage(StageCommand::KeepChange)),
         ("Try another change beside this one", &[], Stage(StageCommand::TryAnother)),
-        ("Leave race / Discard change", &["Esc"], Stage(StageCommand::Single)),
+        ("Only the selected snake", &[], Stage(StageCommand::Single)),
+        ("Back to the earlier scene / Discard change", &["Esc"], Stage(StageCommand::Leave)),
     ]
 }
 

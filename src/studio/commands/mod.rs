@@ -78,13 +78,16 @@ pub(super) enum Command {
 /// A command to the current run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum RunCommand {
-    /// Evolve until paused or finished. After the end of a run, start the next one.
+    /// Evolve until paused or finished.
     Start,
     /// Pause evolution.
     Pause,
     /// Evolve to the end of the current generation.
     SingleGeneration,
-    /// Discard the current run and prepare a fresh one.
+    /// Start another run: with the settings of the next run or, if they are unchanged, with the next seed. The current
+    /// run stays saved.
+    New,
+    /// Discard the current run and prepare it again.
     Reset,
     /// Continue the run in this folder.
     Continue(PathBuf),
@@ -172,6 +175,8 @@ pub(super) enum StageCommand {
     TryAnother,
     /// Show the next, the previous or the first champion in the presenting mode.
     TakeTurn(Turn),
+    /// Return to the scene before the race, the what-if or the single snake on the stage.
+    Leave,
     /// Remove all lanes except the selected one.
     Single,
     /// Show the snake in the world in which it was found.

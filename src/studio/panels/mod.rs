@@ -19,6 +19,7 @@ mod run;
 mod senses;
 mod settings;
 mod shown;
+pub mod situation;
 mod stairs;
 mod tab_names;
 mod tab_viewer;
@@ -180,7 +181,8 @@ fn draw(
     context.set_zoom_factor(scale);
     let mut commands = Vec::new();
     let on_stage = &data.on_stage;
-    let situation = Situation::of(&data.run, &on_stage.mode, &workspace, &on_stage.history);
+    let situation =
+        Situation::of(&data.run, &on_stage.mode, &on_stage.way_back, &workspace, &on_stage.history);
     let situation = Situation { is_sharing: data.shares.busy().is_some(), ..situation };
     let mut root = egui::Ui::new(
         context.clone(),

@@ -9,6 +9,7 @@ use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand}
 use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -28,6 +29,7 @@ pub(crate) struct OnStage<'w, 's> {
     pub overlays: Res<'w, Overlays>,
     pub history: Res<'w, UndoHistory>,
     pub following: Res<'w, Following>,
+    pub way_back: Res<'w, WayBack>,
     pub smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
     camera: Query<'w, 's, (&'static Camera, &'static Transform), With<StageCamera>>,
 }

@@ -189,7 +189,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     if count == 0 {
         return;
     }
-    let is_new = lanes().any(|lane| lane.is_added());
+    let is_new = lanes().any(|lane| lane.is_added() && !lane.is_back());
     if is_new && (count > 1) != (rig.lanes > 1) {
         // The view for one lane does not suit several, and the reverse.
         rig.lanes = count;

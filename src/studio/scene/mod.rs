@@ -25,6 +25,7 @@ pub mod surface_material;
 pub mod surface_texture;
 pub mod text;
 pub mod view_commands;
+pub mod way_back;
 pub mod wireframe;
 
 use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap};
@@ -67,7 +68,7 @@ pub(super) fn drawing(app: &mut App) {
             step_labels::plugin,
             best_flag::plugin,
         ))
-        .add_plugins((snake::plugin, overlays::plugin))
+        .add_plugins((snake::plugin, overlays::plugin, way_back::plugin))
         .add_systems(Startup, set_up)
         .add_systems(Update, fit_shadows.in_set(FrameSet::Draw))
         .add_systems(

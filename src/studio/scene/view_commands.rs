@@ -16,7 +16,7 @@ use crate::studio::ui::theme::Theme;
 /// System parameters that make up the state of the view.
 #[derive(SystemParam)]
 pub(crate) struct ViewParams<'w, 's> {
-    rig: ResMut<'w, CameraRig>,
+    pub rig: ResMut<'w, CameraRig>,
     overlays: ResMut<'w, Overlays>,
     theme: ResMut<'w, Theme>,
     screenshots: MessageWriter<'w, ScreenshotArea>,

@@ -16,7 +16,7 @@ const HOLD_S: f32 = 0.125;
 const SAMPLES_PER_S: u32 = 60;
 
 /// Samples of the latest contacts of a lane.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct ContactMeter {
     samples: VecDeque<ContactSample>,
     /// Number of physics steps from one sample to the next.
@@ -27,7 +27,7 @@ pub(crate) struct ContactMeter {
 }
 
 /// Contacts after one physics step.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct ContactSample {
     step: u32,
     patches: Vec<ContactPatch>,

@@ -15,7 +15,7 @@ use super::readings::Readings;
 use super::replay::Replay;
 use super::staged_champion::StagedChampion;
 use snakes_core::score::{Evaluation, KeyframeHistory, Rollout, Trial};
-use snakes_core::world::{BodyPlan, Disqualification, Pose, Pull, Simulation, Vector};
+use snakes_core::world::{BodyPlan, Pose, Pull, Simulation, Vector};
 use snakes_lab::run::{Lookahead, caught};
 
 /// A lane of the stage, with the rollout that is scored.
@@ -45,10 +45,10 @@ pub(crate) struct Lane {
     detour_m: Vec<Vector>,
     /// Whether simulating the lane panicked. The lane then keeps its last state.
     is_broken: bool,
-    /// Whether a pull by the mouse has broken a limit.
-    is_pull_over: bool,
     /// Whether the final state has been compared with the champion's record.
     is_checked: bool,
+    /// Whether the lane came back with an earlier scene, so that camera and selection stay as they were.
+    is_back: bool,
 }
 
 /// Maximum physics steps per frame, as a sum over all lanes (about 60 ms on one core).
@@ -91,7 +91,7 @@ impl Lane {
             detour_m: Vec::new(),
             is_broken: false,
             is_checked: false,
-            is_pull_over: false,
+            is_back: false,
         }
     }
 
@@ -250,14 +250,6 @@ impl Lane {
         let has_ended = self.replay.is_over() && !self.is_disturbed() && !self.is_checked;
         self.is_checked |= has_ended;
         has_ended
-    }
-
-    /// Returns the limit that a pull has broken, which has ended the trial. Reports it only once.
-    pub fn limit_just_broken_by_pull(&mut self) -> Option<Disqualification> {
-        let is_pull_over = self.replay.is_over() && self.is_disturbed();
-        let broken = if is_pull_over { self.evaluation().disqualified } else { None };
-        let was_told = std::mem::replace(&mut self.is_pull_over, broken.is_some());
-        broken.filter(|_| !was_told)
     }
 
     /// Returns the simulated world after the last step; `None` for a recording.

@@ -18,7 +18,6 @@ use super::schedule::FrameSet;
 use super::ui::notifications::Notices;
 use snakes_core::Engine;
 use snakes_core::evolve::RunPlan;
-use snakes_core::world::{Disqualification, HealthLimits};
 use snakes_lab::run::caught;
 
 use lane::{Lane, MAX_STEPS_PER_FRAME};
@@ -211,7 +210,7 @@ fn put_on_stage(
 }
 
 /// Spawns a lane at its offset.
-fn spawn(commands: &mut Commands, lane: Lane) {
+pub(super) fn spawn(commands: &mut Commands, lane: Lane) {
     commands.spawn((Transform::from_translation(lane.offset()), Visibility::default(), lane));
 }
 
@@ -233,8 +232,10 @@ fn advance(
     if steps_per_s == 0.0 {
         return;
     }
+    if selection.as_ref().is_some_and(|selection| selection.is_pulling()) {
+        playback.go_on();
+    }
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
-    let mut broken_at_s = None;
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull, most_steps).err();
@@ -243,35 +244,6 @@ fn advance(
         if lane.has_just_ended() {
             notices.problems(differs_from_record(&lane));
         }
-        if let Some(broken) = lane.limit_just_broken_by_pull() {
-            let limit = limit_in_words(broken, &lane.trial().health);
-            let text = format!(
-                "The pull broke a limit, which ends the trial: {limit}. Space plays it from the start."
-            );
-            notices.update("pull", text);
-            broken_at_s = Some(lane.end_s());
-        }
-    }
-    if let Some(broken_at_s) = broken_at_s {
-        // The clock stops at the broken limit instead of starting again without an explanation.
-        playback.hold_at(broken_at_s);
-    }
-}
-
-/// Describes the limit that was broken, with its value.
-fn limit_in_words(broken: Disqualification, health: &HealthLimits) -> String {
-    let reason = broken.words();
-    match broken {
-        Disqualification::TooFast => format!("{reason} ({} m/s)", health.speed_m_s),
-        Disqualification::JointBroke => format!("{reason} (by {} m)", health.joint_drift_m),
-        Disqualification::LeftArena => format!(
-            "{reason} ({} m sideways, {} m backward)",
-            health.arena_half_width_m, health.arena_back_m
-        ),
-        Disqualification::NotFinite
-        | Disqualification::EnergyFromNothing
-        | Disqualification::FellOver
-        | Disqualification::Crashed => reason.to_owned(),
     }
 }
 

@@ -131,6 +131,16 @@ impl Playback {
         }
     }
 
+    /// Plays from the present time on.
+    pub fn go_on(&mut self) {
+        self.is_playing = true;
+    }
+
+    /// Returns to the time and the settings of an earlier clock.
+    pub fn restore(&mut self, earlier: &Self) {
+        *self = Self { is_sought: true, commands: self.commands, ..earlier.clone() };
+    }
+
     /// Turns looping on or off.
     pub fn toggle_loop(&mut self) {
         self.loops = !self.loops;

@@ -5,7 +5,7 @@ use super::replay::Replay;
 use snakes_core::world::{ContactForce, EnergyLost, JointState, JointTorque};
 
 /// Contacts, torques and joints of a lane after the last step. Empty for a recording.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Readings {
     /// Contact forces on the limbs after the last step.
     pub contacts: Vec<ContactForce>,

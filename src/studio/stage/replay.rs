@@ -7,6 +7,7 @@ use snakes_core::score::{Evaluation, KeyframeHistory, Recording, Rollout};
 use snakes_core::world::{Pose, Pull, Simulation, Stairs, Vector};
 
 /// A replay in progress: simulated or recorded.
+#[derive(Clone)]
 pub(crate) enum Replay {
     /// A live rollout, which computes a score.
     Simulated(Box<Rollout>),
@@ -15,6 +16,7 @@ pub(crate) enum Replay {
 }
 
 /// A recording in progress.
+#[derive(Clone)]
 pub(crate) struct PendingRecording {
     recording: Arc<Recording>,
     step: u32,

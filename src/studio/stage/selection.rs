@@ -38,6 +38,11 @@ impl Selection {
         self.held.is_some()
     }
 
+    /// Returns whether the mouse pulls a limb.
+    pub fn is_pulling(&self) -> bool {
+        self.held.is_some_and(|held| held.is_pulling)
+    }
+
     /// Returns the limb that the mouse holds.
     pub fn held(&self) -> Option<&HeldLimb> {
         self.held.as_ref()

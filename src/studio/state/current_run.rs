@@ -338,6 +338,16 @@ impl CurrentRun {
         self.start()
     }
 
+    /// Opens a run that was stopped earlier, paused, instead of the run with which the studio opened.
+    pub fn open_stopped(&mut self, folder: &Path) -> Result<(), String> {
+        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
+        self.plan_next = source.plan.clone();
+        let number = self.number;
+        self.replace(source);
+        self.number = number;
+        self.background().map(drop)
+    }
+
     /// Lends the stage and the settings to a lesson, or takes them back. During the lesson, edits of settings do not
     /// affect the current run.
     pub fn lend(&mut self, is_lent: bool) {
@@ -368,10 +378,15 @@ impl CurrentRun {
         }
     }
 
-    /// Prepares a run that differs from the current one. Increments the seed if nothing else differs.
+    /// Prepares a run that differs from the current one. If nothing else differs, takes the next seed for which there is
+    /// no run.
     fn prepare_another(&mut self) {
         if !self.next_run_differs() {
             self.plan_next.seed = self.plan_next.seed.wrapping_add(1);
+            let (saves, plan) = (&self.context.saves, self.plan_next.clone());
+            let unused =
+                RunSource::in_saves(saves, plan, ExistingRun::Keep).with_unused_seed(saves);
+            self.plan_next.seed = unused.plan.seed;
         }
         self.prepare_next();
     }

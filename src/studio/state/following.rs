@@ -16,7 +16,7 @@ use crate::studio::stage::{Show, end_s, evenly};
 use crate::studio::ui::notifications::Notices;
 
 /// Determines which generation of the current run the stage shows.
-#[derive(Resource, Debug, Default)]
+#[derive(Resource, Debug, Clone, Default)]
 pub(crate) struct Following {
     plan: FollowPlan,
     /// Whether the run began since the program started and its first generation is still to be shown.
@@ -27,8 +27,9 @@ pub(crate) struct Following {
     run: u32,
     /// Whether a story is repeated after its end.
     repeats: bool,
-    /// Whether the first landing ends the following of evolution. It does not if the user requested the following after that.
-    until_landing: bool,
+    /// Whether the shown generation is the first to land. It stays until all its snakes have ended, so that the landing
+    /// can be watched.
+    is_landing: bool,
     /// Generation that the stage shows, if any.
     shown: Option<u32>,
     /// Latest generation that the stage showed or a message announced.
@@ -43,10 +44,8 @@ enum FollowPlan {
     /// There is no plan: the user's choice stays on the stage.
     #[default]
     Nothing,
-    /// Show each generation that is better than all earlier ones, until a snake lands.
+    /// Show each generation that is better than all earlier ones.
     Evolution,
-    /// Keep the generation on the stage whose snake was the first to land.
-    Landed,
     /// Show these generations in turn; `next` is the index of the next one.
     Story { generations: Vec<u32>, next: usize },
 }
@@ -62,7 +61,7 @@ impl Following {
     /// Follows the first run from its first generation on. The playback is held until that generation is finished.
     pub fn from_start() -> Self {
         let plan = FollowPlan::Evolution;
-        Self { plan, is_new: true, until_landing: true, holds: true, ..Self::default() }
+        Self { plan, is_new: true, holds: true, ..Self::default() }
     }
 
     /// Returns whether better generations are shown automatically.
@@ -79,14 +78,14 @@ impl Following {
     pub fn story_part(&self) -> Option<(usize, usize)> {
         match &self.plan {
             FollowPlan::Story { generations, next } => Some((*next, generations.len())),
-            FollowPlan::Nothing | FollowPlan::Evolution | FollowPlan::Landed => None,
+            FollowPlan::Nothing | FollowPlan::Evolution => None,
         }
     }
 
     /// Shows each better generation from now on, beginning with the latest of them.
     pub fn follow_evolution(&mut self) {
         (self.plan, self.shown) = (FollowPlan::Evolution, None);
-        (self.is_new, self.until_landing) = (false, false);
+        (self.is_new, self.is_landing) = (false, false);
     }
 
     /// Stops following, so that the user's choice stays on the stage.
@@ -118,7 +117,7 @@ impl Following {
     /// stage have ended.
     fn due(&mut self, run: &CurrentRun, is_over: bool) -> Option<u32> {
         match &mut self.plan {
-            FollowPlan::Nothing | FollowPlan::Landed => None,
+            FollowPlan::Nothing => None,
             FollowPlan::Evolution => {
                 let milestones = run.milestones();
                 let next = match self.shown {
@@ -128,14 +127,15 @@ impl Following {
                             milestones.iter().find(|first| self.is_new && first.is_whole());
                         begins.or(milestones.last())?
                     }
-                    Some(_) if !is_over && self.shown_for < LEAST_SHOWN => return None,
+                    Some(_) if !is_over && (self.is_landing || self.shown_for < LEAST_SHOWN) => {
+                        return None;
+                    }
                     Some(shown) => next_of(milestones, shown)?,
                 };
                 self.is_new = false;
-                if next.is_landed && self.until_landing {
-                    // After the first landing, better generations are only announced, so that the landing can be watched to its end.
-                    self.plan = FollowPlan::Landed;
-                }
+                let first_landing = milestones.iter().find(|milestone| milestone.is_landed);
+                self.is_landing =
+                    first_landing.is_some_and(|first| first.generation == next.generation);
                 Some(next.generation)
             }
             FollowPlan::Story { generations, next } => {
@@ -187,7 +187,6 @@ fn follow(
     lanes: Query<&Lane>,
     time: Res<Time<Real>>,
     mut show: MessageWriter<Show>,
-    mut notices: ResMut<Notices>,
 ) {
     if run.is_lent() {
         // A lesson uses the stage.
@@ -197,7 +196,7 @@ fn follow(
         // The user has begun another run, which is followed from its first generation on.
         (following.run, following.announced) = (run.number(), 0);
         following.follow_evolution();
-        (following.is_new, following.until_landing) = (true, true);
+        following.is_new = true;
     }
     if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
         // The user plays the present champion, or evolution is not running.
@@ -216,14 +215,7 @@ fn follow(
         return;
     }
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
-    let followed = following.follows_evolution();
     let Some(generation) = following.due(&run, is_over) else { return };
-    if followed && following.plan == FollowPlan::Landed {
-        let text =
-            "This snake is the first to land, so it stays on the stage while evolution goes on.";
-        let follow = Command::Stage(StageCommand::ToggleFollowEvolution);
-        notices.offer("best", text.to_owned(), [("Follow evolution", follow)]);
-    }
     following.shown = Some(generation);
     following.announced = following.announced.max(generation);
     following.shown_for = Duration::ZERO;
@@ -275,21 +267,20 @@ mod tests {
     }
 
     #[test]
-    fn the_first_landing_stays_and_following_on_shows_better_ones() {
+    fn a4_the_first_landing_is_watched_to_its_end_and_evolution_is_followed_on() {
         let run = landed_run();
         let mut following = Following::from_start();
-        let mut shown = Vec::new();
+        let landing = run.milestones().iter().find(|of| of.is_landed).expect("it lands").generation;
         while let Some(generation) = following.due(&run, true) {
             following.shown = Some(generation);
-            shown.push(generation);
+            if generation == landing {
+                following.shown_for = LEAST_SHOWN;
+                assert_eq!(following.due(&run, false), None, "it is not over");
+            }
         }
-        assert_eq!((shown.last(), &following.plan), (Some(&3), &FollowPlan::Landed));
-        assert!(!following.follows_evolution(), "what landed stays");
-        following.follow_evolution();
-        assert_eq!(following.due(&run, true), Some(3), "the latest of the better ones");
-        following.shown = Some(3);
-        assert_eq!(following.due(&run, true), None, "nothing better yet");
-        assert!(following.follows_evolution(), "the user asked for it");
+        assert!(following.follows_evolution(), "nobody ended it");
+        let last = run.milestones().last().map(|last| last.generation);
+        assert_eq!(following.shown, last, "the best of all");
     }
 
     #[test]
@@ -356,7 +347,6 @@ mod tests {
         let left: Vec<_> = (0..=parts).map(|_| following.due(&run, true)).collect();
         assert_eq!(left.last(), Some(&None), "it ends");
         following.set_repeats(true);
-        following.plan = FollowPlan::Landed;
-        assert_eq!(following.due(&run, true), None, "the landing stays");
+        assert_eq!(following.due(&run, true), None, "it stays over");
     }
 }

@@ -55,7 +55,6 @@ struct Current {
 #[derive(Debug)]
 struct Own {
     next: RunPlan,
-    on_show: Show,
     history: UndoHistory,
     pace: Pace,
 }
@@ -115,8 +114,7 @@ impl Lessons {
         self.current.as_ref().is_some_and(Current::awaits_guess)
     }
 
-    /// Executes a command. `on_show` is what the stage shows now; it is restored after the lesson. Returns what to show
-    /// on the stage, if anything.
+    /// Executes a command. Returns what to show on the stage, if anything.
     ///
     /// # Errors
     /// There is no such lesson, or its champions or runs cannot be prepared.
@@ -124,11 +122,10 @@ impl Lessons {
         &mut self,
         command: &LessonCommand,
         run: &mut CurrentRun,
-        on_show: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         match command {
-            LessonCommand::Begin(index) => self.begin(*index, run, on_show, history),
+            LessonCommand::Begin(index) => self.begin(*index, run, history),
             LessonCommand::ShowScene(scene) => self.show(*scene),
             LessonCommand::Guess(answer) => self.try_it(Some(*answer)),
             LessonCommand::Watch => self.try_it(None),
@@ -138,16 +135,15 @@ impl Lessons {
                 }
                 Ok(None)
             }
-            LessonCommand::Leave => self.leave(run, history),
+            LessonCommand::Leave => self.leave(run, history).map(|()| None),
         }
     }
 
-    /// Begins a lesson. The present contents of the stage are restored at its end.
+    /// Begins a lesson.
     pub fn begin(
         &mut self,
         index: usize,
         run: &mut CurrentRun,
-        on_show: Show,
         history: &mut UndoHistory,
     ) -> Result<Option<Show>, String> {
         if index >= LESSONS.len() {
@@ -169,7 +165,7 @@ impl Lessons {
                 run.pause()?;
                 run.lend(true);
                 let (next, history) = (run.next_plan().clone(), history.lend());
-                Own { next, on_show, history, pace }
+                Own { next, history, pace }
             }
         };
         run.set_next_plan(own.next.clone())?;
@@ -209,13 +205,9 @@ impl Lessons {
         }
     }
 
-    /// Ends the lesson, and restores the stage, the settings and the run.
-    pub fn leave(
-        &mut self,
-        run: &mut CurrentRun,
-        history: &mut UndoHistory,
-    ) -> Result<Option<Show>, String> {
-        let Some(Current { own, .. }) = self.current.take() else { return Ok(None) };
+    /// Ends the lesson, and restores the settings and the run.
+    pub fn leave(&mut self, run: &mut CurrentRun, history: &mut UndoHistory) -> Result<(), String> {
+        let Some(Current { own, .. }) = self.current.take() else { return Ok(()) };
         run.set_next_plan(own.next)?;
         run.lend(false);
         history.give_back(own.history);
@@ -226,7 +218,7 @@ impl Lessons {
             }
             Pace::Running | Pace::OneGeneration | Pace::Held => {}
         }
-        Ok(Some(own.on_show))
+        Ok(())
     }
 
     /// Selects a scene and shows its snakes. Its runs start after the reader has guessed.

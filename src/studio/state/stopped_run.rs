@@ -1,15 +1,15 @@
-//! Offers, once after the start of the program, to resume the run that was stopped last.
+//! Opens, at the start of the program, the run that was stopped last, or offers it beside a run with other settings.
 
 use bevy::prelude::*;
 
-use super::current_run::CurrentRun;
+use super::current_run::{CurrentRun, RunStatus};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::RunSummary;
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Startup, list).add_systems(FixedUpdate, offer);
+    app.add_systems(Startup, list).add_systems(FixedUpdate, open);
 }
 
 /// Lists the runs, unless the user has named a run.
@@ -19,9 +19,10 @@ fn list(mut run: ResMut<CurrentRun>, context: Res<RunContext>, mut notices: ResM
     }
 }
 
-/// Offers to resume the run that was stopped last, once the runs are listed.
-fn offer(
-    run: Res<CurrentRun>,
+/// Opens the run that was stopped last, paused, once the runs are listed. If the program was started with other settings,
+/// starts its own run and offers the stopped one.
+fn open(
+    mut run: ResMut<CurrentRun>,
     context: Res<RunContext>,
     mut notices: ResMut<Notices>,
     mut is_done: Local<bool>,
@@ -29,13 +30,28 @@ fn offer(
     if *is_done || !context.offers_stopped_run {
         return;
     }
+    // A list that cannot be read is reported, and the own run starts.
     let Some(stopped) = run.stopped() else { return };
     *is_done = true;
-    let begun = stopped.filter(|run| run.finished > 0);
-    if let Some(latest) = begun.max_by_key(|run| run.saved_at) {
-        let resume = Command::Run(RunCommand::Continue(latest.folder.clone()));
-        notices.lasting_offer(offer_text(latest), "Resume", resume);
+    let latest = stopped.filter(|run| run.finished > 0).max_by_key(|run| run.saved_at).cloned();
+    if run.status() != RunStatus::Ready {
+        return;
     }
+    let own = run.next_plan();
+    let is_plain = run.preset_settings() == Some(&own.settings);
+    let is_alike = |of: &RunSummary| {
+        of.plan.preset == own.preset && (is_plain || of.plan.settings == own.settings)
+    };
+    let opened = match latest {
+        Some(latest) if is_alike(&latest) => run.open_stopped(&latest.folder),
+        Some(latest) => {
+            let go_on = Command::Run(RunCommand::Continue(latest.folder.clone()));
+            notices.lasting_offer(offer_text(&latest), "Continue", go_on);
+            run.start()
+        }
+        None => run.start(),
+    };
+    notices.problems(opened.err());
 }
 
 /// Describes a stopped run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
@@ -54,22 +70,18 @@ mod tests {
     use crate::studio::state::options::Options;
     use snakes_core::save::SavesFolder;
     use snakes_lab::run::{LocalPool, RunControl};
+    use std::path::Path;
 
-    #[test]
-    fn a_stopped_run_is_offered_by_name_and_place_after_the_start() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let saves = SavesFolder::find(Some(folder.path()));
-        let mut earlier = small_run(&saves, 1, 3).open("a test").expect("opened");
+    /// Keeps a stopped run of seed 1 in this folder, starts the studio with another run, and waits until `is_ready`.
+    fn started(folder: &Path, own: (u64, u32), is_ready: impl Fn(&World) -> bool) -> App {
+        let saves = SavesFolder::find(Some(folder));
+        let mut earlier = small_run(&saves, 1, 10_000).open("a test").expect("opened");
         let pool = LocalPool::new(1).expect("threads");
         let report = earlier.experiment.run_generation(&pool, &RunControl::default());
         let report = report.expect("not cancelled");
         earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
         drop(earlier);
-        let next = small_run(&saves, 1, 3).with_unused_seed(&saves);
-        assert_eq!(next.plan.seed, 2, "its own seed is used");
-
-        // The current run is too long to finish during the test, which would cause a message.
-        let run = small_run(&saves, 2, 10_000);
+        let run = small_run(&saves, own.0, own.1);
         let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
         let context = RunContext::new(&options);
         let mut app = App::new();
@@ -79,11 +91,36 @@ mod tests {
             .add_plugins(bevy::time::TimePlugin)
             .add_plugins((crate::studio::state::current_run::events::plugin, plugin));
         let began = std::time::Instant::now();
-        while app.world().resource::<Notices>().len() == 0 && began.elapsed().as_secs() < 30 {
+        while !is_ready(app.world()) && began.elapsed().as_secs() < 30 {
             app.update();
         }
+        app
+    }
+
+    #[test]
+    fn a_stopped_run_with_other_settings_is_offered_by_name_and_place() {
+        let folder = tempfile::tempdir().expect("a folder");
+        // The run is too long to finish during the test, which would cause a message.
+        let is_told = |world: &World| world.resource::<Notices>().len() > 0;
+        let app = started(folder.path(), (2, 9_000), is_told);
         let notices = app.world().resource::<Notices>();
-        assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 3."));
+        assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 10000."));
         assert_eq!(notices.len(), 1);
+        let run = app.world().resource::<CurrentRun>();
+        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running));
+    }
+
+    #[test]
+    fn a15_the_run_that_was_stopped_last_is_opened_paused_and_can_continue() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let is_open = |world: &World| world.resource::<CurrentRun>().reports().len() == 1;
+        let mut app = started(folder.path(), (2, 10_000), is_open);
+        let mut run = app.world_mut().resource_mut::<CurrentRun>();
+        assert_eq!((run.seed(), run.number(), run.reports().len()), (1, 0, 1));
+        assert_eq!(run.status(), RunStatus::Paused);
+        assert!(!run.milestones().is_empty(), "its best snake can be shown");
+        let mut notices = Notices::default();
+        run.apply(&RunCommand::New, &mut notices).expect("allowed");
+        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running), "the next unused seed");
     }
 }

@@ -112,7 +112,7 @@ mod tests {
             (Command::Run(RunCommand::Start), "Go (E)"),
             (Command::Run(RunCommand::Pause), "Go (E)"),
             (Command::Plan(PlanCommand::DropChange), "Go (Esc)"),
-            (Command::Stage(StageCommand::Single), "Go (Esc)"),
+            (Command::Stage(StageCommand::Leave), "Go (Esc)"),
             (Command::Run(RunCommand::Reset), "Go"),
         ] {
             assert_eq!(hint_with_key("Go", &command), hint);

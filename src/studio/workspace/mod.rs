@@ -2,7 +2,6 @@
 
 pub mod layout;
 pub mod scale;
-pub mod situation;
 pub mod widths;
 
 use std::collections::BTreeSet;

@@ -242,4 +242,17 @@ mod tests {
         }
         assert!(rollout.poses()[limb].translation.z < above.z - 1.0, "it falls again");
     }
+
+    #[test]
+    fn a8_no_pull_disqualifies_however_far_it_goes() {
+        let champion = shipped_champion().expect("well formed").champion;
+        let mut rollout = Rollout::new(&champion.genome, &champion.trial);
+        let targets_m = [[60.0, 0.0, 2.0], [-60.0, -60.0, 40.0], [0.0, 90.0, -20.0]];
+        while rollout.step() < rollout.last_step() {
+            let to_m = Vector::from(targets_m[rollout.step() as usize / 60 % targets_m.len()]);
+            rollout.pull(Some(crate::world::Pull { part: 0, held_at_m: Vector::ZERO, to_m }));
+            rollout.advance();
+            assert_eq!(rollout.evaluation().disqualified, None, "step {}", rollout.step());
+        }
+    }
 }

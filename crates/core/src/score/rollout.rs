@@ -51,7 +51,6 @@ pub struct Rollout {
     trace: Xxh3Default,
     step: u32,
     disqualified: Option<Disqualification>,
-    is_disturbed: bool,
 }
 
 impl Rollout {
@@ -96,7 +95,6 @@ impl Rollout {
             trace: Xxh3Default::new(),
             step: 0,
             disqualified: settled.err(),
-            is_disturbed: false,
         };
         rollout.furthest_y_m = rollout.middle_m().y;
         rollout
@@ -277,13 +275,12 @@ impl Rollout {
     /// Sets or ends the user's pull on a part, from the next step on. A pull disturbs the rollout for good: its result no longer describes
     /// the genome.
     pub fn pull(&mut self, pull: Option<Pull>) {
-        self.is_disturbed |= pull.is_some();
         self.simulation.pull(pull);
     }
 
     /// Returns whether the user has pulled a part during the rollout.
     pub fn is_disturbed(&self) -> bool {
-        self.is_disturbed
+        self.simulation.is_disturbed()
     }
 
     /// Returns the number of steps of the whole rollout, unless the agent is disqualified earlier.
@@ -318,7 +315,7 @@ impl Rollout {
     pub fn finish(&mut self) -> Option<Episode> {
         let is_disqualified = self.disqualified.is_some();
         let episode = self.control.finish(self.step, &self.simulation, is_disqualified);
-        episode.filter(|_| !self.is_disturbed)
+        episode.filter(|_| !self.is_disturbed())
     }
 
     /// Returns the snake's perception before the last step; empty for a controller that does not sense its surroundings.

@@ -22,8 +22,9 @@ const DAMPING_RATIO: f32 = 0.6;
 /// Maximum damping per step, dimensionless. At a limb's end the effective mass is only a quarter of the limb's mass, so an explicit step
 /// would overshoot from 0.5 on.
 const MAX_DAMPING_PER_STEP: f32 = 0.4;
-/// Maximum stretch of the spring, in metres, so that a jerk of the mouse does not tear the snake apart.
-const MAX_STRETCH_M: f32 = 4.0;
+/// Maximum stretch of the spring, in metres, so that a jerk of the mouse does not tear the snake apart. The damping then limits the speed
+/// to 12.5 m/s, and the force to fifteen times the part's weight, which lifts a whole snake.
+const MAX_STRETCH_M: f32 = 1.5;
 
 impl Pull {
     /// Returns the force of the spring, in N, and the point on which it acts, in metres.

@@ -56,6 +56,8 @@ pub struct Simulation {
     /// The user's pull on a part, or `None`. `was_pulled` tells whether there was a pull in the last step.
     pull: Option<Pull>,
     was_pulled: bool,
+    /// Whether the user has ever pulled a part.
+    is_disturbed: bool,
     /// Forces on each part in another engine, if this world mirrors one; empty otherwise.
     mirrored: Vec<Option<Vector>>,
     /// The snake in the engine *lanes*, if *lanes* computes the motion. Rapier's bodies then hold the state, but rapier takes no steps.
@@ -130,6 +132,7 @@ impl Simulation {
             balance: EnergyBalance::default(),
             pull: None,
             was_pulled: false,
+            is_disturbed: false,
             mirrored: Vec::new(),
             lanes: LanesWorld::of(plan),
             turns_before: Vec::with_capacity(parts.len()),
@@ -155,7 +158,13 @@ impl Simulation {
 
     /// Checks the state after a step, and adds the effort of the step to the total.
     fn take_in_step(&mut self) -> Result<(), Disqualification> {
-        let mut effort = self.check_health()?;
+        let mut effort = match self.check_health() {
+            // No trial contains a pull, so the limits of a trial do not end it.
+            Err(limit) if self.is_disturbed && limit != Disqualification::NotFinite => {
+                return Ok(());
+            }
+            checked => checked?,
+        };
         let motion_j = self.motion_energy_j();
         self.balance.motion_j += motion_j;
         effort.energy_j = motion_j + self.holding_energy_j();
@@ -240,9 +249,16 @@ impl Simulation {
         &mut self.physics
     }
 
-    /// Sets or ends the user's pull on a part, from the next step on. A pulled snake no longer runs its trial.
+    /// Sets or ends the user's pull on a part, from the next step on. A pulled snake no longer runs its trial, and only a state that is
+    /// not finite ends the simulation.
     pub fn pull(&mut self, pull: Option<Pull>) {
+        self.is_disturbed |= pull.is_some();
         self.pull = pull;
+    }
+
+    /// Returns whether the user has ever pulled a part.
+    pub fn is_disturbed(&self) -> bool {
+        self.is_disturbed
     }
 
     fn apply_pull(&mut self) {
@@ -307,6 +323,7 @@ impl Clone for Simulation {
             balance: self.balance,
             pull: self.pull,
             was_pulled: self.was_pulled,
+            is_disturbed: self.is_disturbed,
             mirrored: self.mirrored.clone(),
             lanes: self.lanes.clone(),
             turns_before: Vec::with_capacity(self.parts.len()),

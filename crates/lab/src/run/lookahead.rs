@@ -26,6 +26,11 @@ impl Lookahead {
         Self::run(rollout.last_step(), || rollout)
     }
 
+    /// Returns a copy with the history, if it is complete. Simulates nothing.
+    pub fn kept(&self) -> Self {
+        Self { task: None, history: self.history.clone() }
+    }
+
     fn run(steps: u32, begin: impl FnOnce() -> Rollout + Send + 'static) -> Self {
         let task = BackgroundTask::start_counted(steps as usize, move |control| {
             let goes_on = |step: u32| {

@@ -6,12 +6,14 @@ use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
 use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
+use crate::studio::scene::camera::rig::CameraRig;
+use crate::studio::scene::way_back::{LeftScene, WayBack};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode, end_s};
+use crate::studio::stage::{Show, StageMode, end_s, spawn};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
@@ -25,12 +27,16 @@ use snakes_core::save::library::plain_name;
 /// System parameters that make up the state of the stage.
 #[derive(SystemParam)]
 pub(crate) struct StageParams<'w, 's> {
-    lanes: Query<'w, 's, &'static Lane>,
-    pub mode: Res<'w, StageMode>,
-    show: MessageWriter<'w, Show>,
-    playback: ResMut<'w, Playback>,
-    selection: ResMut<'w, Selection>,
-    following: ResMut<'w, Following>,
+    pub(super) lanes: Query<'w, 's, (Entity, &'static Lane)>,
+    pub(super) mode: ResMut<'w, StageMode>,
+    pub(super) show: MessageWriter<'w, Show>,
+    /// What the present command shows, if anything.
+    pub(super) pending: Local<'s, Option<Show>>,
+    pub(super) way_back: ResMut<'w, WayBack>,
+    commands: Commands<'w, 's>,
+    pub(super) playback: ResMut<'w, Playback>,
+    pub(super) selection: ResMut<'w, Selection>,
+    pub(super) following: ResMut<'w, Following>,
     turns: ResMut<'w, Turns>,
 }
 
@@ -55,9 +61,13 @@ impl StageParams<'_, '_> {
         champions
     }
 
+    fn all_lanes(&self) -> impl Iterator<Item = &Lane> {
+        self.lanes.iter().map(|(_, lane)| lane)
+    }
+
     /// Returns the champions on the stage, in the order of their lanes.
     fn champions(&self) -> Vec<StagedChampion> {
-        let mut lanes: Vec<&Lane> = self.lanes.iter().collect();
+        let mut lanes: Vec<&Lane> = self.all_lanes().collect();
         lanes.sort_by_key(|lane| lane.number());
         lanes.into_iter().map(|lane| lane.staged().clone()).collect()
     }
@@ -74,15 +84,10 @@ impl StageParams<'_, '_> {
 
     /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
     pub fn selected(&self) -> Option<StagedChampion> {
-        let lanes = || self.lanes.iter();
+        let lanes = || self.all_lanes();
         let selected = lanes().find(|lane| lane.number() == self.selection.lane);
         let lane = selected.or_else(|| lanes().min_by_key(|lane| lane.number()));
         lane.map(|lane| lane.staged().clone())
-    }
-
-    /// Returns a request that would show the present champions again in the present mode.
-    pub fn on_show(&self) -> Show {
-        Show { champions: self.champions(), mode: self.mode.clone() }
     }
 
     /// Shows other champions from their start until the user chooses again. A pause command later in the same frame
@@ -98,8 +103,23 @@ impl StageParams<'_, '_> {
     pub fn present_for_now(&mut self, show: Option<Show>) {
         if let Some(show) = show {
             self.playback.begin();
-            self.show.write(show);
+            *self.pending = Some(show);
         }
+    }
+
+    /// Brings back an earlier scene: its lanes, clock, camera, selection, and the generations that it followed.
+    pub(super) fn bring_back(&mut self, scene: LeftScene, camera: &mut CameraRig) {
+        for (entity, _) in &self.lanes {
+            self.commands.entity(entity).despawn();
+        }
+        for lane in scene.lanes {
+            spawn(&mut self.commands, lane.back());
+        }
+        *self.mode = scene.mode;
+        self.playback.restore(&scene.playback);
+        (self.selection.lane, self.selection.limb) = scene.selected;
+        *self.following = scene.following;
+        *camera = scene.camera;
     }
 
     /// Shows other champions. If this ends a what-if, reminds the user of the change.
@@ -186,12 +206,15 @@ impl StageParams<'_, '_> {
                 self.turns.take(*turn);
                 None
             }
+            // The scene comes back when the command is finished.
+            StageCommand::Leave => None,
             StageCommand::Single
                 if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) =>
             {
                 None
             }
             StageCommand::Single => {
+                self.following.stop();
                 let left = self.champions().into_iter().nth(self.selection.lane);
                 if let Some(left) = left.iter().find(|left| left.is_changed()) {
                     let text = format!(
@@ -201,7 +224,9 @@ impl StageParams<'_, '_> {
                     let take = Command::Plan(PlanCommand::UseWorldOfLane);
                     notices.offer("world", text, [("Use this world", take)]);
                 }
-                left.map(Show::solo)
+                // The clock goes on, so that the snake is seen at the same moment as among the others.
+                *self.pending = left.map(Show::solo);
+                None
             }
             StageCommand::KeepChange => {
                 self.settle();
@@ -209,7 +234,7 @@ impl StageParams<'_, '_> {
             }
             StageCommand::TryAnother => {
                 // The clock continues, because nothing on the stage changes.
-                self.show.write(another_beside(run, self.champions(), &self.mode)?);
+                *self.pending = Some(another_beside(run, self.champions(), &self.mode)?);
                 None
             }
             StageCommand::ShowAsFound => {
@@ -231,8 +256,9 @@ impl StageParams<'_, '_> {
 
     /// Executes a command to the clock of the stage.
     pub fn apply_to_player(&mut self, command: &PlayerCommand) {
-        let focused = self.lanes.iter().find(|lane| lane.number() == self.selection.lane);
+        let focused = self.all_lanes().find(|lane| lane.number() == self.selection.lane);
         let step_s = focused.map_or(1.0, Lane::step_s);
-        self.playback.apply(command, step_s, end_s(self.lanes.iter()));
+        let end_s = end_s(self.all_lanes());
+        self.playback.apply(command, step_s, end_s);
     }
 }

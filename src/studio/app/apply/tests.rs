@@ -1,5 +1,7 @@
 //! Commands as the user gives them, frame by frame.
 
+mod excursions;
+
 use super::*;
 use crate::studio::commands::StageCommand;
 use crate::studio::commands::library::LibraryCommand;
@@ -7,6 +9,7 @@ use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::opening::NamedChampion;
 use crate::studio::stage::playback::Playback;
@@ -47,6 +50,7 @@ fn app() -> App {
         .init_resource::<BodyEditor>()
         .init_resource::<Shares>()
         .init_resource::<Turns>()
+        .init_resource::<WayBack>()
         .init_resource::<MachinesLink>()
         .init_resource::<UndoHistory>()
         .init_resource::<Theme>()

@@ -36,7 +36,7 @@ fn pressed(name: &str) -> (Key, Held) {
 #[test]
 fn every_shortcut_triggers_its_action() {
     let situation =
-        Situation { is_race: true, can_undo: true, can_redo: true, ..Situation::default() };
+        Situation { can_leave: true, can_undo: true, can_redo: true, ..Situation::default() };
     for action in actions() {
         for name in action.keys {
             let (key, held) = pressed(name);
@@ -50,8 +50,8 @@ fn every_shortcut_triggers_its_action() {
 fn the_command_of_a_key_depends_on_the_situation() {
     let calm = Situation::default();
     assert_eq!(command(&Key::Escape, NONE, calm), None, "nothing to leave");
-    let is_race = Situation { is_race: true, ..calm };
-    assert_eq!(command(&Key::Escape, NONE, is_race), Some(Command::Stage(StageCommand::Single)));
+    let can_leave = Situation { can_leave: true, ..calm };
+    assert_eq!(command(&Key::Escape, NONE, can_leave), Some(Command::Stage(StageCommand::Leave)));
     let is_what_if = Situation { is_what_if: true, ..calm };
     assert_eq!(
         command(&Key::Escape, NONE, is_what_if),

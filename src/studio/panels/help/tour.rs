@@ -41,8 +41,8 @@ const STEPS: [TourStep; 5] = [
                When one beats all earlier ones, its generation appears on the stage.",
         try_it: "Pause evolution, or start it",
         is_done_by: |command| {
-            use RunCommand::{Pause, Reset, SingleGeneration, Start};
-            matches!(command, Command::Run(Start | Pause | SingleGeneration | Reset))
+            use RunCommand::{New, Pause, SingleGeneration, Start};
+            matches!(command, Command::Run(Start | Pause | SingleGeneration | New))
         },
     },
     TourStep {

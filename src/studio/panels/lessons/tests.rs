@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::studio::panels::testing::{self, Sent, clicked, panel};
-use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::lessons::Lessons;
 use crate::studio::state::undo::UndoHistory;
@@ -34,8 +33,7 @@ fn after(commands: &[LessonCommand]) -> Lessons {
     let mut run = prepared_run();
     let mut of = Lessons::default();
     for command in commands {
-        let show = Show { champions: Vec::new(), mode: StageMode::Solo };
-        of.apply(command, &mut run, show, &mut UndoHistory::default()).expect("allowed");
+        of.apply(command, &mut run, &mut UndoHistory::default()).expect("allowed");
     }
     of
 }

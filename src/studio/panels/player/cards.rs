@@ -10,8 +10,9 @@ use super::leaderboard::leaderboard;
 use super::limb_card::{CardSize, limb_card};
 use super::overlay_legend::overlay_legend;
 use crate::studio::commands::panel::PanelKind;
-use crate::studio::commands::{Command, LessonCommand, WindowCommand};
+use crate::studio::commands::{Command, LessonCommand, StageCommand, WindowCommand};
 use crate::studio::panels::on_stage::OnStage;
+use crate::studio::scene::way_back::{Excursion, WayBack};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::buttons::CommandButton;
@@ -36,6 +37,19 @@ pub(crate) fn lesson_card(
             });
         });
     });
+}
+
+/// Returns the label of the button that brings several snakes back after one of them was shown alone.
+fn back_in_words(way_back: &WayBack) -> Option<String> {
+    match way_back.innermost()? {
+        (Excursion::Snake | Excursion::Race, StageMode::Generation { number, .. }) => {
+            Some(format!("Back to generation {number}"))
+        }
+        (Excursion::Snake, StageMode::Race) => Some("Back to the race".to_owned()),
+        (Excursion::Snake, StageMode::WhatIf { .. }) => Some("Back to the what-if".to_owned()),
+        (Excursion::Snake | Excursion::Race, StageMode::Solo) => Some("Back".to_owned()),
+        _ => None,
+    }
 }
 
 /// Areas that the cards over the stage leave free or cover.
@@ -95,6 +109,7 @@ pub(crate) fn around_stage(
     let mut below_bar = below(bar.response.rect);
     let is_narrow = stage.width() < theme::NARROW_STAGE;
     let mut board = None;
+    let can_leave = on_stage.way_back.can_leave();
     // With several lanes, the default camera shows few snakes in the lower left corner.
     let low = (egui::Align2::LEFT_BOTTOM, stage.left_bottom());
     // With one lane, the stairs rise from the lower left to the upper right, so the sky at the upper left is free.
@@ -112,13 +127,20 @@ pub(crate) fn around_stage(
         let time_s = on_stage.playback.time_s();
         let shown = card("board", low.0, low.1).show(context, |ui| {
             frame.show(ui, |ui| {
-                leaderboard(ui, lanes, mode, focus, time_s, is_narrow, commands);
+                let leaves = (is_narrow, can_leave);
+                leaderboard(ui, lanes, mode, focus, time_s, leaves, commands);
             });
         });
         board = Some(shown.response.rect.expand(theme::GAP));
     } else if on_stage.following.awaits_first() {
         let shown = card("waiting", pivot, at).show(context, |ui| {
             frame.show(ui, |ui| waiting_card(ui, situation.progress, commands));
+        });
+        corner = Some(shown.response.rect);
+    } else if let Some(back) = back_in_words(&on_stage.way_back) {
+        let shown = card("back", pivot, at).show(context, |ui| {
+            let leave = Command::Stage(StageCommand::Leave);
+            frame.show(ui, |ui| CommandButton::new(back, "", leave).show(ui, commands));
         });
         corner = Some(shown.response.rect);
     }

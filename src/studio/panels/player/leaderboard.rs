@@ -52,14 +52,14 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
 }
 
 /// Draws the leaderboard, and collects the user's commands. `focus` is the lane whose numbers are shown. On a narrow
-/// stage (`is_narrow`) the texts are shorter.
+/// stage (`is_narrow`) the texts are shorter. `can_leave` tells whether an earlier scene can come back.
 pub(crate) fn leaderboard(
     ui: &mut egui::Ui,
     lanes: &[&Lane],
     mode: &StageMode,
     focus: usize,
     time_s: f64,
-    is_narrow: bool,
+    (is_narrow, can_leave): (bool, bool),
     commands: &mut Vec<Command>,
 ) {
     let palette = theme::of(ui);
@@ -133,7 +133,7 @@ pub(crate) fn leaderboard(
     }
     let selected = lanes.iter().find(|lane| lane.number() == focus);
     ui.horizontal(|ui| {
-        buttons(ui, mode, keeps_each, commands);
+        buttons(ui, mode, (keeps_each, can_leave), commands);
         if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged().is_changed()) {
             let hint = "Use the changed settings of the selected snake's world for the next run";
             let use_it = Command::Plan(PlanCommand::UseWorldOfLane);
@@ -166,10 +166,20 @@ fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Comman
 }
 
 /// Draws the buttons below the ranking.
-fn buttons(ui: &mut egui::Ui, mode: &StageMode, keeps_each: bool, commands: &mut Vec<Command>) {
+fn buttons(
+    ui: &mut egui::Ui,
+    mode: &StageMode,
+    (keeps_each, can_leave): (bool, bool),
+    commands: &mut Vec<Command>,
+) {
     let StageMode::WhatIf { .. } = mode else {
+        if can_leave {
+            let hint = "Return to the scene from before the race";
+            let leave = Command::Stage(StageCommand::Leave);
+            CommandButton::new("Leave race", hint, leave).show(ui, commands);
+        }
         let (hint, single) = ("Show only the selected snake", Command::Stage(StageCommand::Single));
-        CommandButton::new("Leave race", hint, single).show(ui, commands);
+        CommandButton::new("Only this one", hint, single).show(ui, commands);
         return;
     };
     if !keeps_each {

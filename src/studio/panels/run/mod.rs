@@ -1,4 +1,4 @@
-//! Run panel: start, pause, single generation and reset; progress; strategy and controller settings.
+//! Run panel: start, pause, single generation and new run; progress; strategy and controller settings.
 
 pub mod progress;
 
@@ -51,42 +51,33 @@ impl EvolutionPanel {
         let is_wrong = self.seed.problem().is_some() || self.sheet.has_problem();
         let status = run.status();
         let is_finished = status == RunStatus::Finished;
+        let differs = run.next_run_differs();
         let (label, start) = match status {
             RunStatus::Running => ("Pause", RunCommand::Pause),
-            RunStatus::Finished => ("New run", RunCommand::Start),
             RunStatus::Ready => ("Start", RunCommand::Start),
-            RunStatus::Paused => ("Resume", RunCommand::Start),
+            RunStatus::Paused | RunStatus::Finished => ("Continue", RunCommand::Start),
         };
         let wrong = Some("Correct the invalid value below first").filter(|_| is_wrong);
-        let no_start = wrong.filter(|_| is_finished);
-        let first = match no_start {
-            None => accent_button(ui, label),
-            Some(_) => egui::Button::new(egui::RichText::new(label).strong()),
-        };
-        let first = first.min_size(egui::vec2(theme::GAP * 10.0, 0.0));
-        let first_hint = match (is_finished, run.next_run_differs()) {
-            (true, false) => "Start a run with the next seed",
-            (true, true) => "Start a run with the changed settings",
-            (false, _) => "Start or pause evolution in the background",
-        };
         let over = Some("The run is finished; \"New run\" starts another").filter(|_| is_finished);
-        let single = "Finish one generation, then pause";
-        let reset = match run.next_run_differs() {
-            true => "Prepare a new run with the changed settings; the current run stays saved",
-            false => {
-                "Discard this run's generations and prepare it again (saved champions are kept)"
-            }
+        let wide = egui::vec2(theme::GAP * 10.0, 0.0);
+        let button = |ui: &egui::Ui, label: &str, is_first: bool| match is_first {
+            true => accent_button(ui, label).min_size(wide),
+            false => egui::Button::new(label),
+        };
+        let new_hint = match differs {
+            true => "Start a run with the changed settings; the current run stays saved",
+            false => "Start a run with the next seed; the current run stays saved",
         };
         ui.horizontal(|ui| {
-            CommandButton::of(first, first_hint, Command::Run(start))
-                .unless(no_start)
-                .show(ui, pressed);
-            for (label, hint, refusal, command) in [
-                ("One generation", single, over, RunCommand::SingleGeneration),
-                ("Reset", reset, wrong, RunCommand::Reset),
+            let single = "Finish one generation, then pause";
+            for (label, hint, refusal, command, is_first) in [
+                (label, "Evolve in the background, or pause", over, start, !is_finished),
+                ("One generation", single, over, RunCommand::SingleGeneration, false),
+                ("New run", new_hint, wrong, RunCommand::New, is_finished && !is_wrong),
             ] {
-                let button = CommandButton::new(label, hint, Command::Run(command));
-                button.unless(refusal).show(ui, pressed);
+                CommandButton::of(button(ui, label, is_first), hint, Command::Run(command))
+                    .unless(refusal)
+                    .show(ui, pressed);
             }
         });
     }
@@ -109,11 +100,7 @@ impl EvolutionPanel {
         founder(ui, run, commands);
         changes(ui, run);
         if run.next_run_differs() {
-            let next = match run.status() {
-                RunStatus::Finished => "Press New run to start it.",
-                _ => "Press Reset to prepare it, then Start.",
-            };
-            let hint = format!("These settings will be used by the next run. {next}");
+            let hint = "These settings will be used by the next run. Press New run to start it.";
             ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
         }
         self.strategy(ui);
@@ -237,7 +224,7 @@ const CLIMB: &str = "climb";
 
 /// Draws the list of unfinished runs that can be resumed.
 fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    let header = egui::CollapsingHeader::new("Resume a stopped run");
+    let header = egui::CollapsingHeader::new("Open an earlier run");
     let opened = header.show(ui, |ui| {
         let Some(stopped) = run.stopped() else {
             return explain(ui, "Loading…");

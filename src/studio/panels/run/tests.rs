@@ -25,7 +25,7 @@ fn each_button_sends_its_command() {
     for (label, command) in [
         ("Start", Command::Run(RunCommand::Start)),
         ("One generation", Command::Run(RunCommand::SingleGeneration)),
-        ("Reset", Command::Run(RunCommand::Reset)),
+        ("New run", Command::Run(RunCommand::New)),
     ] {
         assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
     }
@@ -71,12 +71,12 @@ fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
 }
 
 #[test]
-fn reset_is_disabled_while_a_value_is_invalid() {
+fn a_new_run_is_disabled_while_a_value_is_invalid() {
     let run = run();
     let sent = sent(&run, |harness| {
         type_into(harness, "Population", "a");
         assert!(shows(harness, "Population is \"a\"; allowed: 1 to"));
-        harness.get_by_label("Reset").click();
+        harness.get_by_label("New run").click();
         harness.run();
     });
     assert_eq!(sent, []);

@@ -191,7 +191,7 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         RunStatus::Finished => "The finished run used these settings: change a setting first",
     };
     if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
-        commands.extend([Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
+        commands.push(Command::Run(RunCommand::New));
     }
 }
 
@@ -277,7 +277,7 @@ mod tests {
         run.single_generation().expect("started");
         run.set_field("surface.friction", "0.5").expect("allowed");
         let commands = sent(&run, |harness| harness.get_by_label("New run in this world").click());
-        assert_eq!(commands, [Command::Run(RunCommand::Reset), Command::Run(RunCommand::Start)]);
+        assert_eq!(commands, [Command::Run(RunCommand::New)]);
     }
 
     #[test]

@@ -13,7 +13,6 @@ use super::rig::CameraRig;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::{HeldLimb, Selection};
 use crate::studio::stage::staged_world::{RayHit, StagedWorld};
 use crate::studio::ui::notifications::Notices;
@@ -101,7 +100,6 @@ fn drag(
     window: Single<&Window, With<PrimaryWindow>>,
     camera: Single<(&Camera, &GlobalTransform), With<StageCamera>>,
     lanes: Query<&Lane>,
-    playback: Res<Playback>,
     mut notices: ResMut<Notices>,
 ) {
     let Some(held) = selection.held_mut() else { return };
@@ -110,10 +108,6 @@ fn drag(
         return;
     }
     let Ok(lane) = lanes.get(held.lane) else { return };
-    if !held.is_pulling && !playback.is_playing() {
-        let text = "Playback is paused: press Space to play, then pull.";
-        notices.update("pull", text.to_owned());
-    }
     if !held.is_pulling && lane.staged().recording().is_some() {
         notices
             .info("A recording cannot be pulled; \"Simulate again\" makes it a simulation.".into());
@@ -156,7 +150,8 @@ fn clear_selection(
     mode: Res<StageMode>,
     added: Query<&Lane, Added<Lane>>,
 ) {
-    if added.is_empty() {
+    // An earlier scene comes back with its selection.
+    if added.iter().all(Lane::is_back) {
         return;
     }
     if matches!(*mode, StageMode::WhatIf { .. }) {

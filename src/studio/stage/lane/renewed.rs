@@ -1,9 +1,10 @@
-//! Lanes that replace earlier ones and reuse their computed steps.
+//! Lanes that replace earlier ones and reuse their computed steps, and lanes of an earlier scene.
 
 use std::sync::Arc;
 
 use super::{Lane, Readings, Replay, StagedChampion};
 use snakes_core::score::Rollout;
+use snakes_lab::run::Lookahead;
 
 impl Lane {
     /// Returns whether the computed steps of this lane can be reused for a lane with this champion.
@@ -31,6 +32,35 @@ impl Lane {
             self.readings = Readings::new(&self.replay, self.trial().physics.steps_per_s);
         }
         self
+    }
+
+    /// Copies the lane in its present state, with the effect of all pulls, for a scene that may come back.
+    pub fn kept(&self) -> Self {
+        Self {
+            staged: self.staged.clone(),
+            body: self.body.clone(),
+            replay: self.replay.clone(),
+            lookahead: self.lookahead.kept(),
+            before: self.before.clone(),
+            readings: self.readings.clone(),
+            detour_m: self.detour_m.clone(),
+            is_back: true,
+            ..*self
+        }
+    }
+
+    /// Begins the lookahead of a kept lane again, unless it is complete or the lane needs none.
+    pub fn back(self) -> Self {
+        let needs_none = self.is_ghost || self.history().is_some();
+        if needs_none || self.staged.recording().is_some() {
+            return self;
+        }
+        Self { lookahead: Lookahead::of(self.staged.rollout()), ..self }
+    }
+
+    /// Returns whether the lane came back with an earlier scene.
+    pub fn is_back(&self) -> bool {
+        self.is_back
     }
 
     /// Returns the undisturbed rollout after `step` steps, simulated by this engine.

@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 
-use super::CurrentRun;
 use super::live_changes::{news_of, refusal_in_words};
+use super::{CurrentRun, RunStatus};
+use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::ExistingRun;
 use snakes_lab::run::{OpenedRun, RunEvent};
@@ -14,10 +15,14 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(FixedUpdate, take_in);
 }
 
-/// Starts evolution together with the program.
-fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
-    if let Err(problem) = run.start() {
-        notices.problem(problem);
+/// Starts evolution together with the program, unless a stopped run may be opened instead.
+fn start_at_once(
+    mut run: ResMut<CurrentRun>,
+    context: Res<RunContext>,
+    mut notices: ResMut<Notices>,
+) {
+    if !context.offers_stopped_run {
+        notices.problems(run.start().err());
     }
 }
 
@@ -35,7 +40,8 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                 run.source.earlier = ExistingRun::Keep;
                 run.discarded = None;
                 let has_ended = run.plan_now.has_ended(behind.iter().map(|report| &report.record));
-                if let Some(last) = behind.last().filter(|_| !has_ended) {
+                let is_running = run.status() == RunStatus::Running;
+                if let Some(last) = behind.last().filter(|_| is_running && !has_ended) {
                     notices
                         .info(format!("The run continues after generation {}.", last.generation));
                 }
@@ -97,9 +103,8 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
 mod tests {
     use super::*;
     use crate::studio::schedule::RESULTS_HZ;
-    use crate::studio::state::current_run::{RunStatus, prepared_run, small_run};
+    use crate::studio::state::current_run::{prepared_run, small_run};
     use crate::studio::state::options::Options;
-    use crate::studio::state::run_context::RunContext;
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
     use snakes_core::schema::SettingValue;

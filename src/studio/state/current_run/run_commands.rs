@@ -25,6 +25,7 @@ impl CurrentRun {
             RunCommand::Start => self.start(),
             RunCommand::Pause => self.pause(),
             RunCommand::SingleGeneration => self.single_generation(),
+            RunCommand::New => self.begin_next(),
             RunCommand::Reset => {
                 let (plan, finished) = (self.source.plan.clone(), self.reports.len());
                 let folder = self.source.folder.clone();

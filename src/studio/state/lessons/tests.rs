@@ -3,7 +3,6 @@
 use std::sync::OnceLock;
 
 use super::*;
-use crate::studio::stage::StageMode;
 use crate::studio::state::current_run::prepared_run;
 use snakes_core::evolve::Champion;
 use snakes_core::save::load_preset;
@@ -252,37 +251,31 @@ fn every_scene_of_every_lesson_can_be_shown() {
 }
 
 #[test]
-fn after_a_lesson_stage_and_settings_are_as_they_were() {
+fn after_a_lesson_settings_are_as_they_were() {
     let mut run = prepared_run();
-    let own = champions("climber", &[LESSONS[0].scenes[0].sides()[1].clone()]).expect("it fits");
     let next = run.next_plan().clone();
     let mut lessons = Lessons::default();
-    let stage = |champions: Vec<StagedChampion>| Show { champions, mode: StageMode::Solo };
     let mut history = UndoHistory::default();
-    let shown = lessons.begin(0, &mut run, stage(own.clone()), &mut history);
+    let shown = lessons.begin(0, &mut run, &mut history);
     assert_eq!(shown.expect("allowed").expect("a scene").champions.len(), 3);
     run.set_field("surface.friction", "0.2").expect("allowed");
-    lessons.begin(1, &mut run, stage(Vec::new()), &mut history).expect("allowed");
+    lessons.begin(1, &mut run, &mut history).expect("allowed");
     assert_eq!(*run.next_plan(), next, "the next lesson starts with the user's settings");
     run.set_field("surface.friction", "0.3").expect("allowed");
-    let back = lessons.leave(&mut run, &mut history).expect("allowed").expect("the earlier stage");
+    lessons.leave(&mut run, &mut history).expect("allowed");
     assert_eq!(*run.next_plan(), next);
-    assert_eq!(back.mode, StageMode::Solo);
-    assert_eq!(back.champions.len(), own.len());
     assert!(lessons.view().is_none());
 }
 
 /// Begins the first lesson. Returns the lessons and a prepared run.
 fn first_lesson() -> (Lessons, CurrentRun) {
     let (mut lessons, mut run) = (Lessons::default(), prepared_run());
-    let show = Show { champions: Vec::new(), mode: StageMode::Solo };
-    lessons.begin(0, &mut run, show, &mut UndoHistory::default()).expect("allowed");
+    lessons.begin(0, &mut run, &mut UndoHistory::default()).expect("allowed");
     (lessons, run)
 }
 
 fn apply(lessons: &mut Lessons, run: &mut CurrentRun, command: LessonCommand) -> Option<Show> {
-    let show = Show { champions: Vec::new(), mode: StageMode::Solo };
-    lessons.apply(&command, run, show, &mut UndoHistory::default()).expect("allowed")
+    lessons.apply(&command, run, &mut UndoHistory::default()).expect("allowed")
 }
 
 #[test]

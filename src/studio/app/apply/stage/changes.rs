@@ -48,7 +48,7 @@ impl StageParams<'_, '_> {
             // The lanes that are kept continue.
             (PlanCommand::DropChange, _) => {
                 self.following.stop();
-                self.show.write_batch(show);
+                *self.pending = show;
             }
             _ => self.present(show),
         }
@@ -84,7 +84,7 @@ impl StageParams<'_, '_> {
     fn moment(&self, history: &UndoHistory) -> TriedMoment {
         let at_start = TriedMoment { time_s: 0.0, rollout: None };
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
-        let Some(lane) = self.lanes.iter().find(|lane| lane.number() == original) else {
+        let Some(lane) = self.all_lanes().find(|lane| lane.number() == original) else {
             return at_start;
         };
         // A drag of a slider across the original value ends the what-if and begins it again.
@@ -117,6 +117,6 @@ impl StageParams<'_, '_> {
             is_original || current.is_some_and(|staged| staged.changes_at_step().is_some());
         let start_s = if is_from_moment { moment.time_s } else { 0.0 };
         self.playback.play_change(start_s, moment.time_s);
-        self.show.write(show);
+        *self.pending = Some(show);
     }
 }

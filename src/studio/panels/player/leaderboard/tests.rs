@@ -9,7 +9,7 @@ use snakes_core::evolve::{RunPlan, Settings};
 fn board<'a>(lanes: &'a [Lane], mode: StageMode, time_s: f64, is_narrow: bool) -> Sent<'a> {
     panel([800.0, 600.0], move |ui, commands| {
         let lanes: Vec<&Lane> = lanes.iter().collect();
-        leaderboard(ui, &lanes, &mode, 0, time_s, is_narrow, commands);
+        leaderboard(ui, &lanes, &mode, 0, time_s, (is_narrow, true), commands);
     })
 }
 
@@ -23,7 +23,8 @@ fn a_click_focuses_a_lane_and_buttons_keep_or_discard_a_change() {
     let what_if = StageMode::what_if(plan());
     for (mode, label, command) in [
         (StageMode::Race, "snake 1", Command::Stage(StageCommand::Focus(1))),
-        (StageMode::Race, "Leave race", Command::Stage(StageCommand::Single)),
+        (StageMode::Race, "Leave race", Command::Stage(StageCommand::Leave)),
+        (StageMode::Race, "Only this one", Command::Stage(StageCommand::Single)),
         (what_if.clone(), "Keep", Command::Stage(StageCommand::KeepChange)),
         (what_if.clone(), "Try another", Command::Stage(StageCommand::TryAnother)),
         (what_if, "Discard", Command::Plan(PlanCommand::DropChange)),

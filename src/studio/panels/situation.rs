@@ -3,12 +3,13 @@
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::Workspace;
 use crate::studio::commands::actions::Situation;
+use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::StageMode;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::state::shares::Shares;
 use crate::studio::state::undo::{UndoDirection, UndoHistory};
+use crate::studio::workspace::Workspace;
 
 /// Resources from which the current situation is computed.
 #[derive(SystemParam)]
@@ -18,13 +19,15 @@ pub(crate) struct CurrentSituation<'w> {
     workspace: Res<'w, Workspace>,
     history: Res<'w, UndoHistory>,
     shares: Res<'w, Shares>,
+    way_back: Res<'w, WayBack>,
 }
 
 impl CurrentSituation<'_> {
     /// Returns the current situation.
     pub fn situation(&self) -> Situation {
         let is_sharing = self.shares.busy().is_some();
-        let situation = Situation::of(&self.run, &self.mode, &self.workspace, &self.history);
+        let (mode, way_back) = (&self.mode, &self.way_back);
+        let situation = Situation::of(&self.run, mode, way_back, &self.workspace, &self.history);
         Situation { is_sharing, ..situation }
     }
 }
@@ -34,6 +37,7 @@ impl Situation {
     pub fn of(
         run: &CurrentRun,
         mode: &StageMode,
+        way_back: &WayBack,
         workspace: &Workspace,
         history: &UndoHistory,
     ) -> Self {
@@ -41,7 +45,8 @@ impl Situation {
             is_running: run.status() == RunStatus::Running,
             is_what_if: matches!(mode, StageMode::WhatIf { .. }),
             can_try_another: mode.can_try_another(),
-            is_race: matches!(mode, StageMode::Race | StageMode::Generation { .. }),
+            is_finished: run.status() == RunStatus::Finished,
+            can_leave: way_back.can_leave(),
             is_covered: workspace.modal().is_some()
                 || workspace.is_bare
                 || workspace.is_presenting(),

@@ -1,0 +1,143 @@
+//! Effect of each command on the way back to earlier scenes of the stage.
+
+use super::stage::StageParams;
+use crate::studio::commands::{
+    BodyCommand, Command, ExamCommand, PlanCommand, RunCommand, StageCommand,
+};
+use crate::studio::scene::camera::rig::CameraRig;
+use crate::studio::scene::way_back::{Excursion, LeftScene, WayBack};
+use crate::studio::stage::StageMode;
+
+/// Effect of a command on the way back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Effect {
+    /// The way back stays as it is.
+    None,
+    /// An excursion begins.
+    Enter(Excursion),
+    /// An excursion ends.
+    Leave(Excursion),
+    /// The kept lane of a what-if stays on the stage.
+    Settle,
+    /// Something new is on the stage, from which nothing leads back.
+    Forget,
+}
+
+/// Whether the stage is presented and whether a lesson is open, before a command or after it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frames {
+    pub is_presenting: bool,
+    pub is_lesson: bool,
+}
+
+/// Returns the effect of a command that shows `shown`, if anything, on a stage in the mode `from`.
+fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &WayBack) -> Effect {
+    use StageCommand::{
+        Join, KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration,
+        Single, Sweep, TellStory, ToggleFollowEvolution,
+    };
+    let is_what_if = |mode: &StageMode| matches!(mode, StageMode::WhatIf { .. });
+    let is_race = shown == Some(&StageMode::Race);
+    match command {
+        Command::Stage(ToggleFollowEvolution | TellStory)
+        | Command::Plan(PlanCommand::StartFromSave(_)) => Effect::Forget,
+        Command::Stage(Leave) => {
+            way.innermost().map_or(Effect::None, |(innermost, _)| Effect::Leave(innermost))
+        }
+        Command::Plan(PlanCommand::DropChange) | Command::Undo | Command::Redo
+            if is_what_if(from) && shown.is_some_and(|mode| !is_what_if(mode)) =>
+        {
+            Effect::Leave(Excursion::WhatIf)
+        }
+        Command::Exam(ExamCommand::BackToOwnStairs) => Effect::Leave(Excursion::Exam),
+        Command::Body(BodyCommand::Close) => Effect::Leave(Excursion::Body),
+        _ if shown.is_none() => Effect::None,
+        Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) => Effect::Settle,
+        Command::Plan(_) | Command::Undo | Command::Redo => match shown.map(is_what_if) {
+            Some(true) if !is_what_if(from) => Effect::Enter(Excursion::WhatIf),
+            Some(false) if is_what_if(from) => Effect::Leave(Excursion::WhatIf),
+            _ => Effect::None,
+        },
+        Command::Stage(Sweep(_) | RaceStairs | RaceGenerations | RaceLeaders(_)) => {
+            Effect::Enter(Excursion::Race)
+        }
+        Command::Stage(Join(_)) if is_race && *from != StageMode::Race => {
+            Effect::Enter(Excursion::Race)
+        }
+        Command::Stage(Join(_)) => Effect::None,
+        Command::Stage(Single) => Effect::Enter(Excursion::Snake),
+        Command::Stage(Show(_)) | Command::Library(_) | Command::File(_) => match way.innermost() {
+            _ if is_race => Effect::Enter(Excursion::Race),
+            None if *from == StageMode::Solo => Effect::None,
+            _ => Effect::Enter(Excursion::Snake),
+        },
+        Command::Exam(_) => Effect::Enter(Excursion::Exam),
+        Command::Body(_) => Effect::Enter(Excursion::Body),
+        Command::Stage(ShowGeneration(_)) | Command::Lesson(_) => Effect::Forget,
+        Command::Run(
+            RunCommand::Start | RunCommand::New | RunCommand::Reset | RunCommand::Continue(_),
+        ) => Effect::Forget,
+        _ => Effect::None,
+    }
+}
+
+impl StageParams<'_, '_> {
+    /// Returns the present scene without its lanes, which are copied only when an excursion begins.
+    pub(super) fn scene(&self, camera: &CameraRig) -> LeftScene {
+        LeftScene {
+            mode: self.mode.clone(),
+            lanes: Vec::new(),
+            playback: self.playback.clone(),
+            camera: camera.clone(),
+            selected: (self.selection.lane, self.selection.limb),
+            following: self.following.clone(),
+        }
+    }
+
+    /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
+    /// is the scene before the command.
+    pub(super) fn finish(
+        &mut self,
+        command: &Command,
+        left: LeftScene,
+        (before, after): (Frames, Frames),
+        camera: &mut CameraRig,
+    ) {
+        let shown = self.pending.take();
+        let mode = shown.as_ref().map(|show| &show.mode);
+        let (presents, teaches) = (Excursion::Presenting, Excursion::Lesson);
+        let effect = match (before, after) {
+            (Frames { is_presenting: false, .. }, Frames { is_presenting: true, .. }) => {
+                Effect::Enter(presents)
+            }
+            (Frames { is_presenting: true, .. }, Frames { is_presenting: false, .. }) => {
+                Effect::Leave(presents)
+            }
+            (Frames { is_lesson: false, .. }, Frames { is_lesson: true, .. }) => {
+                Effect::Enter(teaches)
+            }
+            (Frames { is_lesson: true, .. }, Frames { is_lesson: false, .. }) => {
+                Effect::Leave(teaches)
+            }
+            _ => effect(command, &left.mode, mode, &self.way_back),
+        };
+        match effect {
+            Effect::None => {}
+            Effect::Enter(excursion) => {
+                let lanes = &self.lanes;
+                self.way_back.enter(excursion, || {
+                    let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
+                    LeftScene { lanes, ..left }
+                });
+            }
+            Effect::Leave(excursion) => {
+                if let Some(scene) = self.way_back.leave(excursion) {
+                    return self.bring_back(scene, camera);
+                }
+            }
+            Effect::Settle => self.way_back.settle(),
+            Effect::Forget => self.way_back.forget(),
+        }
+        self.show.write_batch(shown);
+    }
+}

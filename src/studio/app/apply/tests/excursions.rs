@@ -1,0 +1,146 @@
+//! Excursions from the scene on the stage and back, each within each other.
+
+use super::*;
+use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::{ExamCommand, StageCommand};
+use crate::studio::stage;
+use crate::studio::state::current_run::{climber, explored_run};
+use bevy::time::TimeUpdateStrategy;
+use snakes_core::score::{ExamEnd, ExamSuite, StairsGrid};
+use snakes_core::world::Pose;
+use std::time::Duration;
+
+/// Everything that a person sees on the stage.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    labels: Vec<String>,
+    poses: Vec<Vec<Pose>>,
+    mode: StageMode,
+    time_s: f64,
+    is_playing: bool,
+    camera: String,
+    selected: (usize, Option<usize>),
+    follows: bool,
+    friction: f32,
+}
+
+fn seen(app: &mut App) -> Seen {
+    let mut query = app.world_mut().query::<&Lane>();
+    let mut lanes: Vec<&Lane> = query.iter(app.world()).collect();
+    lanes.sort_by_key(|lane| lane.number());
+    let world = app.world();
+    let (playback, selection) = (world.resource::<Playback>(), world.resource::<Selection>());
+    Seen {
+        labels: lanes.iter().map(|lane| lane.staged().label().to_owned()).collect(),
+        poses: lanes.iter().map(|lane| lane.last_poses().to_vec()).collect(),
+        mode: world.resource::<StageMode>().clone(),
+        time_s: playback.time_s(),
+        is_playing: playback.is_playing(),
+        camera: format!("{:?}", world.resource::<CameraRig>()),
+        selected: (selection.lane, selection.limb),
+        follows: world.resource::<Following>().follows_evolution(),
+        friction: world.resource::<CurrentRun>().next_settings().trial.surface.friction,
+    }
+}
+
+/// Sends a command, and lets the stage draw frames of 0 s until it is there.
+fn send(app: &mut App, command: &Command) {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    app.world_mut().write_message(command.clone());
+    (0..4).for_each(|_| app.update());
+}
+
+/// Creates a paused stage with the snakes of a generation after 0.5 s, seen by an unusual camera, while evolution is
+/// followed.
+fn studio() -> App {
+    let mut app = app();
+    app.add_plugins((MinimalPlugins, stage::plugin));
+    app.insert_resource(explored_run());
+    let champion = climber(0).champion().clone();
+    let own = champion.trial.clone();
+    let conditions = ExamSuite::Stairs.conditions(&own);
+    let end = ExamEnd {
+        steps: 2,
+        way: 0.2,
+        landed_s: None,
+        arrived_s: None,
+        has_landed: false,
+        is_disqualified: false,
+    };
+    let ends = vec![end; conditions.len()];
+    let grid = StairsGrid::of(ExamSuite::Stairs, &own, &conditions, &ends);
+    app.world_mut().resource_mut::<StairsExams>().keep(champion, vec![grid]);
+    app.update();
+    app
+}
+
+/// Goes to 0.5 s and pauses there, turns the camera, and selects a limb.
+fn settle(app: &mut App) {
+    app.world_mut().resource_mut::<Playback>().hold_at(0.5);
+    app.world_mut().resource_mut::<CameraRig>().take(CameraMode::Top);
+    app.world_mut().resource_mut::<Selection>().limb = Some(2);
+    app.world_mut().resource_mut::<Following>().follow_evolution();
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    (0..4).for_each(|_| app.update());
+}
+
+/// Returns the command that begins each excursion, and the one that ends it.
+fn excursions() -> Vec<(Command, Command)> {
+    let leave = Command::Stage(StageCommand::Leave);
+    let present = Command::Window(WindowCommand::TogglePresenting);
+    let watch = ExamCommand::Watch { suite: ExamSuite::Stairs, cell: 12 };
+    vec![
+        (Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned())), leave.clone()),
+        (Command::Stage(StageCommand::RaceStairs), leave.clone()),
+        (Command::Stage(StageCommand::RaceGenerations), leave.clone()),
+        (Command::Stage(StageCommand::Single), leave),
+        (set("0.31"), Command::Plan(PlanCommand::DropChange)),
+        (set("0.32"), Command::Undo),
+        (Command::Lesson(LessonCommand::Begin(0)), Command::Lesson(LessonCommand::Leave)),
+        (present.clone(), present),
+        (Command::Exam(watch), Command::Exam(ExamCommand::BackToOwnStairs)),
+    ]
+}
+
+/// Enters an excursion, and changes whatever a person can change within it.
+fn enter(app: &mut App, command: &Command) {
+    app.world_mut().resource_mut::<UndoHistory>().settle();
+    send(app, command);
+    app.world_mut().resource_mut::<UndoHistory>().settle();
+}
+
+#[test]
+fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
+    let bases = [Command::Stage(StageCommand::ShowGeneration(Some(1))), set("0.9")];
+    for show in &bases[..1] {
+        for (first, end_first) in excursions() {
+            for (second, end_second) in excursions() {
+                let mut app = studio();
+                send(&mut app, show);
+                settle(&mut app);
+                let home = seen(&mut app);
+                enter(&mut app, &first);
+                let entered = seen(&mut app);
+                settle(&mut app);
+                let there = seen(&mut app);
+                enter(&mut app, &second);
+                let is_within = seen(&mut app) != there;
+                app.world_mut().resource_mut::<CameraRig>().take(CameraMode::Side);
+                app.world_mut().resource_mut::<Playback>().restart();
+                if is_within {
+                    send(&mut app, &end_second);
+                    let is_alike =
+                        std::mem::discriminant(&first) == std::mem::discriminant(&second);
+                    if !is_alike {
+                        assert_eq!(seen(&mut app), there, "{second:?} within {first:?}");
+                    }
+                }
+                if entered != home {
+                    send(&mut app, &end_first);
+                    let said = app.world().resource::<Notices>().last().map(str::to_owned);
+                    assert_eq!(seen(&mut app), home, "{first:?} with {second:?}: {said:?}");
+                }
+            }
+        }
+    }
+}
