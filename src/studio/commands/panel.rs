@@ -34,10 +34,10 @@ impl PanelKind {
     pub const ALL: [Self; 10] = [
         Self::Run,
         Self::World,
+        Self::Lessons,
+        Self::Library,
         Self::Charts,
         Self::Champions,
-        Self::Library,
-        Self::Lessons,
         Self::Senses,
         Self::Machines,
         Self::Body,
@@ -46,20 +46,20 @@ impl PanelKind {
 
     /// Panels of the initial layout, in the order of their tabs. The remaining ones are rarely needed and open on
     /// demand.
-    pub const INITIAL: &'static [Self] = Self::ALL.split_at(7).0;
+    pub const INITIAL: &'static [Self] = Self::ALL.split_at(4).0;
 
     /// Returns the label of the tab, the shortcuts, and the panel's purpose.
     fn words(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
             Self::Stage => ("Stage", &[], "The snake on its stairs"),
-            Self::Run => ("Run", &["Ctrl 1"], "Start, pause and configure evolution"),
-            Self::World => ("World", &["Ctrl 2"], "Change the surface, the snake and the stairs"),
+            Self::Run => ("Watch", &["Ctrl 1"], "Watch evolution, start and pause it"),
+            Self::World => ("Change", &["Ctrl 2"], "Change the surface, the snake and the stairs"),
             Self::Charts => ("Charts", &["Ctrl 3"], "See how evolution works"),
             Self::Champions => ("Champions", &["Ctrl 4"], "Replay the best of every generation"),
             Self::Library => {
                 ("Library", &["Ctrl 5"], "All saved champions and runs: replay, race, export")
             }
-            Self::Lessons => ("Lessons", &["Ctrl 6"], "Two-minute experiments"),
+            Self::Lessons => ("Learn", &["Ctrl 6"], "Two-minute experiments"),
             Self::Senses => {
                 ("Senses", &["Ctrl 7"], "What the snake senses, and its controller at work")
             }

@@ -342,8 +342,11 @@ impl Viewer<'_, '_, '_> {
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => {
-                panels.evolution.ui(ui, run, commands);
-                panels.fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
+                let fitness = &mut panels.fitness;
+                let chart = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
+                    fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
+                };
+                panels.evolution.ui(ui, run, chart, commands);
             }
             PanelKind::World => {
                 let read = ReadLanes::of(lanes, focused, on_stage);

@@ -13,8 +13,8 @@ use crate::studio::ui::theme;
 pub(crate) struct Layout {
     state: DockState<PanelKind>,
     widths: PanelWidths,
-    /// Size class of the window in the last frame; `None` before the first one.
-    class: Option<SizeClass>,
+    /// Whether the window was high in the last frame; `None` before the first one.
+    was_high: Option<bool>,
     /// Whether to build the default layout as soon as the window's size is known.
     is_to_be_laid_out: bool,
     /// Panel to focus after the default layout is built.
@@ -25,32 +25,18 @@ pub(crate) struct Layout {
     in_front: Vec<PanelKind>,
 }
 
-/// Minimum window width for panels on both sides of the stage, in points.
-const WIDE: f32 = 1500.0;
 /// Minimum window height for the champions below the other panels, in points.
 const HIGH: f32 = 800.0;
 /// Width of the left panels, in points. All tab names fit.
 const LEFT: f32 = 384.0;
-/// Width of the right panels in a wide window, in points.
-const RIGHT: f32 = 420.0;
 /// Maximum number of panels in one place. The tab bar has no room for more names.
 const MOST_TABS: usize = PanelKind::INITIAL.len();
 /// Share of a full place's height that its panels keep when another panel opens below them.
 const UPPER_SHARE: f32 = 0.45;
 
-/// Properties of the window that decide the default layout.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct SizeClass {
-    /// Whether panels fit on both sides of the stage.
-    is_wide: bool,
-    /// Whether panels fit below other panels.
-    is_high: bool,
-}
-
-impl SizeClass {
-    fn of(size: egui::Vec2) -> Self {
-        Self { is_wide: size.x >= WIDE, is_high: size.y >= HIGH }
-    }
+/// Returns whether a window of this size, in points, has room for panels below other panels.
+fn is_high(size: egui::Vec2) -> bool {
+    size.y >= HIGH
 }
 
 impl Default for Layout {
@@ -58,7 +44,7 @@ impl Default for Layout {
         Self {
             state: DockState::new(vec![PanelKind::Stage]),
             widths: PanelWidths::default(),
-            class: None,
+            was_high: None,
             is_to_be_laid_out: true,
             first: None,
             chosen: Vec::new(),
@@ -68,26 +54,13 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// Returns the default layout for a window of this size, in points.
-    fn default_for(size: egui::Vec2) -> DockState<PanelKind> {
-        Self::default_of(SizeClass::of(size), size.x)
-    }
-
-    fn default_of(class: SizeClass, width: f32) -> DockState<PanelKind> {
+    /// Returns the default layout for a window of this width, in points: all panels are at the left of the stage.
+    fn default_of(is_high: bool, width: f32) -> DockState<PanelKind> {
         let mut state = DockState::new(vec![PanelKind::Stage]);
         let surface = state.main_surface_mut();
-        let SizeClass { is_wide, is_high } = class;
-        let mut left = PanelKind::INITIAL.to_vec();
-        let mut stage = NodeIndex::root();
-        if is_wide {
-            let right = vec![PanelKind::Charts, PanelKind::Library, PanelKind::Senses];
-            left.retain(|kind| !right.contains(kind));
-            [stage, _] = surface.split_right(stage, (1.0 - RIGHT / width).clamp(0.1, 0.9), right);
-        }
-        let room = if is_wide { width - RIGHT } else { width };
-        let share = (LEFT / room.max(1.0)).clamp(0.1, 0.9);
-        left.retain(|kind| !is_high || *kind != PanelKind::Champions);
-        let [_, node] = surface.split_left(stage, share, left);
+        let share = (LEFT / width.max(1.0)).clamp(0.1, 0.9);
+        let left = PanelKind::INITIAL.to_vec();
+        let [_, node] = surface.split_left(NodeIndex::root(), share, left);
         if is_high {
             let _ = surface.split_below(node, 0.68, vec![PanelKind::Champions]);
         }
@@ -104,7 +77,7 @@ impl Layout {
     /// Does not adjust the widths while the UI scale is changing (`is_settled == false`).
     pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
         if self.is_to_be_laid_out {
-            self.state = Self::default_for(size);
+            self.state = Self::default_of(is_high(size), size.x);
             self.widths.clear();
             self.is_to_be_laid_out = false;
             self.chosen.clear();
@@ -113,7 +86,7 @@ impl Layout {
         }
         self.note_chosen();
         if is_settled {
-            self.follow_class(size);
+            self.follow_height(size);
             if let Some((stage, _)) = self.state.find_main_surface_tab(&PanelKind::Stage) {
                 self.widths.fit(self.state.main_surface_mut(), stage, size.x);
             }
@@ -126,15 +99,15 @@ impl Layout {
     }
 
     /// Returns to the default layout when the window has become much larger or smaller, unless the user has rearranged the panels.
-    fn follow_class(&mut self, size: egui::Vec2) {
-        let class = SizeClass::of(size);
-        let Some(before) = self.class.replace(class).filter(|before| *before != class) else {
+    fn follow_height(&mut self, size: egui::Vec2) {
+        let is_high = is_high(size);
+        let Some(before) = self.was_high.replace(is_high).filter(|before| *before != is_high) else {
             return;
         };
         if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {
             return;
         }
-        self.state = Self::default_for(size);
+        self.state = Self::default_of(is_high, size.x);
         self.widths.panels_were_rearranged();
         // The panel chosen last comes last, so that it is in front where several panels now share a place.
         self.chosen.clone().into_iter().for_each(|kind| self.open(kind));

@@ -1,4 +1,5 @@
-//! Run panel: start, pause, single generation and new run; progress; strategy and controller settings.
+//! The panel to watch a run: progress, start, pause, single generation and new run, the most important settings, and all
+//! others below a fold.
 
 pub mod progress;
 
@@ -7,11 +8,12 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::settings::Sheet;
-use crate::studio::commands::{Command, PlanCommand, RunCommand};
+use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
 use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::number_field::NumberField;
-use crate::studio::ui::text_rows::{explain, folded, problem, row, title_and, weak};
+use crate::studio::ui::text_rows::{explain, folded, problem, row, title_text, weak};
 use crate::studio::ui::theme;
 use snakes_core::evolve::{EvolutionSettings, RunPlan};
 use snakes_core::genome::GenomeSpace;
@@ -30,16 +32,45 @@ pub(super) struct EvolutionPanel {
 
 impl EvolutionPanel {
     /// Draws the panel and collects the user's commands.
-    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    /// `chart` draws the small chart below the progress.
+    pub fn ui(
+        &mut self,
+        ui: &mut egui::Ui,
+        run: &CurrentRun,
+        chart: impl FnOnce(&mut egui::Ui, &mut Vec<Command>),
+        commands: &mut Vec<Command>,
+    ) {
         self.sheet.begin(ui, run);
-        title_and(ui, "Evolution", |ui| preset_switch(ui, run, commands));
         // A click on a button also ends typing in a field. The typed value must be sent before the button's command.
         let mut pressed = Vec::new();
-        self.buttons(ui, run, &mut pressed);
         progress(ui, run);
+        self.buttons(ui, run, &mut pressed);
+        chart(ui, commands);
+        more_views(ui, commands);
+        self.knobs(ui);
+        let label = title_text("How it learns");
+        if self.sheet.fold(ui, HOW_IT_LEARNS, label, HOW_IT_LEARNS) {
+            self.how_it_learns(ui, run, commands);
+        } else {
+            next_run(ui, run);
+        }
         unfinished_runs(ui, run, commands);
-        self.fields(ui, run, commands);
+        self.sheet.send(commands);
         commands.append(&mut pressed);
+    }
+
+    /// Draws the settings that the program is for: friction, height of the steps, limits of the joints, and the size of
+    /// mutations in the selected strategy.
+    fn knobs(&mut self, ui: &mut egui::Ui) {
+        let fixed = ["trial.surface.friction", "trial.stairs.rise_m", "genome.bend_limits_rad"];
+        for path in fixed {
+            self.sheet.knob(ui, |of| of == path);
+        }
+        let of_mutation = ["step", "mutation_step", "mutation_range_nm", "first_step", "weight_step"];
+        self.sheet.knob(ui, |path| {
+            let name = path.rsplit('.').next().unwrap_or_default();
+            path.starts_with("evolution.") && of_mutation.contains(&name)
+        });
     }
 
     /// Unfolds the advanced settings of the sections with these titles.
@@ -82,7 +113,9 @@ impl EvolutionPanel {
         });
     }
 
-    fn fields(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+    /// Draws strategy, controller, size of the run, seed and threads.
+    fn how_it_learns(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+        preset_switch(ui, run, commands);
         ui.horizontal(|ui| {
             let hint = "The same seed and settings always give the same run, bit for bit";
             let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
@@ -99,10 +132,7 @@ impl EvolutionPanel {
         self.sheet.send(commands);
         founder(ui, run, commands);
         changes(ui, run);
-        if run.next_run_differs() {
-            let hint = "These settings will be used by the next run. Press New run to start it.";
-            ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
-        }
+        next_run(ui, run);
         self.strategy(ui);
         self.controller(ui);
         self.sheet.send(commands);
@@ -171,6 +201,27 @@ impl EvolutionPanel {
     }
 }
 
+/// Key and name of the fold with all other settings of the run.
+const HOW_IT_LEARNS: &str = "How it learns";
+
+/// Draws the buttons that open the panels with more about the run.
+fn more_views(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        for (label, kind) in [("More charts", PanelKind::Charts), ("Champions", PanelKind::Champions)] {
+            let open = Command::Window(WindowCommand::OpenPanel(kind));
+            CommandButton::small(label, kind.hint(), open).show(ui, commands);
+        }
+    });
+}
+
+/// Draws that the next run has other settings than the current one, if it has.
+fn next_run(ui: &mut egui::Ui, run: &CurrentRun) {
+    if run.next_run_differs() {
+        let hint = "These settings will be used by the next run. Press New run to start it.";
+        ui.label(egui::RichText::new(hint).color(theme::of(ui).second));
+    }
+}
+
 /// Draws the name of the next run's founder, if any, with a button to remove it.
 fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let Some(name) = run.next_founder() else { return };
@@ -201,20 +252,22 @@ fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
 /// Maximum number of changes that the tooltip lists.
 const MAX_LISTED_CHANGES: usize = 12;
 
-/// Draws the button that selects the preset of the original experiment or, if it is selected, that of the standard climb.
+/// Draws the button that starts the experiment of the report or, if that is the next run, one of the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
     let (label, preset, hint) = if run.next_preset() == REPORT {
-        ("Standard climb", CLIMB, "Use the preset that climbs to the landing for the next run")
+        ("Run the standard climb", CLIMB, "Start a run that climbs to the landing")
     } else {
         (
-            "Original experiment",
+            "Run the report's experiment",
             REPORT,
-            "Use the method and the world of the report \"Evolution of Artificial Creatures in Stair Climbing\" for \
-             the next run",
+            "Start a run with the method and the world of the report \"Evolution of Artificial Creatures in Stair \
+             Climbing\"",
         )
     };
-    let set = Command::Plan(PlanCommand::SetPreset(preset.to_owned()));
-    CommandButton::small(label, hint, set).show(ui, commands);
+    if ui.button(label).on_hover_text(hint).clicked() {
+        commands.push(Command::Plan(PlanCommand::SetPreset(preset.to_owned())));
+        commands.push(Command::Run(RunCommand::New));
+    }
 }
 
 /// Name of the preset of the original experiment.

@@ -61,24 +61,40 @@ impl Sheet {
         section: Section,
         is_below: impl Fn(&ListedSetting) -> bool,
     ) {
-        let is_open = self.folds.open.contains(section.title);
         let count = self.in_section(section).filter(|listed| is_below(listed)).count();
-        let header = egui::CollapsingHeader::new(weak(ui, format!("Advanced ({count})")))
-            .id_salt(("advanced", section.title))
-            .open(Some(is_open));
-        let shown = header.show_unindented(ui, |ui| self.entries(ui, section, is_below));
-        let (kind, header) = (egui::WidgetType::CollapsingHeader, shown.header_response);
+        let label = weak(ui, format!("Advanced ({count})"));
         let said = format!("Advanced settings of {}", section.title);
-        if named_selected(header, kind, is_open, &said).clicked() {
+        if self.fold(ui, section.title, label, &said) {
+            self.entries(ui, section, is_below);
+        }
+    }
+
+    /// Draws a fold whose state is remembered, and returns whether it is open. `said` is its name for accessibility tools.
+    pub fn fold(
+        &mut self,
+        ui: &mut egui::Ui,
+        section: &'static str,
+        label: egui::RichText,
+        said: &str,
+    ) -> bool {
+        let is_open = self.folds.open.contains(section);
+        let header = egui::CollapsingHeader::new(label)
+            .id_salt(("advanced", section))
+            .open(Some(is_open))
+            .show_unindented(ui, |_| {})
+            .header_response;
+        let kind = egui::WidgetType::CollapsingHeader;
+        if named_selected(header, kind, is_open, said).clicked() {
             self.folds.forget_kept();
             if is_open {
-                self.folds.open.remove(section.title);
+                self.folds.open.remove(section);
             } else {
-                self.folds.open.insert(section.title.to_owned());
+                self.folds.open.insert(section.to_owned());
             }
-            let (section, is_open) = (section.title, !is_open);
+            let is_open = !is_open;
             self.sent.push(Command::Window(WindowCommand::FoldAdvanced { section, is_open }));
         }
+        is_open
     }
 }
 

@@ -123,6 +123,15 @@ impl Sheet {
         }
     }
 
+    /// Draws the first setting for which `is_wanted` holds, if it has an effect at present.
+    pub fn knob(&mut self, ui: &mut egui::Ui, is_wanted: impl Fn(&str) -> bool) {
+        let values = Arc::clone(&self.values);
+        let mut used = values.listed().iter().filter(|listed| listed.is_used);
+        if let Some(listed) = used.find(|listed| is_wanted(&listed.path)) {
+            self.entry(ui, listed);
+        }
+    }
+
     /// Draws the button that resets a section, if a setting differs from the preset.
     pub(super) fn reset_section(&mut self, ui: &mut egui::Ui, section: Section) {
         let fields = self.in_section(section).map(|listed| listed.path.as_str());
