@@ -43,8 +43,13 @@ fn hold_worlds(
         return;
     }
     for mut world in &mut worlds {
-        world.hold_last_step();
-        draw_contacts(world.lane, &mut gizmos);
+        if world.lane.is_ghost() {
+            // The shapes of all snakes of a generation would hide the only one that is not a ghost.
+            world.hold_nothing();
+        } else {
+            world.hold_last_step();
+            draw_contacts(world.lane, &mut gizmos);
+        }
     }
 }
 

@@ -9,7 +9,8 @@ use bevy_rapier3d::prelude::{
     QueryFilter, RapierContextColliders, RapierContextJoints, RapierContextSimulation,
     RapierQueryPipeline, RapierRigidBodySet,
 };
-use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, Ray};
+use bevy_rapier3d::rapier::dynamics::{ImpulseJointSet, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::{ColliderSet, DefaultBroadPhase, NarrowPhase, Ray};
 
 use super::lane::Lane;
 use snakes_core::world::{Pose, Simulation};
@@ -46,6 +47,14 @@ impl<'w> StagedWorldItem<'w, '_> {
             Some(simulation) => self.hold(simulation, simulation.poses()),
             None => drop(self.hold_drawn()),
         }
+    }
+
+    /// Empties the context. A ray that was cast before has left a copy of the lane's world there.
+    pub fn hold_nothing(&mut self) {
+        self.context.narrow_phase = NarrowPhase::default();
+        self.joints.impulse_joints = ImpulseJointSet::default();
+        self.bodies.bodies = RigidBodySet::default();
+        self.colliders.colliders = ColliderSet::default();
     }
 
     /// Returns the first surface that a ray hits in the world as it is drawn.

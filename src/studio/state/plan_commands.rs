@@ -66,6 +66,13 @@ pub(crate) fn apply_to_plan(
             return what_if(run, stage, &WorldChange::Fields(changes.collect()));
         }
         PlanCommand::SetPreset(name) => {
+            if !run.preset_suits(name, on_show.first())? {
+                run.set_preset(name)?;
+                notices.offer_next_run(format!(
+                    "The snakes of the preset {name} are of another kind than the one on the stage. They need a new run."
+                ));
+                return Ok(None);
+            }
             return what_if(run, stage, &WorldChange::Preset(name));
         }
         PlanCommand::StorePreset(name) => run.store_preset(name)?,

@@ -223,7 +223,7 @@ mod tests {
         let title = |time_s: f64, is_first: bool| {
             PresentedCaption::of_one(&lane(0, "climber", time_s), time_s, is_first).title.text
         };
-        assert_eq!(title(0.0, true), "climber: no step climbed yet");
+        assert_eq!(title(0.0, true), "climber: on its way to the stairs");
         let half_way = title(6.0, false);
         assert!(half_way.starts_with("climber: climbed "), "{half_way}");
         assert!(half_way.ends_with(" of 10 steps"), "{half_way}");

@@ -39,6 +39,10 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let inside = match (run.run_hash(), random_first) {
         (Some(_), _) => "finished".to_owned(),
         (None, Some(random)) => format!("{done} of {random} random snakes first"),
+        // Snakes that survive from the generation before are not evaluated again.
+        (None, None) if population < run.settings().evolution.population => {
+            format!("{done} of {population} new snakes")
+        }
         (None, None) => format!("{done} of {population} snakes"),
     };
     let hint = match random_first {

@@ -36,11 +36,13 @@ fn closed_panels_can_be_restored_and_the_stage_cannot_be_closed() {
 }
 
 #[test]
-fn one_panel_more_opens_where_the_tabs_have_room_for_its_name() {
-    for (width, tabs) in [(1280.0, vec![7, 1]), (1920.0, vec![4, 3, 1])] {
+fn a2_further_panels_open_as_tabs_beside_those_of_their_side_and_never_below_them() {
+    for (width, tabs) in [(1280.0, vec![10]), (1920.0, vec![5, 4, 1])] {
         let mut layout = laid_out(width);
-        layout.open(PanelKind::Machines);
-        assert!(layout.front_panels().contains(&PanelKind::Machines));
+        for kind in [PanelKind::Machines, PanelKind::Body, PanelKind::Stairs] {
+            layout.open(kind);
+            assert!(layout.front_panels().contains(&kind), "{kind:?} at {width}");
+        }
         let leaves = layout.state.iter_leaves().filter(|(_, leaf)| leaf.tabs != [PanelKind::Stage]);
         let mut found: Vec<usize> = leaves.map(|(_, leaf)| leaf.tabs.len()).collect();
         found.sort_by_key(|count| std::cmp::Reverse(*count));
