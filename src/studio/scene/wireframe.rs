@@ -43,11 +43,8 @@ fn hold_worlds(
         return;
     }
     for mut world in &mut worlds {
-        if world.lane.is_ghost() {
-            // The shapes of all snakes of a generation would hide the only one that is not a ghost.
-            world.hold_nothing();
-        } else {
-            world.hold_last_step();
+        world.hold_for_lines();
+        if !world.lane.is_ghost() {
             draw_contacts(world.lane, &mut gizmos);
         }
     }

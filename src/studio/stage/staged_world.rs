@@ -49,8 +49,13 @@ impl<'w> StagedWorldItem<'w, '_> {
         }
     }
 
-    /// Empties the context. A ray that was cast before has left a copy of the lane's world there.
-    pub fn hold_nothing(&mut self) {
+    /// Prepares the context for the lines of the collision shapes: the lane's world after the last step, or nothing for a
+    /// ghost. The shapes of all snakes of a generation would hide the only one that is not a ghost.
+    pub fn hold_for_lines(&mut self) {
+        if !self.lane.is_ghost() {
+            return self.hold_last_step();
+        }
+        // A ray that was cast before has left a copy of the ghost's world.
         self.context.narrow_phase = NarrowPhase::default();
         self.joints.impulse_joints = ImpulseJointSet::default();
         self.bodies.bodies = RigidBodySet::default();

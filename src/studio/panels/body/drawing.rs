@@ -3,9 +3,9 @@
 use bevy_egui::egui;
 
 use crate::studio::ui::accessible::named;
-use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
 use snakes_core::world::BodyPlan;
+use snakes_lab::mesh::Outlines;
 use snakes_lab::plot::Role;
 
 /// Maximum height of both views together, in points.

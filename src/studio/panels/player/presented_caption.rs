@@ -232,6 +232,23 @@ mod tests {
     }
 
     #[test]
+    fn a28_a_landing_counts_even_if_the_snake_has_gone_on_beyond_it() {
+        let staged = lane(0, "climber", 0.0).staged().clone();
+        let title = |landing_m: f32| {
+            let mut trial = staged.trial().clone();
+            trial.stairs.landing_m = landing_m;
+            let mut lane = Lane::new(staged.in_world(&trial, "climber".to_owned()), 0);
+            lane.finish_lookahead();
+            lane.skip_to(f64::MAX);
+            let beyond = lane.drawn_middle().y > trial.stairs.end_y_m();
+            let title = PresentedCaption::of_one(&lane, f64::MAX, false).title.text;
+            (beyond && lane.landed_s(f64::MAX).is_some()).then_some(title)
+        };
+        let title = [2.0, 4.0, 6.0].into_iter().find_map(title).expect("one goes beyond");
+        assert!(title.starts_with("climber: reached the top after "), "{title}");
+    }
+
+    #[test]
     fn a_race_names_its_leader_and_those_behind_with_the_dots_of_their_lanes() {
         let lanes = [lane(0, "late", 2.0), lane(1, "early", 9.0), lane(2, "third", 0.5)];
         let four = lane(3, "fourth", 0.0);

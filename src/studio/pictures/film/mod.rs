@@ -2,14 +2,12 @@
 //! champions and options give the same frames on every machine, however slowly it draws.
 //!
 //! [`plan`] determines the time that each frame shows, and [`camera_path`] the camera. [`shooting`] draws the frames,
-//! and [`gif_file`], [`video`] and [`frame_folder`] write them. [`gif_size`] keeps a GIF small.
+//! and [`gif`], [`video`] and [`frame_folder`] write them.
 
 mod camera_path;
 mod error;
 mod film_file;
 mod frame_folder;
-mod gif_file;
-mod gif_size;
 mod order;
 mod plan;
 mod shooting;
@@ -20,17 +18,17 @@ use std::path::Path;
 
 use crate::studio::stage::evenly;
 use snakes_core::check::{Invalid, within};
+use snakes_lab::export::gif::{
+    BegunGif, ESTIMATED_BYTES, GifChoice, GifChoices, GifFile, GifPalette, PAIRS,
+};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 pub use error::FilmError;
 pub(crate) use frame_folder::frame_folder_of;
-pub(crate) use gif_file::GIF_FPS;
 pub use order::{FilmOrder, FilmPart};
 
 use film_file::FilmFile;
 use frame_folder::FrameFolder;
-use gif_file::{BegunGif, GifPalette, PAIRS};
-use gif_size::{MOST_BYTES, choices, first_small};
 use plan::{FilmFrame, planned};
 use shooting::shoot;
 use video::Video;
@@ -88,16 +86,14 @@ fn checked_plan(order: &FilmOrder) -> Result<Vec<FilmFrame>, FilmError> {
 
 /// Draws a film and writes it as GIF, in the best size and frame rate for which the file is small enough.
 fn gif(order: &FilmOrder, path: &Path, progress: &ExportProgress) -> Result<(), FilmError> {
-    let frames = checked_plan(order)?.len();
-    let mut choices = choices(order);
-    let mut bytes_per_pixel = gif_size::USUAL_BYTES_PER_PIXEL;
-    while let Some(chosen) = first_small(&mut choices, order.fps, frames, bytes_per_pixel) {
-        let (fps, most) = (order.fps, if choices.is_empty() { u64::MAX } else { MOST_BYTES });
+    let duration_s = checked_plan(order)?.len() as f64 / f64::from(order.fps);
+    let ordered = GifChoice { size: order.size, fps: order.fps };
+    let allowed = (order.may_be_smaller, order.may_be_slower);
+    let mut choices = GifChoices::new(ordered, duration_s, allowed);
+    while let Some((chosen, most)) = choices.take() {
         let order = FilmOrder { size: chosen.size, fps: chosen.fps, ..order.clone() };
         match gif_within(most, &order, path, progress) {
-            Err(FilmError::TooLarge(bytes)) => {
-                bytes_per_pixel = chosen.bytes_per_pixel(fps, frames, bytes);
-            }
+            Err(FilmError::TooLarge(bytes)) => choices.learn(chosen, bytes),
             ended => return ended,
         }
     }
@@ -106,7 +102,7 @@ fn gif(order: &FilmOrder, path: &Path, progress: &ExportProgress) -> Result<(), 
 
 /// Draws a film and writes it as GIF of at most `most` bytes.
 fn gif_within(
-    most: u64,
+    most: Option<u64>,
     order: &FilmOrder,
     path: &Path,
     progress: &ExportProgress,
@@ -125,19 +121,19 @@ fn gif_within(
         })?;
         let palette = GifPalette::of(&samples);
         let expected = palette.expected_bytes(&samples, all);
-        if most < u64::MAX && expected > gif_size::ESTIMATED_BYTES {
+        if most.is_some() && expected > ESTIMATED_BYTES {
             return Err(FilmError::TooLarge(expected));
         }
         progress.expect(expected);
         let Some(begun) = begun.take() else { return Ok(()) };
-        let file = file.insert(Box::new(begun.with_palette(palette)?));
+        let file = file.insert(begun.with_palette(palette)?);
         shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
             file.add(&frame)?;
-            if file.bytes() > most {
+            if most.is_some_and(|most| file.bytes() > most) {
                 return Err(FilmError::TooLarge(file.bytes() * all as u64 / (index as u64 + 1)));
             }
             Ok(progress.reach((index + 1) as f64 / all as f64)?)
         })
     })?;
-    file.map_or(Ok(()), FilmFile::finish)
+    Ok(file.map_or(Ok(()), GifFile::finish)?)
 }

@@ -64,7 +64,8 @@ pub fn changes_in_words(original: &Settings, changed: &Settings) -> String {
 /// Returns the index of the only value that differs from the one before the change; `None` if several do.
 fn only_other(before: &SettingValue, now: &[f32]) -> Option<usize> {
     let was = |index: usize| match before {
-        SettingValue::List(before) => before.get(if before.len() == 1 { 0 } else { index }).copied(),
+        SettingValue::List(before) => before.get(index).copied(),
+        SettingValue::Number(of_all) => Some(*of_all),
         _ => None,
     };
     let mut others = (0..now.len()).filter(|index| was(*index) != Some(now[*index]));

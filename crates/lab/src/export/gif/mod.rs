@@ -1,6 +1,8 @@
 //! A film as GIF. The whole film has one palette, chosen from frames throughout it, so that no colour flickers. The
 //! pattern of the ordered dithering is stationary, and only changed pixels are stored.
 
+mod size;
+
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -8,11 +10,11 @@ use std::path::{Path, PathBuf};
 use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
-use super::error::FilmError;
-use super::film_file::FilmFile;
+use super::ExportError;
 use snakes_core::check::within;
 use snakes_core::save::{Picture, UnfinishedFile};
-use snakes_lab::export::ExportError;
+
+pub use size::{ESTIMATED_BYTES, GifChoice, GifChoices};
 
 /// Allowed frames per second. Browsers show a frame of less than 0.02 s for 0.1 s.
 pub const GIF_FPS: RangeInclusive<u32> = 1..=50;
@@ -125,7 +127,10 @@ pub struct GifFile {
 
 impl BegunGif {
     /// Creates the file.
-    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
+    ///
+    /// # Errors
+    /// A GIF cannot have this size in pixels or this frame rate, or the file cannot be written.
+    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, ExportError> {
         within("--fps", fps, GIF_FPS)?;
         within("--size", size.0.max(size.1), 1..=u32::from(u16::MAX))?;
         let file = UnfinishedFile::create(path)?;
@@ -133,20 +138,16 @@ impl BegunGif {
     }
 
     /// Sets the palette of the film, and writes the header.
-    pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, FilmError> {
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, ExportError> {
         let Self { file, path, size: [width, height], fps } = self;
         let encoder = Encoder::new(file, width, height, &palette.rgb);
         let mut encoder = encoder.map_err(ExportError::unwritable(&path))?;
         encoder.set_repeat(Repeat::Infinite).map_err(ExportError::unwritable(&path))?;
         let (width, last) = (usize::from(width), Vec::new());
         Ok(GifFile { palette, encoder, path, width, fps, last, frames: 0, bytes: 0 })
-    }
-}
-
-impl GifFile {
-    /// Returns the number of bytes of all frames so far.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
     }
 }
 
@@ -167,8 +168,17 @@ fn encoded(indices: &[u8], last: &[u8], width: usize) -> Frame<'static> {
     part
 }
 
-impl FilmFile for GifFile {
-    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+impl GifFile {
+    /// Returns the number of bytes of all frames so far.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Adds the next frame of the film.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn add(&mut self, frame: &Picture) -> Result<(), ExportError> {
         let indices = self.palette.indices(frame);
         // Rounded in a way that does not accumulate errors.
         let delay = hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps);
@@ -181,8 +191,12 @@ impl FilmFile for GifFile {
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<(), FilmError> {
-        let Self { encoder, path, .. } = *self;
+    /// Completes the film, and gives it its final name.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(self) -> Result<(), ExportError> {
+        let Self { encoder, path, .. } = self;
         let file = encoder.into_inner().map_err(ExportError::unwritable(&path))?;
         Ok(file.finish()?)
     }
