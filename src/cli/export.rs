@@ -116,11 +116,15 @@ fn with_progress(
                 let _ = print_json(&json!({"type": "progress", "progress": progress}));
             }
         };
-        work(&ExportProgress::new(&show, &control))?
+        let tell = |bytes: u64| {
+            let _ = print_json(&json!({"type": "expected", "bytes": bytes}));
+        };
+        work(&ExportProgress::new(&show, &control).telling(&tell))?
     } else {
         let bar = bar_of(PER_MILLE as u64, "‰");
         let show = |share: f64| bar.set_position((share * PER_MILLE) as u64);
-        beneath_bar(&bar, || work(&ExportProgress::new(&show, &control)))?
+        let tell = |bytes: u64| say(&format!("about {:.1} MB", bytes as f64 / 1.0e6));
+        beneath_bar(&bar, || work(&ExportProgress::new(&show, &control).telling(&tell)))?
     };
     let path = saved.display();
     if args.json {

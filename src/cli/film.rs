@@ -8,6 +8,7 @@ use super::replay::{champions_to_draw, longest_s};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
 use snakes_core::check::Invalid;
 use snakes_core::save::{LoadedChampion, load_run};
+use snakes_lab::export::gif::GIF_FPS;
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 /// Maximum width and height of frames that common graphics drivers draw and players show, in pixels.
@@ -34,7 +35,7 @@ pub fn ordered(
     let text = flags.size.as_deref().unwrap_or(default);
     let size = size("--size", text, LEAST_PIXELS, LARGEST_PIXELS)?;
     check_film_size(format, size)?;
-    let (fps, default_fps) = if is_gif { (crate::studio::film::GIF_FPS, 25) } else { (FPS, 30) };
+    let (fps, default_fps) = if is_gif { (GIF_FPS, 20) } else { (FPS, 30) };
     let fps = number_if("--fps", &flags.fps, fps)?;
     let speed = number_if("--speed", &flags.speed, SPEED)?;
     let parts = parts(wanted, format)?;
@@ -47,6 +48,9 @@ pub fn ordered(
         speed: speed.unwrap_or(1.0),
         fps: fps.unwrap_or(default_fps),
         size,
+        may_be_smaller: is_gif && flags.size.is_none(),
+        may_be_slower: is_gif && flags.fps.is_none(),
+        ends_with_climb: is_gif && flags.end.is_none(),
         camera: flags.camera()?,
         theme: flags.theme()?,
         overlays: flags.overlays()?,
@@ -172,7 +176,7 @@ mod tests {
         };
         let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
         let (least, most) = FPS.into_inner();
-        let of_gif = crate::studio::film::GIF_FPS.into_inner().1;
+        let of_gif = GIF_FPS.into_inner().1;
         assert!(help.contains(&format!("{least} to {most}, for .gif up to {of_gif}")), "{help}");
         let (least, most) = SPEED.into_inner();
         assert!(help.contains(&format!("{least} to {most} [default: 1]")), "{help}");

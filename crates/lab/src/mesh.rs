@@ -4,6 +4,7 @@
 //! outside.
 
 mod eyes;
+mod outlines;
 mod rounded_box;
 
 use std::f32::consts::{PI, TAU};
@@ -12,6 +13,7 @@ use rounded_box::RoundedBox;
 use snakes_core::world::Vector;
 
 pub use eyes::Eyes;
+pub use outlines::Outlines;
 
 /// Radius of the edges of a rigid limb, as a share of its smallest side.
 pub const LIMB_EDGE: f32 = 0.2;

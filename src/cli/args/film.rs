@@ -12,7 +12,7 @@ use snakes_core::check::Invalid;
 /// The flags of pictures and films.
 #[derive(Debug, Default, clap::Args)]
 pub struct FilmArgs {
-    /// Size, in pixels [default: 1280x720; for .gif 640x360; with --at 1920x1080]
+    /// Size, in pixels [default: 1280x720; for .gif up to 640x360, so that it has at most 8 MB; with --at 1920x1080]
     #[arg(long, value_name = "WIDTHxHEIGHT", help_heading = FILMS)]
     pub size: Option<String>,
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = FILMS, help = fps_help())]
@@ -31,7 +31,7 @@ pub struct FilmArgs {
     /// First moment of a film, in simulated seconds [default: 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS)]
     pub start: Option<String>,
-    /// Last moment of a film, in simulated seconds [default: the end]
+    /// Last moment of a film, in simulated seconds [default: the end; for .gif shortly after the landing or the furthest point]
     #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS)]
     pub end: Option<String>,
     /// Colour theme: light or dark [default: light]
@@ -56,7 +56,7 @@ pub const SPEED: RangeInclusive<f64> = 0.1..=16.0;
 fn fps_help() -> String {
     let (least, most) = FPS.into_inner();
     format!(
-        "Frames per second of a film, {least} to {most}, for .gif up to 50 [default: 30; for .gif 25]"
+        "Frames per second of a film, {least} to {most}, for .gif up to 50 [default: 30; for .gif up to 20, so that it has at most 8 MB]"
     )
 }
 

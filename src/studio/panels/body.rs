@@ -7,7 +7,7 @@ use bevy_egui::egui;
 
 use crate::studio::commands::{BlockSize, BodyCommand, Command};
 use crate::studio::stage::lane::Lane;
-use crate::studio::state::body_editor::EditedBody;
+use crate::studio::state::body_editor::{BodyEditor, EditedBody};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{cancellable_progress, explain, problem, title, title_and};
@@ -26,7 +26,7 @@ pub(super) struct BodyPanel {
     limb: Option<usize>,
 }
 
-/// A number of a block: its kind, its label, its unit, the range of its slider, and its tooltip.
+/// A number of a block: its kind, its label, its shown unit, the range of its slider in that unit, and its tooltip.
 type Size = (BlockSize, &'static str, &'static str, std::ops::RangeInclusive<f32>, &'static str);
 
 /// Numbers that every block has.
@@ -38,8 +38,8 @@ const SIZES: [Size; 4] = [
 ];
 /// Numbers of the joint in front of a block. The head has none.
 const OF_JOINT: [Size; 3] = [
-    (BlockSize::BendLimit, "Bend limit", " rad", 0.2..=1.8, "How far it bends, up or down"),
-    (BlockSize::TwistLimit, "Twist limit", " rad", 0.0..=1.5, "How far it twists, to either side"),
+    (BlockSize::BendLimit, "Bend limit", "°", 10.0..=105.0, "How far it bends, up or down"),
+    (BlockSize::TwistLimit, "Twist limit", "°", 0.0..=85.0, "How far it twists, to either side"),
     (BlockSize::Strength, "Strength", "", 0.25..=1.0, "Share of the torque that its blocks allow"),
 ];
 /// Changes of the body's structure, each with its label and its tooltip.
@@ -101,8 +101,9 @@ impl BodyPanel {
             "Change sizes, joints and strength of every block, add blocks and remove them: the stage shows the changed \
              snake beside the original.",
         );
+        let refusal = BodyEditor::refusal(lane.staged());
         let edit = CommandButton::new("Edit this body", "", Command::Body(BodyCommand::Edit));
-        if edit.show(ui, commands) {
+        if edit.unless(refusal.as_deref()).show(ui, commands) {
             self.block = 0;
         }
     }
@@ -141,16 +142,17 @@ impl BodyPanel {
         let joint: &[Size] = if block == 0 { &[] } else { &OF_JOINT };
         egui::Grid::new("block").num_columns(2).show(ui, |ui| {
             for (size, label, unit, range, hint) in SIZES.iter().chain(joint) {
-                let mut changed = segment.clone();
-                let value = size.of_mut(&mut changed);
+                let is_angle = *unit == "°";
+                let value = *size.of_mut(&mut segment.clone());
+                let mut value = if is_angle { value.to_degrees() } else { value };
                 ui.label(*label).on_hover_text(*hint);
-                let slider = egui::Slider::new(value, range.clone())
+                let slider = egui::Slider::new(&mut value, range.clone())
                     .suffix(*unit)
                     .clamping(egui::SliderClamping::Edits)
-                    .max_decimals(2);
+                    .max_decimals(if is_angle { 1 } else { 2 });
                 let slider = ui.add(slider).on_hover_text(*hint);
                 if named(slider, egui::WidgetType::Slider, label).changed() {
-                    let (size, value) = (*size, *size.of_mut(&mut changed));
+                    let (size, value) = (*size, if is_angle { value.to_radians() } else { value });
                     commands.push(Command::Body(BodyCommand::Set { block, size, value }));
                 }
                 ui.end_row();

@@ -127,10 +127,10 @@ impl ChampionsPanel {
                     continue;
                 };
                 let individual = champion.origin.individual;
-                let is_best = summary.best == Some(generation);
+                let mark = summary.best.filter(|(best, _)| *best == generation);
                 let row = ChampionRow {
                     shown: view.lane_of(ShownChampion::Found { generation, individual }),
-                    name: &if is_best { format!("{name}, best") } else { name },
+                    name: &mark.map_or(name.clone(), |(_, mark)| format!("{name}, {mark}")),
                     champion,
                     climb: self.climbs.of(champion),
                     has_time: true,

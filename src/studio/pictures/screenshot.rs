@@ -1,4 +1,4 @@
-//! Screenshots of the window, and of the stage alone at its size in the window.
+//! Screenshots of the window, and of the stage alone, larger than it is in the window.
 
 use bevy::camera::RenderTarget;
 use bevy::ecs::system::SystemParam;
@@ -46,6 +46,15 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (take, take_stage_pictures).chain().in_set(FrameSet::Draw));
 }
 
+/// Minimum width of a picture of the stage, in pixels.
+const LEAST_WIDTH: u32 = 1920;
+
+/// Returns the size of a picture of a stage of this size, both in pixels: the smallest multiple with the minimum width.
+fn picture_size(stage: Option<UVec2>) -> UVec2 {
+    let stage = stage.unwrap_or(UVec2::new(1280, 720)).max(UVec2::ONE);
+    stage * LEAST_WIDTH.div_ceil(stage.x)
+}
+
 /// Takes a screenshot of the window at once. For one of the stage, spawns a second camera.
 fn take(
     mut requests: MessageReader<ScreenshotArea>,
@@ -61,7 +70,7 @@ fn take(
                 commands.spawn(Screenshot::primary_window()).observe(keep);
             }
             ScreenshotArea::Stage => {
-                let size = camera.physical_viewport_size().unwrap_or(UVec2::new(1280, 720));
+                let size = picture_size(camera.physical_viewport_size());
                 let format = TextureFormat::Rgba8UnormSrgb;
                 let picture = images.add(Image::new_target_texture(size.x, size.y, format, None));
                 commands.spawn((
@@ -126,4 +135,18 @@ pub(crate) fn picture_of(image: &Image) -> Option<Picture> {
     let (width, height) = (image.width(), image.height());
     let is_whole = rgb.len() == width as usize * height as usize * 3;
     is_whole.then_some(Picture { width, height, rgb })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a27_a_picture_of_a_small_stage_is_a_multiple_of_at_least_1920_pixels() {
+        for (stage, picture) in
+            [([895, 503], [2685, 1509]), ([1920, 1080], [1920, 1080]), ([2400, 900], [2400, 900])]
+        {
+            assert_eq!(picture_size(Some(stage.into())), UVec2::from(picture));
+        }
+    }
 }

@@ -8,14 +8,16 @@ use super::props::themed;
 use super::text::{TextMeshes, TextPlacement};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::decimals::decimals;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Greatest y that the middle limb of a champion reached in the current run, in metres; `None` without a champion.
+/// Greatest y that the middle limb of a champion reached in the current run, in metres, and the index of this run since
+/// the start of the program; `None` without a champion.
 #[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct BestSoFar(pub Option<f32>);
+struct BestSoFar(Option<(f32, u32)>);
 
 /// Marks the entities of a flag.
 #[derive(Component)]
@@ -61,7 +63,8 @@ fn look_up(run: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
     let Some(run) = run else { return };
     let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
     let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
-    best.set_if_neq(BestSoFar(reached_m.reduce(f32::max)));
+    let furthest_m = reached_m.reduce(f32::max);
+    best.set_if_neq(BestSoFar(furthest_m.map(|furthest_m| (furthest_m, run.number()))));
 }
 
 /// Spawns the flag on the first lane, and removes outdated flags.
@@ -77,9 +80,8 @@ fn plant(
     if best.is_changed() {
         flags.iter().for_each(|flag| commands.entity(flag).despawn());
     }
-    let Some(y_m) = best.0 else { return };
-    // Only the first lane, which is nearest to the camera, has a flag.
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| lane.number() == 0 && !lane.is_ghost()) {
+    let Some((y_m, run)) = best.0 else { return };
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| is_marked(lane, run)) {
         if !best.is_changed() && !lane.is_added() {
             continue;
         }
@@ -116,6 +118,13 @@ fn plant(
     }
 }
 
+/// Returns whether a lane has the flag of the run with this index: the first lane, which is nearest to the camera, if its
+/// snake is of this run.
+fn is_marked(lane: &Lane, run: u32) -> bool {
+    let is_of_run = lane.staged().source() == ChampionSource::Run(run);
+    lane.number() == 0 && !lane.is_ghost() && is_of_run
+}
+
 /// Returns the base of the flag's post: at the left edge of the stairs, on their surface.
 fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
     let x_m = ASIDE_M - stairs.width_m / 2.0;
@@ -139,6 +148,8 @@ fn sheet(middle: Vec3, width_m: f32) -> MeshBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::stage::staged_champion::StagedChampion;
+    use crate::studio::state::current_run::climber;
 
     #[test]
     fn the_flag_stands_on_the_surface_below_it() {
@@ -149,11 +160,13 @@ mod tests {
     }
 
     #[test]
-    fn without_a_run_a_flag_needs_an_explicit_distance() {
-        let mut app = App::new();
-        app.init_resource::<BestSoFar>().add_systems(Update, look_up);
-        app.insert_resource(BestSoFar(Some(2.0)));
-        app.update();
-        assert_eq!(*app.world().resource::<BestSoFar>(), BestSoFar(Some(2.0)));
+    fn a20_the_flag_stands_only_beside_a_snake_of_the_run_that_it_tells_of() {
+        let saved = climber(0);
+        let of_run = |run| StagedChampion::from_run(saved.champion(), run);
+        let ghost = Lane::ghost(of_run(3), 0);
+        let is_marked = |lane: &Lane| is_marked(lane, 3);
+        assert!(is_marked(&Lane::new(of_run(3), 0)) && !is_marked(&Lane::new(of_run(3), 1)));
+        assert!(!is_marked(&Lane::new(of_run(2), 0)) && !is_marked(&Lane::new(saved.clone(), 0)));
+        assert!(!is_marked(&ghost));
     }
 }

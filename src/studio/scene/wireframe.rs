@@ -43,8 +43,10 @@ fn hold_worlds(
         return;
     }
     for mut world in &mut worlds {
-        world.hold_last_step();
-        draw_contacts(world.lane, &mut gizmos);
+        world.hold_for_lines();
+        if !world.lane.is_ghost() {
+            draw_contacts(world.lane, &mut gizmos);
+        }
     }
 }
 

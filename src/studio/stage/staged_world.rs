@@ -9,7 +9,8 @@ use bevy_rapier3d::prelude::{
     QueryFilter, RapierContextColliders, RapierContextJoints, RapierContextSimulation,
     RapierQueryPipeline, RapierRigidBodySet,
 };
-use bevy_rapier3d::rapier::geometry::{DefaultBroadPhase, Ray};
+use bevy_rapier3d::rapier::dynamics::{ImpulseJointSet, RigidBodySet};
+use bevy_rapier3d::rapier::geometry::{ColliderSet, DefaultBroadPhase, NarrowPhase, Ray};
 
 use super::lane::Lane;
 use snakes_core::world::{Pose, Simulation};
@@ -46,6 +47,19 @@ impl<'w> StagedWorldItem<'w, '_> {
             Some(simulation) => self.hold(simulation, simulation.poses()),
             None => drop(self.hold_drawn()),
         }
+    }
+
+    /// Prepares the context for the lines of the collision shapes: the lane's world after the last step, or nothing for a
+    /// ghost. The shapes of all snakes of a generation would hide the only one that is not a ghost.
+    pub fn hold_for_lines(&mut self) {
+        if !self.lane.is_ghost() {
+            return self.hold_last_step();
+        }
+        // A ray that was cast before has left a copy of the ghost's world.
+        self.context.narrow_phase = NarrowPhase::default();
+        self.joints.impulse_joints = ImpulseJointSet::default();
+        self.bodies.bodies = RigidBodySet::default();
+        self.colliders.colliders = ColliderSet::default();
     }
 
     /// Returns the first surface that a ray hits in the world as it is drawn.

@@ -11,7 +11,7 @@ use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::Champion;
-use snakes_core::genome::{BodyChange, Genome, GenomeSpace, Segment};
+use snakes_core::genome::{BodyChange, ControllerKind, Genome, GenomeSpace, Segment};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::score::{Trial, evaluate};
 use snakes_core::world::BodyPlan;
@@ -84,6 +84,11 @@ impl BodyEditor {
         })
     }
 
+    /// Returns the reason why the body of a snake cannot be edited, if there is one.
+    pub fn refusal(staged: &StagedChampion) -> Option<String> {
+        own_blocks(staged).err()
+    }
+
     /// Executes a command. The command to edit begins with the selected champion of the stage. Returns what to show on
     /// the stage, if anything.
     ///
@@ -138,6 +143,29 @@ impl BodyEditor {
         }
         edited.take_in_preview(notices)
     }
+}
+
+/// Returns the genome of a snake with each of its blocks as genes.
+///
+/// # Errors
+/// The snake's body cannot be edited, for the returned reason.
+fn own_blocks(original: &StagedChampion) -> Result<Genome, String> {
+    if let Some(engine) = original.other_engine() {
+        return Err(format!(
+            "Engine {engine} found this snake, and here it would move differently"
+        ));
+    }
+    let genome = &original.champion().genome;
+    original.trial().with_own_blocks(genome).map_err(|error| match genome.controller.kind() {
+        ControllerKind::Wave | ControllerKind::Gait => format!(
+            "In this snake's world a block cannot change alone: its joints have different settings, or joints or \
+             surfaces are soft ({error})"
+        ),
+        other => format!(
+            "The controller of this snake, {}, cannot follow a changed body: only gaits and waves do",
+            other.title().to_lowercase()
+        ),
+    })
 }
 
 impl Edited {
@@ -196,16 +224,9 @@ impl Edited {
     }
 
     fn of(original: &StagedChampion) -> Result<Self, String> {
-        if let Some(engine) = original.other_engine() {
-            return Err(format!("A snake of engine {engine} moves differently here."));
-        }
-        let champion = original.champion();
-        let genome = original.trial().with_own_blocks(&champion.genome);
-        let genome =
-            genome.map_err(|error| format!("This snake's body cannot be edited: {error}"))?;
         Ok(Self {
             original: original.simulated(),
-            genome,
+            genome: own_blocks(original)?,
             past: Vec::new(),
             future: Vec::new(),
             last_set: None,

@@ -18,7 +18,7 @@ use bevy::prelude::*;
 use super::milestones::Milestones;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
-use snakes_core::save::{ExistingRun, RunSummary};
+use snakes_core::save::{ExistingRun, RunSummary, settings_in_words};
 use snakes_core::schema::SettingValue;
 use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
@@ -157,6 +157,11 @@ impl CurrentRun {
     /// Returns the name of the preset with which the current run began.
     pub fn preset(&self) -> &str {
         &self.source.plan.preset
+    }
+
+    /// Describes the settings of the current run: see [`settings_in_words`].
+    pub fn settings_in_words(&self) -> String {
+        settings_in_words(&self.plan_now)
     }
 
     /// Returns the folder in which the current run is saved.

@@ -14,7 +14,7 @@ use bevy::prelude::*;
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
 use crate::studio::commands::LessonCommand;
-use crate::studio::stage::Show;
+use crate::studio::stage::{Show, end_s};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
@@ -355,6 +355,12 @@ fn take_in(
     let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
+    let end_s = end_s(lanes.iter().copied());
+    let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
+    if is_over && playback.is_playing() && playback.time_s() >= end_s {
+        // The finish stays in sight until the reader plays again.
+        playback.hold_at(end_s);
+    }
     match lessons.take_in() {
         Ok(Some(shown)) => {
             playback.restart();

@@ -22,7 +22,11 @@ pub mod sweep;
 pub mod turns;
 pub mod undo;
 pub mod what_if;
-pub mod wording;
+
+/// Short descriptions of changed settings, for titles and labels.
+pub mod wording {
+    pub use snakes_core::evolve::{changes_in_words, world_in_words};
+}
 
 use bevy::prelude::*;
 

@@ -66,6 +66,13 @@ pub(crate) fn apply_to_plan(
             return what_if(run, stage, &WorldChange::Fields(changes.collect()));
         }
         PlanCommand::SetPreset(name) => {
+            if !run.preset_suits(name, on_show.first())? {
+                run.set_preset(name)?;
+                notices.offer_next_run(format!(
+                    "The snakes of the preset {name} are of another kind than the one on the stage. They need a new run."
+                ));
+                return Ok(None);
+            }
             return what_if(run, stage, &WorldChange::Preset(name));
         }
         PlanCommand::StorePreset(name) => run.store_preset(name)?,
@@ -101,4 +108,29 @@ pub(crate) fn apply_to_plan(
         PlanCommand::DropChange => return dropped(run, on_show, mode),
     }
     Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::what_if::tests::{solo, stage};
+    use super::*;
+    use crate::studio::commands::{Command, RunCommand};
+    use crate::studio::state::current_run::prepared_run;
+    use snakes_core::save::SavesFolder;
+
+    #[test]
+    fn a9_a_preset_with_snakes_of_another_kind_offers_a_new_run_instead_of_a_what_if() {
+        let (library, opening) = (Library::new(SavesFolder::find(None)), OpeningChampions(vec![]));
+        for (name, is_tried) in [("ice", true), ("creatures", false), ("bodies", false)] {
+            let (mut run, mut notices, show) = (prepared_run(), Notices::default(), solo());
+            let command = PlanCommand::SetPreset(name.to_owned());
+            let places = (&library, &opening);
+            let shown = apply_to_plan(&command, &mut run, places, stage(&show), &mut notices);
+            assert_eq!(shown.expect("shipped").is_some(), is_tried, "{name}");
+            assert_eq!(run.next_preset(), name);
+            let begin = [RunCommand::Reset, RunCommand::Start].map(Command::Run);
+            let begin = begin.map(|command| ("Begin a new run".to_owned(), command));
+            assert_eq!(notices.last_offers(), if is_tried { vec![] } else { begin.to_vec() });
+        }
+    }
 }

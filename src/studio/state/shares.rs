@@ -8,6 +8,7 @@ mod writer;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use bevy::prelude::*;
 
@@ -16,6 +17,7 @@ use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use snakes_core::check::printable;
@@ -58,6 +60,27 @@ pub(crate) struct ShareProgress {
     pub name: String,
     /// Finished share of the file, from 0 to 1.
     pub share: f32,
+    /// Expected size of the file, in bytes, if it is known.
+    pub expected_bytes: Option<u64>,
+    /// Estimated time until the file is finished, if it is known.
+    pub left: Option<Duration>,
+}
+
+impl ShareProgress {
+    /// Describes the progress: "climb.gif  42 %, about 20 s left, about 6.1 MB".
+    pub fn in_words(&self) -> String {
+        let mut words = format!("{}  {}", self.name, in_percent(self.share));
+        if let Some(left) = self.left {
+            words += &match left.as_secs() {
+                seconds @ ..90 => format!(", about {seconds} s left"),
+                seconds => format!(", about {} min left", (seconds + 30) / 60),
+            };
+        }
+        if let Some(bytes) = self.expected_bytes {
+            words += &format!(", about {:.1} MB", bytes as f64 / 1.0e6);
+        }
+        words
+    }
 }
 
 /// Subject of messages about shared files, which replace each other.
@@ -129,9 +152,11 @@ impl Shares {
 
     /// Returns the progress of the file that is being written, if any.
     pub fn progress(&self) -> Option<ShareProgress> {
-        self.under_way.as_ref().map(|of| ShareProgress {
-            name: name_of(&of.path),
-            share: of.work.done() as f32 / PARTS as f32,
+        self.under_way.as_ref().map(|of| {
+            let share = of.work.done() as f32 / PARTS as f32;
+            let left = of.leash.time_left(f64::from(share));
+            let expected_bytes = of.leash.expected_bytes();
+            ShareProgress { name: name_of(&of.path), share, expected_bytes, left }
         })
     }
 

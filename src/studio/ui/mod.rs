@@ -8,7 +8,6 @@ pub mod icons;
 pub mod lane_dot;
 pub mod notifications;
 pub mod number_field;
-pub mod outlines;
 pub mod plot_axes;
 pub mod scripts;
 pub mod text_prompt;

@@ -8,7 +8,7 @@ use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::theme;
 use super::viewport::StageArea;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, RunCommand};
 
 /// Messages that are displayed over the stage, the oldest first.
 #[derive(Resource, Debug, Default)]
@@ -23,8 +23,8 @@ struct Notice {
     text: String,
     /// Subject of the message; a new message on the same subject replaces it. `None` for no subject.
     subject: Option<&'static str>,
-    /// Label of each button of the message, and the command that it sends.
-    offers: Vec<(String, Command)>,
+    /// Label of each button of the message, and the commands that it sends.
+    offers: Vec<(String, Vec<Command>)>,
     is_problem: bool,
     /// Whether the message is also drawn in the presenting mode.
     is_important: bool,
@@ -62,8 +62,8 @@ impl Notice {
         self.shown_for >= self.lasts
     }
 
-    /// Draws the message's card, at most this wide in points. Returns the card's height and the command of a clicked button.
-    fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, Option<Command>) {
+    /// Draws the message's card, at most this wide in points. Returns the card's height and the commands of a clicked button.
+    fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, Option<Vec<Command>>) {
         let palette = theme::of(ui);
         let edge = if self.is_problem { palette.problem } else { palette.accent };
         let mut taken = None;
@@ -82,9 +82,9 @@ impl Notice {
                 let row = egui::Layout::left_to_right(egui::Align::Center);
                 let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
                 ui.allocate_ui_with_layout(size, row, |ui| {
-                    for (label, command) in &self.offers {
+                    for (label, commands) in &self.offers {
                         if ui.button(label).clicked() {
-                            taken = Some(command.clone());
+                            taken = Some(commands.clone());
                         }
                     }
                 });
@@ -123,13 +123,20 @@ impl Notices {
         text: String,
         offers: [(&str, Command); N],
     ) {
-        let offers = offers.map(|(label, command)| (label.to_owned(), command)).into();
+        let offers = offers.map(|(label, command)| (label.to_owned(), vec![command])).into();
         self.push(Notice { subject: Some(subject), offers, lasts: PROBLEM, ..Notice::new(text) });
+    }
+
+    /// Shows a message with a button that begins the next run, whose plan is prepared.
+    pub fn offer_next_run(&mut self, text: String) {
+        let begin = [RunCommand::Reset, RunCommand::Start].map(Command::Run).into();
+        let offers = vec![("Begin a new run".to_owned(), begin)];
+        self.push(Notice { offers, lasts: PROBLEM, ..Notice::new(text) });
     }
 
     /// Shows a message with a button for a minute.
     pub fn lasting_offer(&mut self, text: String, label: &str, command: Command) {
-        let offers = vec![(label.to_owned(), command)];
+        let offers = vec![(label.to_owned(), vec![command])];
         self.push(Notice { offers, lasts: LASTING, ..Notice::new(text) });
     }
 
@@ -170,10 +177,14 @@ impl Notices {
         self.list.last().map(|notice| notice.text.as_str())
     }
 
-    /// Returns the buttons of the latest message.
+    /// Returns the commands of the latest message's buttons, each with the label of its button.
     #[cfg(test)]
-    pub fn last_offers(&self) -> &[(String, Command)] {
-        self.list.last().map_or(&[], |notice| &notice.offers)
+    pub fn last_offers(&self) -> Vec<(String, Command)> {
+        let offers = self.list.last().map_or(&[][..], |notice| &notice.offers).iter();
+        let labelled = |(label, commands): &(String, Vec<Command>)| {
+            commands.iter().map(|command| (label.clone(), command.clone())).collect::<Vec<_>>()
+        };
+        offers.flat_map(labelled).collect()
     }
 
     /// Returns the messages to draw, with their indices, the oldest first.
@@ -192,13 +203,13 @@ impl Notices {
         ends.take_while(|end| *end <= height).count().max(1)
     }
 
-    /// Draws the messages in the lower right corner of `room`. Returns the rectangle that they cover, and the command
+    /// Draws the messages in the lower right corner of `room`. Returns the rectangle that they cover, and the commands
     /// of a clicked button, whose message is removed.
     fn show(
         &mut self,
         context: &egui::Context,
         room: egui::Rect,
-    ) -> (Option<egui::Rect>, Option<Command>) {
+    ) -> (Option<egui::Rect>, Option<Vec<Command>>) {
         // Older messages that do not fit are hidden until later ones disappear.
         let fitting = self.fitting(room.height());
         // The rest of the room's width is for the card's margins.
@@ -213,9 +224,9 @@ impl Notices {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
                 ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
                     for (index, notice) in self.drawn().rev().take(fitting) {
-                        let (height, command) = notice.show(ui, width);
+                        let (height, commands) = notice.show(ui, width);
                         heights.push((index, height));
-                        taken = taken.take().or(command.map(|command| (index, command)));
+                        taken = taken.take().or(commands.map(|commands| (index, commands)));
                     }
                 });
             });
@@ -229,11 +240,11 @@ impl Notices {
         }
         let is_empty = self.drawn().next().is_none();
         let covered = (!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0));
-        let command = taken.map(|(index, command)| {
+        let commands = taken.map(|(index, commands)| {
             self.list.remove(index);
-            command
+            commands
         });
-        (covered, command)
+        (covered, commands)
     }
 
     fn push(&mut self, new: Notice) {
@@ -265,9 +276,7 @@ fn draw(
     let room = area.messages_room().shrink(theme::GAP * 1.5);
     let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
     area.set_messages(covered);
-    if let Some(command) = taken {
-        send.write(command);
-    }
+    send.write_batch(taken.unwrap_or_default());
     Ok(())
 }
 

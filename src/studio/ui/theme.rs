@@ -174,8 +174,8 @@ pub const NARROW_STAGE: f32 = 560.0;
 pub const COLUMNS_WIDTH: f32 = 560.0;
 /// Widths of the library's columns after the name: fitness, preset, generation, date, in points.
 pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
-/// Default and minimum height of the library's list, in points.
-pub const LIST_HEIGHTS: [f32; 2] = [360.0, 140.0];
+/// Minimum height of the library's list, as a share of the panel's height.
+pub const LEAST_LIST_SHARE: f32 = 0.55;
 /// Height of the list of a run's champions, in points.
 pub const CHAMPIONS_HEIGHT: f32 = 130.0;
 

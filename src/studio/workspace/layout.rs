@@ -29,10 +29,8 @@ pub(crate) struct Layout {
 const HIGH: f32 = 800.0;
 /// Width of the left panels, in points. All tab names fit.
 const LEFT: f32 = 384.0;
-/// Maximum number of panels in one place. The tab bar has no room for more names.
-const MOST_TABS: usize = PanelKind::INITIAL.len();
-/// Share of a full place's height that its panels keep when another panel opens below them.
-const UPPER_SHARE: f32 = 0.45;
+/// Distance by which a tab bar scrolls to show its last tabs, in points. The dock area limits it to what is hidden.
+const TO_LAST_TABS: f32 = -1000.0;
 
 /// Returns whether a window of this size, in points, has room for panels below other panels.
 fn is_high(size: egui::Vec2) -> bool {
@@ -153,7 +151,10 @@ impl Layout {
         if !self.has(kind) {
             let home = self.home_of(kind);
             match home {
-                Some(path) => self.put_beside(path, kind),
+                Some(path) => {
+                    let leaf = self.state.leaf_mut(path.node_path());
+                    leaf.into_iter().for_each(|leaf| leaf.tabs.push(kind));
+                }
                 None => {
                     let root = NodeIndex::root();
                     let _ = self.state.main_surface_mut().split_left(root, 0.27, vec![kind]);
@@ -165,18 +166,10 @@ impl Layout {
             self.state.set_focused_node_and_surface(path.node_path());
             if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
                 leaf.collapsed = false;
+                // A narrow bar has room for the names of the usual panels only.
+                leaf.scroll =
+                    if path.tab.0 < PanelKind::INITIAL.len() { 0.0 } else { TO_LAST_TABS };
             }
-        }
-    }
-
-    /// Adds a panel to the place at `path`, or below it if its tab bar has no room for another name.
-    fn put_beside(&mut self, path: TabPath, kind: PanelKind) {
-        let Ok(leaf) = self.state.leaf_mut(path.node_path()) else { return };
-        if leaf.tabs.len() < MOST_TABS || path.surface != SurfaceIndex::main() {
-            leaf.tabs.push(kind);
-        } else {
-            let surface = self.state.main_surface_mut();
-            let _ = surface.split_below(path.node, UPPER_SHARE, vec![kind]);
         }
     }
 

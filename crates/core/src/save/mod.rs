@@ -56,8 +56,8 @@ pub use preferences::{
     LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,
 };
 pub use preset::{
-    DEFAULT_PRESET, Preset, load_preset, parse_preset, shipped_preset_names, shipped_presets,
-    store_preset,
+    DEFAULT_PRESET, Preset, load_preset, parse_preset, settings_in_words, shipped_preset_names,
+    shipped_presets, store_preset,
 };
 pub use record::{load_log, parse_evaluations, parse_records};
 pub use run::{ExistingRun, RunFolder, SavedProgress};

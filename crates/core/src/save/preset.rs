@@ -7,7 +7,7 @@ use super::files::{check_format, embedded, parse, pretty, store_ron};
 use super::own_files::{OwnKind, load_named};
 use super::{SaveError, engine_2};
 use crate::check::{self, Invalid, quoted, within};
-use crate::evolve::Settings;
+use crate::evolve::{RunPlan, Settings, changes_in_words};
 
 /// Settings with a name and a description.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +86,19 @@ pub fn load_preset(name_or_path: &str) -> Result<Preset, SaveError> {
     load_named(name_or_path)
 }
 
+/// Describes the settings of a run in a few words: the name of its preset and, if that is a shipped one, what differs from it, as in
+/// "climb, friction 0.5".
+pub fn settings_in_words(plan: &RunPlan) -> String {
+    let of_preset = |(file, _): &&(&str, &str)| file.strip_suffix(".ron") == Some(&plan.preset);
+    let shipped = SHIPPED.iter().find(of_preset);
+    let preset = shipped.and_then(|(file, text)| parse_preset(Path::new(file), text).ok());
+    let changes = preset.map(|preset| changes_in_words(&preset.settings, &plan.settings));
+    match changes.filter(|changes| !changes.is_empty()) {
+        Some(changes) => format!("{}, {changes}", plan.preset),
+        None => plan.preset.clone(),
+    }
+}
+
 /// Writes a preset as readable text, atomically.
 ///
 /// # Errors
@@ -160,10 +173,22 @@ const MAX_ABOUT_BYTES: usize = 10_000;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::EvolutionSettings;
+    use crate::evolve::{EvolutionSettings, with_fields};
     use crate::rng::{Purpose, stream};
     use crate::score::{Fitness, Repeats, Trial, evaluate};
     use crate::world::{PhysicsEngine, Stairs};
+
+    #[test]
+    fn a12_a_run_is_named_after_its_preset_and_what_differs_from_it() {
+        let named = |preset: &str, fields: &[(&str, &str)]| {
+            let settings = load_preset("climb").expect("shipped").settings;
+            let settings = with_fields(&settings, fields.iter().copied()).expect("allowed");
+            settings_in_words(&RunPlan::new(preset, 1, settings))
+        };
+        assert_eq!(named("climb", &[]), "climb");
+        assert_eq!(named("climb", &[("surface.friction", "0.5")]), "climb, friction 0.5");
+        assert_eq!(named("my-own", &[("surface.friction", "0.5")]), "my-own");
+    }
 
     #[test]
     fn the_shipped_presets_are_well_formed_and_the_default_is_first() {

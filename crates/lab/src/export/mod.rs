@@ -7,6 +7,7 @@ mod columns;
 mod error;
 mod facts;
 mod format;
+pub mod gif;
 mod gltf;
 mod mjcf;
 mod motion;

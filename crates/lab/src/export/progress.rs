@@ -8,6 +8,8 @@ use crate::run::RunControl;
 pub struct ExportProgress<'p> {
     show: &'p dyn Fn(f64),
     control: &'p RunControl,
+    /// Takes the expected size of the file, in bytes.
+    expect: Option<&'p dyn Fn(u64)>,
     /// Start and end of the current part, as shares of the whole.
     part: [f64; 2],
 }
@@ -15,7 +17,17 @@ pub struct ExportProgress<'p> {
 impl<'p> ExportProgress<'p> {
     /// Creates a progress from 0 to 1, which `show` displays, until `control` is cancelled.
     pub fn new(show: &'p dyn Fn(f64), control: &'p RunControl) -> Self {
-        Self { show, control, part: [0.0, 1.0] }
+        Self { show, control, expect: None, part: [0.0, 1.0] }
+    }
+
+    /// Returns this progress, with a function that is told the expected size of the file, in bytes.
+    pub fn telling(self, expect: &'p dyn Fn(u64)) -> Self {
+        Self { expect: Some(expect), ..self }
+    }
+
+    /// Tells the size that the file will have, in bytes, before it is written.
+    pub fn expect(&self, bytes: u64) {
+        self.expect.iter().for_each(|tell| tell(bytes));
     }
 
     /// Returns the progress of part number `index` of `count` equal parts.

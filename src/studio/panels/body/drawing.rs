@@ -3,9 +3,9 @@
 use bevy_egui::egui;
 
 use crate::studio::ui::accessible::named;
-use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
 use snakes_core::world::BodyPlan;
+use snakes_lab::mesh::Outlines;
 use snakes_lab::plot::Role;
 
 /// Maximum height of both views together, in points.
@@ -13,7 +13,7 @@ const HEIGHT: f32 = 130.0;
 /// Space between the views and around them, in points.
 const SPACE: f32 = 8.0;
 
-/// Draws the blocks of a body, with the head on the left. Returns the block that was clicked.
+/// Draws the blocks of a body, with the head on the right. Returns the block that was clicked.
 pub(super) fn drawing(
     ui: &mut egui::Ui,
     body: &BodyPlan,
@@ -72,7 +72,7 @@ pub(super) fn drawing(
     }
     let response = named(response, egui::WidgetType::Other, "Drawing of the blocks");
     if selected.is_some() {
-        response.on_hover_text("Click a block to change it. The head is on the left");
+        response.on_hover_text("Click a block to change it. The head is on the right");
     }
     clicked
 }

@@ -1,11 +1,12 @@
 //! Tests of the body panel.
 
 use super::*;
-use crate::studio::panels::testing::{climber, panel, shows};
+use crate::studio::panels::testing::{climber, panel, random_snake, shows};
 use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use snakes_core::genome::ControllerKind;
 
 struct Edit {
     editor: BodyEditor,
@@ -35,8 +36,8 @@ fn a_click_selects_a_block_and_its_buttons_change_it() {
     assert!(harness.query_by_label("Head").is_some());
     assert!(harness.query_by_label("Bend limit").is_none(), "the head has no joint");
     let blocks = harness.get_by_label("Drawing of the blocks").rect();
-    // The position of the fourth of five equal blocks.
-    let at = egui::pos2(blocks.left() + blocks.width() * 0.7, blocks.center().y - 20.0);
+    // The position of the fourth of five equal blocks, with the head on the right.
+    let at = egui::pos2(blocks.left() + blocks.width() * 0.3, blocks.center().y - 20.0);
     harness.drag_at(at);
     harness.run();
     harness.drop_at(at);
@@ -47,6 +48,33 @@ fn a_click_selects_a_block_and_its_buttons_change_it() {
     harness.run();
     let split = BodyCommand::Change { block: 3, change: BodyChange::Split };
     assert_eq!(harness.state().commands, [Command::Body(split)]);
+}
+
+#[test]
+fn a22_limits_of_joints_are_shown_in_degrees_and_set_in_radians() {
+    let mut harness = editing(theme::PANEL_WIDTH);
+    harness.state_mut().panel.block = 2;
+    harness.run();
+    let segment = harness.state().editor.edited().expect("editing").segments[2].clone();
+    let shown = format!("{:.1}°", segment.bend_limit_rad.to_degrees());
+    let shown = shown.replace(".0°", "°");
+    assert!(harness.query_by_value(&shown).is_some() || shows(&harness, &shown), "{shown}");
+    assert!(!shows(&harness, " rad"));
+}
+
+#[test]
+fn a11_a_body_that_cannot_be_edited_says_why_before_a_click() {
+    let lane = Lane::new(random_snake(ControllerKind::Ctrnn, &[], |_| {}), 0);
+    let mut of = BodyPanel::default();
+    let mut harness = panel([theme::PANEL_WIDTH, 600.0], |ui, commands| {
+        of.ui(ui, None, Some(&lane), None, commands);
+    });
+    harness.get_by_label("Edit this body").hover();
+    harness.run_steps(60);
+    assert!(shows(&harness, "cannot follow a changed body: only gaits and waves do"));
+    harness.get_by_label("Edit this body").click();
+    harness.run();
+    assert_eq!(*harness.state(), []);
 }
 
 #[test]

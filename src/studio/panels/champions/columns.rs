@@ -1,6 +1,7 @@
 //! Columns of the champions list: fitness, time and energy on the right of each row, as many as the width allows.
 
 use bevy_egui::egui;
+use bevy_egui::egui::epaint::text::LayoutJob;
 
 use super::climbs::LandingTime;
 use crate::studio::panels::thumbnail::thumbnail;
@@ -39,7 +40,9 @@ pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
         LandingTime::None => "-".to_owned(),
         LandingTime::Pending => "…".to_owned(),
     };
-    [champion.score(), time, energy.unwrap_or_else(|| "-".to_owned())]
+    // The column has no room for the word, which the tooltip has.
+    let score = champion.score().trim_start_matches("share ").to_owned();
+    [score, time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 
 /// Returns the width of the rows of a list, in points. Room beside the rows is reserved for the scroll bar, so that the
@@ -93,7 +96,6 @@ pub(super) fn row(
     let font = egui::TextStyle::Button.resolve(ui.style());
     let places = places(rect, count);
     let names_end = places.first().map_or(rect.right(), |first| first.left());
-    let room = egui::Rect::from_min_max(rect.min, egui::pos2(names_end, rect.bottom()));
     let mut at = rect.left_center() + egui::vec2(theme::GAP / 2.0, 0.0);
     let size = theme::CHAMPION_THUMBNAIL;
     if let Some(picture) = picture {
@@ -106,14 +108,10 @@ pub(super) fn row(
         ui.painter().circle_filled(at + egui::vec2(radius, 0.0), radius, color);
         at.x += theme::LANE_DOT + theme::GAP / 2.0;
     }
-    let align = egui::Align2::LEFT_CENTER;
-    ui.painter().with_clip_rect(room.intersect(ui.clip_rect())).text(
-        at,
-        align,
-        name,
-        font.clone(),
-        palette.text,
-    );
+    let mut job = LayoutJob::simple_singleline(name.to_owned(), font.clone(), palette.text);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(names_end - theme::GAP - at.x);
+    let name = ui.painter().layout_job(job);
+    ui.painter().galley(at - egui::vec2(0.0, name.size().y / 2.0), name, palette.text);
     let color = if is_shown { palette.text } else { palette.text_weak };
     for (place, text) in places.iter().zip(cells) {
         let at = egui::pos2(place.right(), place.center().y);

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use snakes_core::evolve::Champion;
 use snakes_lab::run::GenerationReport;
 
 /// Summary of a run, which is computed once for each new report instead of in every frame.
@@ -10,8 +11,9 @@ use snakes_lab::run::GenerationReport;
 pub(super) struct ReportSummary {
     /// Number of generations that have a champion.
     pub champions: usize,
-    /// Generation of the best champion of the run; `None` without any champion.
-    pub best: Option<u32>,
+    /// Generation of the best champion of the run, and the word for it; `None` without any champion. The champion on the
+    /// highest stairs may have less fitness than one on lower stairs.
+    pub best: Option<(u32, &'static str)>,
     /// Indices of the reports whose champions are better than all earlier ones.
     pub better: Arc<[usize]>,
 }
@@ -27,6 +29,12 @@ impl ReportSummary {
             let pairs = a.iter().zip(b);
             pairs.fold(Ordering::Equal, |so_far, (a, b)| so_far.then(a.total_cmp(b)))
         });
+        let marked = best.map(|(champion, _)| {
+            let height_m = |champion: &Champion| champion.trial.stairs.highest_m();
+            let is_lower = |other: &Champion| height_m(other) < height_m(champion);
+            let has_lower = champions.clone().any(|(other, _)| is_lower(other));
+            (champion.origin.generation, if has_lower { "highest" } else { "best" })
+        });
         let mut most = [f32::MIN; 2];
         let is_better = |report: &GenerationReport| {
             let rank = report.champion_rank().filter(|rank| *rank > most);
@@ -37,7 +45,7 @@ impl ReportSummary {
         let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();
         Self {
             champions: champions.count(),
-            best: best.map(|(champion, _)| champion.origin.generation),
+            best: marked,
             better,
         }
     }

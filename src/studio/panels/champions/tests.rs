@@ -6,6 +6,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::StairsCount;
 use snakes_core::save::shipped_champion;
+use snakes_core::schema::PerPart;
+use snakes_core::score::Fitness;
 
 /// Creates the panel with these champions. Two snakes can race in each generation.
 fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> Sent<'a> {
@@ -97,4 +99,29 @@ fn of_a_run_whose_stairs_evolve_only_generations_with_a_champion_are_listed() {
     let panel = panel(&[], &reports);
     assert_eq!(listed(&panel), [1, 3]);
     assert!(!shows(&panel, "disqualified"));
+}
+
+#[test]
+fn a19_texts_of_a_row_do_not_overlap_and_the_highest_stairs_are_not_called_the_best() {
+    let mut reports = [report(148, 1.013), report(149, 0.892)];
+    for report in &mut reports {
+        report.champion.as_mut().expect("healthy").trial.fitness = Fitness::Share;
+    }
+    reports[1].champion.as_mut().expect("healthy").trial.stairs.rise_m = PerPart::All(0.7);
+    let panel = panel(&[], &reports);
+    assert!(shows(&panel, "Generation 149, highest, 0.892, "));
+    let row = panel.get_by_label_contains("Generation 149").rect();
+    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if row.contains(text.pos) => {
+            Some((text.galley.text().to_owned(), clipped.shape.visual_bounding_rect()))
+        }
+        _ => None,
+    });
+    let texts: Vec<_> = texts.collect();
+    assert!(texts.len() > 1, "{texts:?}");
+    for (index, (text, rect)) in texts.iter().enumerate() {
+        for (other, beside) in &texts[index + 1..] {
+            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
+        }
+    }
 }

@@ -2,11 +2,11 @@
 
 use bevy_egui::egui;
 
-use crate::studio::ui::outlines::Outlines;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{Archive, EliteGenes};
 use snakes_core::score::AgentSettings;
 use snakes_core::world::BodyPlan;
+use snakes_lab::mesh::Outlines;
 use snakes_lab::plot::Role;
 
 /// Minimum width of a cell with a picture, in points. In a narrower cell the picture would be unrecognizable.

@@ -33,14 +33,14 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
         Some([f64::from(record.generation), best, median])
     };
     let own = run.reports().iter().filter_map(|report| point(&report.record));
-    let name = format!("this run ({}, seed {})", run.preset(), run.seed());
+    let name = format!("this run ({}, seed {})", run.settings_in_words(), run.seed());
     let mut curves = vec![Curves { name: name.into(), role: Role::First, points: own.collect() }];
     let mut rewards_differ = false;
     for (compared, role) in run.others().compared().iter().zip(ROLES) {
         let Some(Ok(other)) = &compared.read else { continue };
         rewards_differ |= other.plan.settings.trial.fitness != fitness;
         let points = other.records.iter().filter_map(point);
-        let mut name = title(&other.plan);
+        let mut name = title(&other.settings, &other.plan);
         if curves.iter().any(|known| *known.name == *name) {
             // The name of the folder distinguishes runs with the same preset and seed.
             name = format!("{name}, {}", compared.folder.file_name().unwrap_or_default().display());
@@ -82,8 +82,9 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     ChartView::new(Figure::of("Comparison of runs", chart).with_note(note), vec![hits])
 }
 
-fn title(plan: &RunPlan) -> String {
-    format!("{}, seed {}, {}", plan.preset, plan.seed, plan.settings.evolution.strategy)
+/// Returns the title of a run whose settings have this description.
+fn title(settings: &str, plan: &RunPlan) -> String {
+    format!("{settings}, seed {}, {}", plan.seed, plan.settings.evolution.strategy)
 }
 
 /// Draws the list of runs to select, and the errors of runs that cannot be read.
@@ -116,7 +117,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
         for other in choices {
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
-            let name = other.name.clone().unwrap_or_else(|| title(&other.plan));
+            let name = other.name.clone().unwrap_or_else(|| title(&other.settings, &other.plan));
             let name = format!("{name}, {}", other.generations_in_words());
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));

@@ -14,7 +14,6 @@ use crate::studio::state::shares::ShareProgress;
 use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::check_box::{CHECK_BOX_SIDE, paint_check_box};
-use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::text_rows::{at_right, weak};
 use crate::studio::ui::theme;
 use snakes_core::save::library::run_of_plan;
@@ -72,11 +71,9 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
     let cancel = egui::Button::new("Cancel").frame(true).small();
     let stop = Command::Share(ShareCommand::Cancel);
     CommandButton::of(cancel, "Cancel writing the file", stop).show(ui, commands);
-    let ShareProgress { name, share } = share;
-    let text = format!("{name}  {}", in_percent(*share));
-    let bar = egui::ProgressBar::new(*share).desired_width(theme::COLUMN_WIDTHS[2]);
+    let bar = egui::ProgressBar::new(share.share).desired_width(theme::COLUMN_WIDTHS[2]);
     ui.add(bar.desired_height(ui.spacing().interact_size.y * 0.5));
-    ui.add(egui::Label::new(text).truncate());
+    ui.add(egui::Label::new(share.in_words()).truncate());
     ui.add_space(theme::GAP);
 }
 
@@ -224,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_share_menu_has_every_format_until_a_file_is_being_written() {
+    fn a3_the_share_menu_has_every_format_until_a_file_is_being_written() {
         use snakes_lab::export::ExportFormat;
         type State = (Situation, Option<ShareProgress>, Vec<Command>);
         let mut harness = Harness::new_ui_state(
@@ -246,9 +243,14 @@ mod tests {
         assert!(harness.query_by_label_contains("climb.mp4").is_none());
         let (now, share, _) = harness.state_mut();
         now.is_sharing = true;
-        *share = Some(ShareProgress { name: "climb.mp4".to_owned(), share: 0.42 });
+        *share = Some(ShareProgress {
+            name: "climb.mp4".to_owned(),
+            share: 0.42,
+            expected_bytes: Some(6_140_000),
+            left: Some(std::time::Duration::from_secs(20)),
+        });
         harness.run();
-        harness.get_by_label("climb.mp4  42 %");
+        harness.get_by_label("climb.mp4  42 %, about 20 s left, about 6.1 MB");
         harness.get_by_label("Cancel").click();
         harness.run();
         let cancel = Command::Share(ShareCommand::Cancel);

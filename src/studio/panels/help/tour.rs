@@ -3,7 +3,7 @@
 
 use bevy_egui::egui;
 
-use super::tour_place::{arrow, card_place};
+use super::tour_place::{arrow, card_place, content_width};
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, PlayerCommand, RunCommand};
@@ -119,7 +119,7 @@ impl Tour {
         let screen = context.content_rect();
         let target = target.map(|target| target.intersect(screen));
         let id = egui::Id::new("tour");
-        let width = theme::TOUR_WIDTH.min(screen.width() - theme::GAP * 4.0);
+        let width = content_width(target, screen);
         let known = context.memory(|memory| memory.area_rect(id)).map(|area| area.size());
         let size = known.unwrap_or(egui::vec2(width + theme::GAP * 4.0, CARD_HEIGHT));
         // If another panel is in front, the card has no target, and is placed where it covers no controls.
@@ -196,11 +196,11 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     let is_last = index + 1 == STEPS.len();
     let (label, next) = if is_last { ("Done", end.clone()) } else { ("Next", go_to(index + 1)) };
     let forward = ui.add(accent_button(ui, label));
-    if ui.memory(|memory| memory.focused().is_none()) {
-        // The focus lets the user go through the whole tour with Enter.
-        forward.request_focus();
-    }
-    if forward.clicked() {
+    // The button never takes the focus by itself, because Space would then press it instead of pausing the stage.
+    let is_free = ui.memory(|memory| memory.focused().is_none());
+    let enter = is_free
+        && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
+    if forward.clicked() || enter {
         commands.push(next);
     }
     if index > 0 {
@@ -246,10 +246,16 @@ mod tests {
     }
 
     #[test]
-    fn enter_continues_the_tour() {
+    fn a13_enter_continues_the_tour_and_space_is_left_to_the_stage_even_after_a_click() {
         let mut first = step([800.0, 600.0], 0);
+        press(&mut first, egui::Key::Space);
+        assert_eq!(*first.state(), []);
         press(&mut first, egui::Key::Enter);
         assert_eq!(*first.state(), [go_to(1)]);
+        clicked(&mut first, "Next");
+        press(&mut first, egui::Key::Space);
+        assert_eq!(*first.state(), [go_to(1), go_to(1)]);
+        assert!(first.ctx.memory(|memory| memory.focused().is_none()));
     }
 
     #[test]

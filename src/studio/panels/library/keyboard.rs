@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Key as Press, Modifiers};
 
 use super::LibraryPanel;
-use crate::studio::commands::Command;
+use crate::studio::commands::{Command, PlayerCommand};
 use crate::studio::state::library::Library;
 
 /// Number of rows by which Page Up and Page Down move the cursor.
@@ -24,6 +24,11 @@ impl LibraryPanel {
             self.update_actions(library);
             let is_letter = matches!(key, Press::A | Press::D);
             if is_letter && !held.command {
+                continue;
+            }
+            if key == Press::Space {
+                // The list has no use for Space, and a click into it must not take Space from the stage.
+                self.sent.push(Command::Player(PlayerCommand::Toggle));
                 continue;
             }
             if key == Press::A {

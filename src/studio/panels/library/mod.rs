@@ -14,6 +14,7 @@ mod selection;
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use bevy_egui::egui::{self, EventFilter, Sense, WidgetType};
@@ -68,8 +69,8 @@ pub(super) struct LibraryPanel {
     /// Scroll offset and height of the list, in points.
     offset: f32,
     height: f32,
-    /// Heights of the contents above and below the list in the previous frame, in points.
-    surrounding_heights: [f32; 2],
+    /// Height of the details below the list in the previous frame, in points.
+    details_height: f32,
     /// Commands of the user in this frame.
     sent: Vec<Command>,
 }
@@ -87,40 +88,29 @@ impl LibraryPanel {
             self.send(LibraryCommand::Refresh);
         }
         let available = ui.available_height();
-        let [usual, least] = theme::LIST_HEIGHTS;
-        if available.is_finite() {
-            let rest = match self.surrounding_heights {
-                [0.0, 0.0] => usual,
-                [above, below] => available - above - below,
-            };
-            let area = egui::ScrollArea::vertical().id_salt("library").auto_shrink(false);
-            area.show(ui, |ui| self.parts(ui, library, history, rest.floor().max(least)));
-        } else {
-            self.parts(ui, library, history, usual);
+        let gaps = ui.spacing().item_spacing.y * 2.0;
+        let above = ui.scope(|ui| self.header(ui, library, history)).response.rect.height() + gaps;
+        self.follow(library);
+        self.take_requests(library);
+        let now_s = ui.input(|input| input.time);
+        if self.order.update(library, &self.search, self.sort, now_s) {
+            // An action must never concern a save that the search hides.
+            let shown: BTreeSet<&SavePlace> =
+                self.order.rows().iter().map(|row| library.items()[*row].place()).collect();
+            self.selection.retain(|place| shown.contains(place));
         }
+        // The details of a selected save take no more than a part of the list; they scroll instead.
+        let rest = available - above - self.details_height;
+        let height = rest.max(available * theme::LEAST_LIST_SHARE).floor();
+        self.list(ui, library, height);
+        let details = egui::ScrollArea::vertical().id_salt("details").auto_shrink([false, true]);
+        let footer = details.show(ui, |ui| self.footer(ui, library));
+        self.details_height = footer.content_size.y;
         commands.append(&mut self.sent);
     }
 
     fn send(&mut self, command: LibraryCommand) {
         self.sent.push(Command::Library(command));
-    }
-
-    fn parts(
-        &mut self,
-        ui: &mut egui::Ui,
-        library: &Library,
-        history: &UndoHistory,
-        list_height: f32,
-    ) {
-        let gaps = ui.spacing().item_spacing.y * 2.0;
-        let header = ui.scope(|ui| self.header(ui, library, history)).response.rect.height();
-        self.follow(library);
-        self.take_requests(library);
-        let now_s = ui.input(|input| input.time);
-        self.order.update(library, &self.search, self.sort, now_s);
-        self.list(ui, library, list_height);
-        let footer = ui.scope(|ui| self.footer(ui, library)).response.rect.height();
-        self.surrounding_heights = [header + gaps, footer];
     }
 
     /// Removes entries that do not exist any more from the selection, and selects new ones.

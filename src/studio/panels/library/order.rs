@@ -118,8 +118,9 @@ struct SortInput {
 const MIN_SORT_INTERVAL_S: f64 = 0.5;
 
 impl SortedItems {
-    /// Sorts and filters again if something has changed. `now_s` is the time of the frame, in seconds.
-    pub fn update(&mut self, library: &Library, search: &str, sort: SortOrder, now_s: f64) {
+    /// Sorts and filters again if something has changed, and returns whether it has. `now_s` is the time of the frame, in
+    /// seconds.
+    pub fn update(&mut self, library: &Library, search: &str, sort: SortOrder, now_s: f64) -> bool {
         let input_now = SortInput {
             listings: library.listings(),
             sortings: library.sortings(),
@@ -133,7 +134,7 @@ impl SortedItems {
             *input == input_now || (only_read_on && is_young)
         });
         if is_current {
-            return;
+            return false;
         }
         let words: Vec<&str> = input_now.search.split_whitespace().collect();
         let items = library.items();
@@ -148,6 +149,7 @@ impl SortedItems {
         rows.sort_by(|a, b| sort.compare(&items[*a], &items[*b]));
         self.rows = rows.into();
         (self.input, self.sorted_at_s) = (Some(input_now), now_s);
+        true
     }
 
     /// Returns the index of each row's item among the library's items.

@@ -10,7 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
-use crate::studio::commands::{PlanCommand, RunCommand};
+use crate::studio::commands::{PlanCommand, PlayerCommand, RunCommand};
 use crate::studio::panels::testing::{Sent as Test, clicked, shows, type_into};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
@@ -321,6 +321,50 @@ fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
     }
     harness.run();
     assert_eq!(list_height(&harness), before);
+}
+
+#[test]
+fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
+    let library = library();
+    // The panel of a window of 1280 by 720 points.
+    let mut harness = harness(&library, [384.0, 650.0]);
+    let rows = |harness: &Test<'_>| {
+        harness.get_by_label_contains("Saves: ").rect().height() / theme::LIBRARY_ROW_HEIGHT
+    };
+    for name in ["alpha", "climb-seed8-0123abcd"] {
+        select(&mut harness, name);
+        assert!(rows(&harness) > 8.0, "{name}: {}", rows(&harness));
+        let delete = harness.get_by_label("Delete").rect();
+        assert!(delete.bottom() < 650.0, "{name}: {delete}");
+    }
+}
+
+#[test]
+fn a17_delete_concerns_no_save_that_the_search_hides() {
+    let library = library();
+    let found = sent(&library, |harness| {
+        select(harness, "alpha");
+        row_of(harness, "beta").click_modifiers(Modifiers::COMMAND);
+        harness.run();
+        type_into(harness, "Search the library", "beta");
+        clicked(harness, "Delete");
+    });
+    assert_eq!(found, [LibraryCommand::Delete(vec![file("beta")])]);
+    let hidden = sent(&library, |harness| {
+        select(harness, "alpha");
+        type_into(harness, "Search the library", "beta");
+        assert!(!shows(harness, "Delete"), "nothing that is shown is selected");
+    });
+    assert_eq!(hidden, []);
+}
+
+#[test]
+fn a13_space_in_the_list_pauses_the_stage() {
+    let library = library();
+    let mut harness = harness(&library, [420.0, 800.0]);
+    select(&mut harness, "alpha");
+    press(&mut harness, Modifiers::NONE, Press::Space);
+    assert_eq!(*harness.state(), [Command::Player(PlayerCommand::Toggle)]);
 }
 
 #[test]

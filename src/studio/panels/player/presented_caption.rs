@@ -223,12 +223,29 @@ mod tests {
         let title = |time_s: f64, is_first: bool| {
             PresentedCaption::of_one(&lane(0, "climber", time_s), time_s, is_first).title.text
         };
-        assert_eq!(title(0.0, true), "climber: no step climbed yet");
+        assert_eq!(title(0.0, true), "climber: on its way to the stairs");
         let half_way = title(6.0, false);
         assert!(half_way.starts_with("climber: climbed "), "{half_way}");
         assert!(half_way.ends_with(" of 10 steps"), "{half_way}");
         assert!(title(14.0, false).starts_with("climber: at the top after "));
         assert_eq!(title(14.0, true), "First landing! climber has reached the top");
+    }
+
+    #[test]
+    fn a28_a_landing_counts_even_if_the_snake_has_gone_on_beyond_it() {
+        let staged = lane(0, "climber", 0.0).staged().clone();
+        let title = |landing_m: f32| {
+            let mut trial = staged.trial().clone();
+            trial.stairs.landing_m = landing_m;
+            let mut lane = Lane::new(staged.in_world(&trial, "climber".to_owned()), 0);
+            lane.finish_lookahead();
+            lane.skip_to(f64::MAX);
+            let beyond = lane.drawn_middle().y > trial.stairs.end_y_m();
+            let title = PresentedCaption::of_one(&lane, f64::MAX, false).title.text;
+            (beyond && lane.landed_s(f64::MAX).is_some()).then_some(title)
+        };
+        let title = [2.0, 4.0, 6.0].into_iter().find_map(title).expect("one goes beyond");
+        assert!(title.starts_with("climber: reached the top after "), "{title}");
     }
 
     #[test]

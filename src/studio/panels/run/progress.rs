@@ -39,7 +39,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let inside = match (run.run_hash(), random_first) {
         (Some(_), _) => "finished".to_owned(),
         (None, Some(random)) => format!("{done} of {random} random snakes first"),
-        (None, None) => format!("{done} of {population} snakes"),
+        (None, None) => evaluated(done, population, run.settings().evolution.population),
     };
     let hint = match random_first {
         Some(random) => format!(
@@ -76,6 +76,13 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
         let hint = "In the latest finished generation. The limits are in the World panel";
         ui.add(egui::Label::new(disqualified).wrap()).on_hover_text(hint);
     }
+}
+
+/// Describes how many of the evaluations of a generation are finished. Snakes that survive from the generation before are
+/// not evaluated again.
+fn evaluated(done: u32, all: u32, population: u32) -> String {
+    let new = if all < population { " new" } else { "" };
+    format!("{done} of {all}{new} snakes")
 }
 
 /// Describes a run that has fewer generations than planned, because some were larger, such as the first of CMA-ES.
@@ -190,6 +197,12 @@ mod tests {
             finished_early(57, 60, 6000),
             "Finished after 57 of 60 generations: the first ones were larger and used up the run's 6,000 snakes"
         );
+    }
+
+    #[test]
+    fn a26_evaluations_are_those_of_new_snakes_if_others_survive() {
+        assert_eq!(evaluated(197, 197, 200), "197 of 197 new snakes");
+        assert_eq!(evaluated(7, 30, 30), "7 of 30 snakes");
     }
 
     #[test]

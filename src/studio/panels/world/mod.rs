@@ -111,17 +111,24 @@ impl WorldPanel {
         }
     }
 
-    /// Draws the settings that match the search, by section.
+    /// Draws the settings that match the search, by section: first those of sections whose title has all words, then
+    /// those whose own name has them, and last those that only mention them.
     fn search_results(&mut self, ui: &mut egui::Ui) {
-        let search = self.search.clone();
+        let words = self.search.to_lowercase();
+        let has_all = |text: &str| {
+            let text = text.to_lowercase();
+            words.split_whitespace().all(|word| text.contains(word))
+        };
+        let rank = |listed: &ListedSetting| match listed.setting.kind {
+            SettingKind::Absent(_) => None,
+            _ if has_all(listed.section.title) => Some(0),
+            _ if has_all(&listed.setting.title()) => Some(1),
+            _ => listed.setting.is_about(&words).then_some(2),
+        };
+        let sections = self.sheet.sections("");
         let mut is_anything = false;
-        for section in self.sheet.sections("") {
-            let is_section =
-                section.title.to_lowercase().contains(search.trim().to_lowercase().as_str());
-            let is_wanted = |listed: &ListedSetting| {
-                let is_present = !matches!(listed.setting.kind, SettingKind::Absent(_));
-                is_present && (is_section || listed.setting.is_about(&search))
-            };
+        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of))) {
+            let is_wanted = |listed: &ListedSetting| rank(listed) == Some(wanted);
             if self.sheet.in_section(section).any(is_wanted) {
                 is_anything = true;
                 ui.add_space(theme::GAP / 2.0);
@@ -327,6 +334,19 @@ mod tests {
         assert_finds("Tournament", "Selection");
         assert_finds("joint DAMP", "Joint damping, N·m·s/rad");
         assert_finds("xyz", "No setting matches.");
+    }
+
+    #[test]
+    fn a10_settings_whose_section_or_name_has_the_words_come_before_those_that_mention_them() {
+        let run = prepared_run();
+        sent(&run, |harness| {
+            type_into(harness, "Find a setting", "joint");
+            let top = |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
+            let joints = top("Joints").expect("the section");
+            let named = top("Genome").or(top("Controller")).unwrap_or(f32::MAX);
+            let field = harness.get_by_label("Find a setting").rect();
+            assert!(joints < named && joints < field.bottom() + theme::GAP * 4.0, "{joints}");
+        });
     }
 
     #[test]

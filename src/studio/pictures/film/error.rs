@@ -18,6 +18,9 @@ pub enum FilmError {
     /// A text could not be written onto a frame.
     #[error(transparent)]
     Plot(#[from] PlotError),
+    /// The GIF would be larger than allowed, in bytes. A smaller one can be made.
+    #[error("the GIF would have {0} bytes")]
+    TooLarge(u64),
     /// The program that writes .mp4 films is missing.
     #[error(
         "a .mp4 film is written by ffmpeg, which is not installed here or not in PATH; install it, or write a .gif"

@@ -2,33 +2,34 @@
 //! champions and options give the same frames on every machine, however slowly it draws.
 //!
 //! [`plan`] determines the time that each frame shows, and [`camera_path`] the camera. [`shooting`] draws the frames,
-//! and [`gif_file`], [`video`] and [`frame_folder`] write them.
+//! and [`gif`], [`video`] and [`frame_folder`] write them.
 
 mod camera_path;
 mod error;
 mod film_file;
 mod frame_folder;
-mod gif_file;
 mod order;
 mod plan;
 mod shooting;
 mod video;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::studio::stage::evenly;
 use snakes_core::check::{Invalid, within};
+use snakes_lab::export::gif::{
+    BegunGif, ESTIMATED_BYTES, GifChoice, GifChoices, GifFile, GifPalette, PAIRS,
+};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 pub use error::FilmError;
 pub(crate) use frame_folder::frame_folder_of;
-pub(crate) use gif_file::GIF_FPS;
 pub use order::{FilmOrder, FilmPart};
 
 use film_file::FilmFile;
 use frame_folder::FrameFolder;
-use gif_file::{BegunGif, GifPalette, SAMPLES};
-use plan::planned;
+use plan::{FilmFrame, planned};
 use shooting::shoot;
 use video::Video;
 
@@ -54,30 +55,19 @@ pub fn film(
     path: &Path,
     progress: &ExportProgress,
 ) -> Result<(), FilmError> {
-    let plan = planned(order)?;
-    within("number of frames", plan.len(), 1..=MOST_FRAMES)?;
+    if format == ExportFormat::Gif {
+        return gif(order, path, progress);
+    }
+    let plan = checked_plan(order)?;
     let (size, fps) = (order.size, order.fps);
     // The file is created first, so that a file that cannot be written is reported before the first frame is drawn.
-    let mut file: Option<Box<dyn FilmFile>> = match format {
-        ExportFormat::Mp4 => Some(Box::new(Video::begin(path, size, fps)?)),
-        ExportFormat::Png => Some(Box::new(FrameFolder::begin(path, plan.len())?)),
-        _ => None,
+    let mut file: Box<dyn FilmFile> = match format {
+        ExportFormat::Mp4 => Box::new(Video::begin(path, size, fps)?),
+        _ => Box::new(FrameFolder::begin(path, plan.len())?),
     };
-    let mut gif = file.is_none().then(|| BegunGif::begin(path, size, fps)).transpose()?;
     let all = plan.len();
     shoot(order, &plan, |shooting| {
-        if let Some(gif) = gif.take() {
-            let mut samples = Vec::new();
-            let chosen: Vec<usize> = evenly(all, SAMPLES, SAMPLES).collect();
-            shooting.play(&chosen, |_, frame| {
-                samples.push(frame);
-                Ok(progress.reach(0.0)?)
-            })?;
-            file = Some(Box::new(gif.with_palette(GifPalette::of(&samples))?));
-        }
-        let Some(file) = &mut file else { return Ok(()) };
-        let every: Vec<usize> = (0..all).collect();
-        shooting.play(&every, |index, frame| {
+        shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
             progress.reach(index as f64 / all as f64)?;
             let added = file.add(&frame);
             // If the interrupt key has cancelled the film, it may also have ended ffmpeg; the failure of ffmpeg is then not reported.
@@ -85,5 +75,65 @@ pub fn film(
             added
         })
     })?;
-    file.map_or(Ok(()), FilmFile::finish)
+    file.finish()
+}
+
+fn checked_plan(order: &FilmOrder) -> Result<Vec<FilmFrame>, FilmError> {
+    let plan = planned(order)?;
+    within("number of frames", plan.len(), 1..=MOST_FRAMES)?;
+    Ok(plan)
+}
+
+/// Draws a film and writes it as GIF, in the best size and frame rate for which the file is small enough.
+fn gif(order: &FilmOrder, path: &Path, progress: &ExportProgress) -> Result<(), FilmError> {
+    let duration_s = checked_plan(order)?.len() as f64 / f64::from(order.fps);
+    let ordered = GifChoice { size: order.size, fps: order.fps };
+    let allowed = (order.may_be_smaller, order.may_be_slower);
+    let mut choices = GifChoices::new(ordered, duration_s, allowed);
+    while let Some((chosen, most)) = choices.take() {
+        let order = FilmOrder { size: chosen.size, fps: chosen.fps, ..order.clone() };
+        match gif_within(most, &order, path, progress) {
+            Err(FilmError::TooLarge(bytes)) => choices.learn(chosen, bytes),
+            ended => return ended,
+        }
+    }
+    Ok(())
+}
+
+/// Draws a film and writes it as GIF of at most `most` bytes.
+fn gif_within(
+    most: Option<u64>,
+    order: &FilmOrder,
+    path: &Path,
+    progress: &ExportProgress,
+) -> Result<(), FilmError> {
+    let plan = checked_plan(order)?;
+    let mut begun = Some(BegunGif::begin(path, order.size, order.fps)?);
+    let (all, mut file) = (plan.len(), None);
+    shoot(order, &plan, |shooting| {
+        let firsts = evenly(all.saturating_sub(1).max(1), PAIRS, PAIRS);
+        let chosen: BTreeSet<usize> = firsts.flat_map(|first| [first, first + 1]).collect();
+        let chosen: Vec<usize> = chosen.into_iter().filter(|index| *index < all).collect();
+        let mut samples = Vec::new();
+        shooting.play(&chosen, |index, frame| {
+            samples.push((index, frame));
+            Ok(progress.reach(0.0)?)
+        })?;
+        let palette = GifPalette::of(&samples);
+        let expected = palette.expected_bytes(&samples, all);
+        if most.is_some() && expected > ESTIMATED_BYTES {
+            return Err(FilmError::TooLarge(expected));
+        }
+        progress.expect(expected);
+        let Some(begun) = begun.take() else { return Ok(()) };
+        let file = file.insert(begun.with_palette(palette)?);
+        shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
+            file.add(&frame)?;
+            if most.is_some_and(|most| file.bytes() > most) {
+                return Err(FilmError::TooLarge(file.bytes() * all as u64 / (index as u64 + 1)));
+            }
+            Ok(progress.reach((index + 1) as f64 / all as f64)?)
+        })
+    })?;
+    Ok(file.map_or(Ok(()), GifFile::finish)?)
 }

@@ -20,6 +20,12 @@ pub struct FilmOrder {
     pub fps: u32,
     /// Width and height, in pixels.
     pub size: (u32, u32),
+    /// Whether a GIF may have fewer pixels, so that its file is small.
+    pub may_be_smaller: bool,
+    /// Whether a GIF may have fewer frames per second, so that its file is small.
+    pub may_be_slower: bool,
+    /// Whether each part ends shortly after the last snake has landed or was furthest, instead of at `end_s`.
+    pub ends_with_climb: bool,
     /// Camera mode: follow, side or top.
     pub camera: CameraMode,
     /// Theme of the scene.

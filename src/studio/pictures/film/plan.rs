@@ -14,6 +14,8 @@ use snakes_lab::plot::FilmTitle;
 
 /// Time for which a part with a title stands still at its beginning and at its end, in seconds of the film.
 const HOLD_S: f64 = 1.2;
+/// Time for which a film that shows only the climb goes on after it, in simulated seconds.
+const AFTER_CLIMB_S: f64 = 1.5;
 /// Time for which a title is shown, in seconds of the film.
 const TITLE_S: f64 = 2.8;
 /// Time in which a title fades out at the end of its display, in seconds of the film.
@@ -52,7 +54,9 @@ fn frames_of(
     let mut lanes = lanes_of(part)?;
     let ends_s = end_s(&lanes);
     within("--start", order.start_s, 0.0..=ends_s)?;
-    let until_s = order.end_s.unwrap_or(ends_s).min(ends_s);
+    let climbed_s = lanes.iter().map(Lane::climbed_s).fold(0.0, f64::max) + AFTER_CLIMB_S;
+    let wanted_s = if order.ends_with_climb { Some(climbed_s) } else { order.end_s };
+    let until_s = wanted_s.filter(|end_s| *end_s > order.start_s).unwrap_or(ends_s).min(ends_s);
     let fps = f64::from(order.fps);
     let count = libm::round((until_s - order.start_s) * fps / order.speed).max(1.0) as usize;
     let held = if part.title.is_some() { libm::round(HOLD_S * fps) as usize } else { 0 };

@@ -3,6 +3,18 @@
 use super::Lane;
 
 impl Lane {
+    /// Returns the time at which the snake lands or, if it does not, at which it is furthest, in simulated seconds; the
+    /// end of the lane if neither is known.
+    pub fn climbed_s(&self) -> f64 {
+        let furthest = || {
+            let history = self.history()?;
+            let ways_m = history.middles_m().iter().map(|middle| middle.y).enumerate();
+            let (sample, _) = ways_m.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(f64::from(history.sample_steps()) * sample as f64 * self.step_s())
+        };
+        self.landed_s(f64::INFINITY).or_else(furthest).unwrap_or_else(|| self.end_s())
+    }
+
     /// Describes the progress of the snake at this time in a few words.
     pub fn progress_in_words(&self, time_s: f64) -> String {
         let stairs = &self.trial().stairs;
@@ -14,9 +26,12 @@ impl Lane {
             (Some(landed_s), climbed) if climbed == stairs.steps => {
                 format!("at the top after {landed_s:.1} s")
             }
-            (_, 0) if self.is_over() => "climbed no step".to_owned(),
-            (_, 0) => "no step climbed yet".to_owned(),
-            (_, climbed) => format!("climbed {climbed} of {} steps", stairs.steps),
+            // The landing counts even if the snake has gone on beyond it, or has fallen from it.
+            (Some(landed_s), _) => format!("reached the top after {landed_s:.1} s"),
+            (None, 0) if self.is_over() => "climbed no step".to_owned(),
+            (None, 0) if middle.y < stairs.first_riser_y_m => "on its way to the stairs".to_owned(),
+            (None, 0) => "no step climbed yet".to_owned(),
+            (None, climbed) => format!("climbed {climbed} of {} steps", stairs.steps),
         }
     }
 }

@@ -92,6 +92,25 @@ fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
 }
 
 #[test]
+fn a16_lines_show_the_shapes_of_no_ghost_even_after_a_ray_was_cast() {
+    let mut app = stage_of(vec![shipped()]);
+    play(&mut app, &[0.1], |lane| lane.replay().step() > 6);
+    let ghost = Lane::ghost(lane(&mut app).staged().clone(), 1);
+    app.world_mut().spawn(ghost);
+    let world = app.world_mut();
+    let mut worlds = world.query::<StagedWorld>();
+    for mut world in worlds.iter_mut(world) {
+        assert!(world.cast_ray(Ray3d::new(Vec3::Z * 9.0, Dir3::NEG_Z)).is_some());
+        world.hold_for_lines();
+    }
+    let mut held = world.query::<(&Lane, &RapierContextColliders, &RapierRigidBodySet)>();
+    for (lane, colliders, bodies) in held.iter(world) {
+        assert_eq!(colliders.colliders.is_empty(), lane.is_ghost());
+        assert_eq!(bodies.bodies.is_empty(), lane.is_ghost());
+    }
+}
+
+#[test]
 fn contexts_and_rays_leave_the_bits_of_a_replay_alone() {
     for engine in ENGINES {
         let loaded = shipped_in(engine);

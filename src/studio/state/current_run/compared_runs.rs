@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use snakes_core::evolve::{GenerationRecord, RunPlan};
-use snakes_core::save::{RunSummary, SavesFolder, load_log};
+use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
 use snakes_lab::run::BackgroundTask;
 
 /// Runs in the saves folder, and those among them that are compared with the current run.
@@ -32,6 +32,8 @@ pub(crate) struct ComparedCurve {
 pub(crate) struct Other {
     /// Plan of the run.
     pub plan: RunPlan,
+    /// Description of the plan's settings: see [`settings_in_words`].
+    pub settings: String,
     /// Records of the finished generations, in order.
     pub records: Vec<GenerationRecord>,
 }
@@ -61,7 +63,7 @@ impl ComparedRuns {
         let path = folder.to_owned();
         let reading = BackgroundTask::start(move || {
             let (plan, records) = load_log(&path).map_err(|error| error.to_string())?;
-            Ok(Other { plan, records })
+            Ok(Other { settings: settings_in_words(&plan), plan, records })
         });
         let reading = reading.map_err(|error| format!("The run cannot be read: {error}"))?;
         let folder = folder.to_owned();

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::CurrentRun;
+use crate::studio::stage::staged_champion::StagedChampion;
 use snakes_core::check::Invalid;
 use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_engine};
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
@@ -180,12 +181,29 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
+    /// Returns a preset by its name, a built-in one or one of the user's own.
+    fn preset_named(&self, name: &str) -> Result<Preset, String> {
+        match self.context.presets.find(name)? {
+            Some(preset) => Ok(preset.clone()),
+            None => load_preset(name).map_err(|error| error.to_string()),
+        }
+    }
+
+    /// Returns whether a snake is of the kind that a preset evolves, with the same controller and the same genes of its
+    /// body, so that its world can be tried with the snake.
+    pub fn preset_suits(&self, name: &str, snake: Option<&StagedChampion>) -> Result<bool, String> {
+        let space = self.preset_named(name)?.settings.genome;
+        let suits = |staged: &StagedChampion| {
+            let genome = &staged.champion().genome;
+            space.controller == genome.controller.kind()
+                && space.bodies.vary == genome.body.has_own_blocks()
+        };
+        Ok(snake.is_none_or(suits))
+    }
+
     /// Sets the preset of the next run, a built-in preset or one of the user's own, and its settings.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
-        let preset = match self.context.presets.find(name)? {
-            Some(preset) => preset.clone(),
-            None => load_preset(name).map_err(|error| error.to_string())?,
-        };
+        let preset = self.preset_named(name)?;
         let seed = self.next_seed();
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }

@@ -12,7 +12,7 @@ impl CurrentRun {
     /// Returns the run's name for the user: the user's own name for it, if any, with its preset and seed.
     fn name(&self) -> String {
         let notes = read_notes(&SavePlace::Run(self.source.folder.clone())).unwrap_or_default();
-        let plan = format!("{}, seed {}", self.source.plan.preset, self.source.plan.seed);
+        let plan = format!("{}, seed {}", self.settings_in_words(), self.source.plan.seed);
         notes.own_name().map_or(plan.clone(), |own| format!("{own}: {plan}"))
     }
 

@@ -353,3 +353,24 @@ fn watching_the_snake_alone_shows_no_conclusion_and_results_need_a_guess_or_the_
         assert!(!lessons.view().expect("begun").progress.is_revealed);
     }
 }
+
+#[test]
+fn a29_the_race_of_a_lesson_stops_at_its_finish_until_the_reader_plays_again() {
+    let (lessons, _run) = first_lesson();
+    let mut app = App::new();
+    app.add_message::<Show>().insert_resource(lessons).init_resource::<Notices>();
+    let mut lane = Lane::new(robust(), 0);
+    lane.skip_to(f64::MAX);
+    let end_s = lane.end_s();
+    let mut playback = Playback::default();
+    playback.seek(end_s, end_s);
+    app.world_mut().spawn(lane);
+    app.insert_resource(playback).add_systems(Update, take_in);
+    app.update();
+    let mut playback = app.world_mut().resource_mut::<Playback>();
+    assert_eq!((playback.is_playing(), playback.time_s()), (false, end_s));
+    playback.toggle(end_s);
+    app.update();
+    let playback = app.world().resource::<Playback>();
+    assert_eq!((playback.is_playing(), playback.time_s()), (true, 0.0));
+}

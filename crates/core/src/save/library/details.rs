@@ -13,7 +13,9 @@ use crate::save::champion::note;
 use crate::save::files::{numbered, read_text, refuse_link};
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
-use crate::save::{LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion};
+use crate::save::{
+    LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion, settings_in_words,
+};
 use crate::score::Fitness;
 use crate::world::PhysicsEngine;
 
@@ -60,7 +62,7 @@ pub struct ChampionDetails {
 /// Contents of a run's folder, as the library shows them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunDetails {
-    /// Name of the run's preset.
+    /// Name of the run's preset, with what differs from it: see [`settings_in_words`].
     pub preset: String,
     /// Seed of the run.
     pub seed: u64,
@@ -235,7 +237,7 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
         champions,
         ended,
         thumbnail,
-        preset: plan.preset,
+        preset: settings_in_words(&plan),
         seed: plan.seed,
     })))
 }

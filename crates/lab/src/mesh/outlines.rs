@@ -34,14 +34,13 @@ impl Outlines {
         (self.most_m - self.least_m).to_array()
     }
 
-    /// Returns the outline of each limb as a convex polygon. A point is its distance to the right of the body's front
-    /// and below its uppermost point, in metres. `side` is the axis of view: 0 is from above, with the body's
-    /// right-hand side at the bottom, and 2 is from the side.
+    /// Returns the outline of each limb as a convex polygon, with the head on the right as on the stage. A point is its
+    /// distance to the right of the body's rear end and below its uppermost point, in metres. `side` is the axis of view:
+    /// 0 is from above, and 2 is from the side.
     pub fn seen(&self, side: usize) -> Vec<Vec<[f32; 2]>> {
         let point = |at: &Vector| {
-            let from_front = self.most_m.y - at.y;
             let down = if side == 0 { at.x - self.least_m.x } else { self.most_m.z - at.z };
-            [from_front, down]
+            [at.y - self.least_m.y, down]
         };
         self.corners_m.iter().map(|corners| hull(corners.iter().map(point).collect())).collect()
     }
@@ -79,14 +78,14 @@ mod tests {
     use snakes_core::save::shipped_champion;
 
     #[test]
-    fn a_chain_is_a_row_of_rectangles() {
+    fn a22_a_chain_is_a_row_of_rectangles_with_the_head_on_the_right() {
         let body = shipped_champion().expect("shipped").champion.body();
         let outlines = Outlines::of(&body);
         assert_eq!(outlines.size_m(), [1.0, 10.0, 1.0]);
         for side in [0, 2] {
             let seen = outlines.seen(side);
             assert_eq!(seen.len(), 5);
-            for (limb, corners) in seen.iter().enumerate() {
+            for (limb, corners) in seen.iter().rev().enumerate() {
                 assert_eq!(corners.len(), 4, "{corners:?}");
                 let along = corners.iter().map(|[along_m, _]| *along_m);
                 assert_eq!(along.clone().fold(f32::MAX, f32::min), limb as f32 * 2.0);

@@ -1,8 +1,8 @@
 //! Short descriptions of changed settings, for titles and labels.
 
-use snakes_core::evolve::Settings;
-use snakes_core::schema::{ListedSetting, SettingKind, SettingValue, list};
-use snakes_core::score::Trial;
+use super::Settings;
+use crate::schema::{ListedSetting, SettingKind, SettingValue, list};
+use crate::score::Trial;
 
 /// Maximum number of settings that a description names. Further ones are counted.
 const MOST_NAMED: usize = 2;
@@ -10,13 +10,13 @@ const MOST_NAMED: usize = 2;
 const MOST_VALUES: usize = 5;
 
 /// Describes the differences between two worlds: "friction 0.5, rise 0.7".
-pub(crate) fn world_in_words(original: &Trial, changed: &Trial) -> String {
+pub fn world_in_words(original: &Trial, changed: &Trial) -> String {
     let of = |trial: &Trial| Settings { trial: trial.clone(), ..Settings::default() };
     changes_in_words(&of(original), &of(changed))
 }
 
 /// Describes the differences between two settings.
-pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> String {
+pub fn changes_in_words(original: &Settings, changed: &Settings) -> String {
     let (before, mut after) = (list(original), list(changed));
     after.sort_by(|a, b| a.path.cmp(&b.path));
     let is_of_stairs = |listed: &ListedSetting| listed.path.starts_with("trial.stairs.");
@@ -38,7 +38,11 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
                     (SettingValue::List(values), SettingKind::Number(range))
                         if values.len() > MOST_VALUES =>
                     {
-                        format!("{name} of each {}", range.parts.word())
+                        let part = range.parts.word();
+                        match was.and_then(|was| only_other(&was.value, values)) {
+                            Some(index) => format!("{name} of {part} {}", index + 1),
+                            None => format!("{name} of each {part}"),
+                        }
                     }
                     _ => format!("{name} {}", listed.setting.value_in_words(&listed.value)),
                 }),
@@ -57,10 +61,21 @@ pub(crate) fn changes_in_words(original: &Settings, changed: &Settings) -> Strin
     text
 }
 
+/// Returns the index of the only value that differs from the one before the change; `None` if several do.
+fn only_other(before: &SettingValue, now: &[f32]) -> Option<usize> {
+    let was = |index: usize| match before {
+        SettingValue::List(before) => before.get(index).copied(),
+        SettingValue::Number(of_all) => Some(*of_all),
+        _ => None,
+    };
+    let mut others = (0..now.len()).filter(|index| was(*index) != Some(now[*index]));
+    others.next().filter(|_| others.next().is_none())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::with_field;
+    use crate::evolve::with_field;
 
     #[test]
     fn a_changed_angle_is_named_in_degrees() {
@@ -72,11 +87,15 @@ mod tests {
     }
 
     #[test]
-    fn long_lists_and_other_stairs_are_not_spelled_out() {
+    fn a21_long_lists_are_not_spelled_out_and_one_other_step_is_named() {
         let original = Settings::default();
         let list = format!("[{}0.7]", "0.5, ".repeat(9));
         let uneven = with_field(&original, "rise_m", &list).expect("allowed");
-        assert_eq!(changes_in_words(&original, &uneven), "rise of each step");
+        assert_eq!(changes_in_words(&original, &uneven), "rise of step 10", "a21");
+        let list = format!("[0.4, {}0.7]", "0.5, ".repeat(8));
+        let several = with_field(&original, "rise_m", &list).expect("allowed");
+        assert_eq!(changes_in_words(&original, &several), "rise of each step");
+        assert_eq!(changes_in_words(&several, &uneven), "rise of step 1", "a21");
         let damping = with_field(&original, "joint_damping_nms_per_rad", "[30, 30, 20, 10]");
         let damping = damping.expect("allowed");
         let words = changes_in_words(&original, &damping);

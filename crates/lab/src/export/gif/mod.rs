@@ -1,6 +1,8 @@
 //! A film as GIF. The whole film has one palette, chosen from frames throughout it, so that no colour flickers. The
 //! pattern of the ordered dithering is stationary, and only changed pixels are stored.
 
+mod size;
+
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -8,17 +10,17 @@ use std::path::{Path, PathBuf};
 use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
-use super::error::FilmError;
-use super::film_file::FilmFile;
+use super::ExportError;
 use snakes_core::check::within;
 use snakes_core::save::{Picture, UnfinishedFile};
-use snakes_lab::export::ExportError;
+
+pub use size::{ESTIMATED_BYTES, GifChoice, GifChoices};
 
 /// Allowed frames per second. Browsers show a frame of less than 0.02 s for 0.1 s.
 pub const GIF_FPS: RangeInclusive<u32> = 1..=50;
 
-/// Number of frames from which the palette is chosen.
-pub const SAMPLES: usize = 12;
+/// Number of pairs of frames from which the palette and the size of the file are estimated.
+pub const PAIRS: usize = 6;
 /// Number of colours of the palette; one more index marks unchanged pixels.
 const COLORS: usize = 255;
 /// Index of pixels that do not change.
@@ -52,9 +54,9 @@ pub struct GifPalette {
 }
 
 impl GifPalette {
-    /// Chooses the palette from these frames.
-    pub fn of(samples: &[Picture]) -> Self {
-        let pixels = samples.iter().flat_map(|frame| frame.rgb.as_chunks::<3>().0);
+    /// Chooses the palette from some frames, each with its index in the film.
+    pub fn of(samples: &[(usize, Picture)]) -> Self {
+        let pixels = samples.iter().flat_map(|(_, frame)| frame.rgb.as_chunks::<3>().0);
         let rgba: Vec<u8> = pixels.flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
         let network = NeuQuant::new(SAMPLE_FACTOR, COLORS, &rgba);
         let shift = 8 - TABLE_BITS;
@@ -67,6 +69,18 @@ impl GifPalette {
             network.index_of(&[r, g, b, 255]) as u8
         };
         Self { rgb: network.color_map_rgb(), nearest: (0..levels.pow(3)).map(index).collect() }
+    }
+
+    /// Estimates the size of a film with this number of frames from some of them, in bytes.
+    pub fn expected_bytes(&self, samples: &[(usize, Picture)], frames: usize) -> u64 {
+        let indices: Vec<_> = samples.iter().map(|(at, of)| (*at, self.indices(of))).collect();
+        let width = samples.first().map_or(0, |(_, frame)| frame.width as usize);
+        let bytes = |indices: &[u8], last: &[u8]| encoded(indices, last, width).buffer.len() as f64;
+        let first = indices.first().map_or(0.0, |(_, first)| bytes(first, &[]));
+        let neighbours = indices.windows(2).filter(|pair| pair[0].0 + 1 == pair[1].0);
+        let later: Vec<f64> = neighbours.map(|pair| bytes(&pair[1].1, &pair[0].1)).collect();
+        let mean = later.iter().sum::<f64>() / later.len().max(1) as f64;
+        (first + mean * frames.saturating_sub(1) as f64) as u64
     }
 
     /// Returns the palette index of each pixel of a frame, with dithering.
@@ -107,11 +121,16 @@ pub struct GifFile {
     /// Palette indices of the last frame; empty before the first one.
     last: Vec<u8>,
     frames: u32,
+    /// Number of bytes of all frames so far.
+    bytes: u64,
 }
 
 impl BegunGif {
     /// Creates the file.
-    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
+    ///
+    /// # Errors
+    /// A GIF cannot have this size in pixels or this frame rate, or the file cannot be written.
+    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, ExportError> {
         within("--fps", fps, GIF_FPS)?;
         within("--size", size.0.max(size.1), 1..=u32::from(u16::MAX))?;
         let file = UnfinishedFile::create(path)?;
@@ -119,42 +138,65 @@ impl BegunGif {
     }
 
     /// Sets the palette of the film, and writes the header.
-    pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, FilmError> {
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn with_palette(self, palette: GifPalette) -> Result<GifFile, ExportError> {
         let Self { file, path, size: [width, height], fps } = self;
         let encoder = Encoder::new(file, width, height, &palette.rgb);
         let mut encoder = encoder.map_err(ExportError::unwritable(&path))?;
         encoder.set_repeat(Repeat::Infinite).map_err(ExportError::unwritable(&path))?;
         let (width, last) = (usize::from(width), Vec::new());
-        Ok(GifFile { palette, encoder, path, width, fps, last, frames: 0 })
+        Ok(GifFile { palette, encoder, path, width, fps, last, frames: 0, bytes: 0 })
     }
 }
 
-impl FilmFile for GifFile {
-    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+/// Returns the part of a frame that differs from the last one, compressed. `width` is that of the film, in pixels.
+fn encoded(indices: &[u8], last: &[u8], width: usize) -> Frame<'static> {
+    let (left, top, width, height, buffer) = cropped(&changed(indices, last), width);
+    let mut part = Frame {
+        dispose: DisposalMethod::Keep,
+        transparent: Some(UNCHANGED),
+        left,
+        top,
+        width,
+        height,
+        buffer: Cow::Owned(buffer),
+        ..Frame::default()
+    };
+    part.make_lzw_pre_encoded();
+    part
+}
+
+impl GifFile {
+    /// Returns the number of bytes of all frames so far.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Adds the next frame of the film.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn add(&mut self, frame: &Picture) -> Result<(), ExportError> {
         let indices = self.palette.indices(frame);
-        let shown = changed(&indices, &self.last);
-        let (left, top, width, height, buffer) = cropped(&shown, self.width);
-        let part = Frame {
-            // Rounded in a way that does not accumulate errors.
-            delay: (hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps))
-                as u16,
-            dispose: DisposalMethod::Keep,
-            transparent: Some(UNCHANGED),
-            left,
-            top,
-            width,
-            height,
-            buffer: Cow::Owned(buffer),
-            ..Frame::default()
-        };
-        self.encoder.write_frame(&part).map_err(ExportError::unwritable(&self.path))?;
+        // Rounded in a way that does not accumulate errors.
+        let delay = hundredths(self.frames + 1, self.fps) - hundredths(self.frames, self.fps);
+        let part = Frame { delay: delay as u16, ..encoded(&indices, &self.last, self.width) };
+        let written = self.encoder.write_lzw_pre_encoded_frame(&part);
+        written.map_err(ExportError::unwritable(&self.path))?;
+        self.bytes += part.buffer.len() as u64;
         self.last = indices;
         self.frames += 1;
         Ok(())
     }
 
-    fn finish(self: Box<Self>) -> Result<(), FilmError> {
-        let Self { encoder, path, .. } = *self;
+    /// Completes the film, and gives it its final name.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(self) -> Result<(), ExportError> {
+        let Self { encoder, path, .. } = self;
         let file = encoder.into_inner().map_err(ExportError::unwritable(&path))?;
         Ok(file.finish()?)
     }
@@ -228,7 +270,7 @@ mod tests {
             let share = (number % 64) as u8;
             *pixel = if number < 2048 { [230, 40, 40] } else { [share * 2, share * 3, 250] };
         }
-        let palette = GifPalette::of(std::slice::from_ref(&frame));
+        let palette = GifPalette::of(&[(0, frame.clone())]);
         let indices = palette.indices(&frame);
         for (pixel, index) in frame.rgb.as_chunks::<3>().0.iter().zip(indices) {
             assert_ne!(index, UNCHANGED);
