@@ -9,6 +9,7 @@ use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::files::{Files, RecentFiles};
+use crate::studio::state::lessons::Lessons;
 use crate::studio::state::machines::MachinesLink;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
@@ -80,6 +81,7 @@ struct Chosen<'w, 's> {
     playback: ResMut<'w, Playback>,
     files: ResMut<'w, Files>,
     machines: ResMut<'w, MachinesLink>,
+    lessons: ResMut<'w, Lessons>,
     smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
     window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
 }
@@ -107,12 +109,14 @@ fn restore(
         smooth_edges,
         recent,
         unfolded,
+        finished_lessons,
         server,
         ..
     } = remembered.stored.clone();
     chosen.files.recent = RecentFiles::from_texts(&recent);
     chosen.machines.remember(&server);
     chosen.workspace.unfolded = unfolded.into_iter().collect();
+    chosen.lessons.finished = finished_lessons.into_iter().collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
@@ -184,6 +188,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
+        finished_lessons: chosen.lessons.finished.iter().cloned().collect(),
         server: chosen.machines.address().to_owned(),
     };
     // A closing window can have size zero, which is ignored.
@@ -206,6 +211,7 @@ mod tests {
             .init_resource::<Playback>()
             .init_resource::<Files>()
             .init_resource::<MachinesLink>()
+            .init_resource::<Lessons>()
             .init_resource::<Notices>()
             .init_resource::<Time<Real>>()
             .add_plugins(plugin);
@@ -221,6 +227,11 @@ mod tests {
         first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
         first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
         first.world_mut().resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
+        first
+            .world_mut()
+            .resource_mut::<Lessons>()
+            .finished
+            .insert("Friction: how much?".to_owned());
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
@@ -232,6 +243,7 @@ mod tests {
         let second = app(&file);
         assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
         assert!(second.world().resource::<Workspace>().unfolded.contains("Surface"));
+        assert_eq!(second.world().resource::<Lessons>().finished.len(), 1);
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);

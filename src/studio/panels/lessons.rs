@@ -1,11 +1,14 @@
 //! The lessons panel: the list of lessons, or the lesson in progress.
 
+use std::collections::BTreeSet;
+
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
-    Asks, FITNESS_OF_THE_LANDED, Found, LESSONS, LessonScene, LessonView, Plays, Progress,
+    Asks, FITNESS_OF_THE_LANDED, Found, LESSON_ORDER, LESSONS, LessonScene, LessonView, Lessons,
+    Plays, Progress,
 };
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::{CommandButton, accent_button};
@@ -17,30 +20,40 @@ use snakes_core::score::{Evaluation, Fitness};
 use snakes_lab::plot::Axis;
 
 /// Draws the list of lessons or the lesson in progress, and collects the user's commands.
-pub(super) fn lessons(
-    ui: &mut egui::Ui,
-    current: Option<LessonView<'_>>,
-    commands: &mut Vec<Command>,
-) {
-    match current {
-        None => list(ui, commands),
+pub(super) fn lessons(ui: &mut egui::Ui, of: &Lessons, commands: &mut Vec<Command>) {
+    match of.view() {
+        None => list(ui, &of.finished, commands),
         Some(view) => lesson(ui, view, commands),
     }
 }
 
-fn list(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>, commands: &mut Vec<Command>) {
     explain(ui, "Two-minute experiments. Your own run is paused and comes back unchanged.");
-    for (index, lesson) in LESSONS.iter().enumerate() {
+    for index in LESSON_ORDER {
+        let lesson = &LESSONS[index];
         let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            ui.label(title_text(format!("{}. {}", index + 1, lesson.title)));
+            ui.label(title_text(lesson.title));
             ui.label(lesson.question);
-            let name = format!("Begin lesson {}", index + 1);
-            let begin = Command::Lesson(LessonCommand::Begin(index));
-            CommandButton::new(name, "", begin).show(ui, commands);
+            ui.horizontal(|ui| {
+                let name = format!("Begin lesson {}", index + 1);
+                let begin = named(ui.button("Begin"), egui::WidgetType::Button, &name);
+                if begin.clicked() {
+                    commands.push(Command::Lesson(LessonCommand::Begin(index)));
+                }
+                if finished.contains(lesson.title) {
+                    ui.label(egui::RichText::new("✔ finished").color(palette.accent));
+                }
+            });
         });
     }
+}
+
+/// Returns the index of the lesson after this one, in the order of the panel.
+fn next_lesson(index: usize) -> Option<usize> {
+    let mut order = LESSON_ORDER.into_iter().skip_while(|other| *other != index);
+    order.nth(1)
 }
 
 fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) {
@@ -50,13 +63,12 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let hint = "End the lesson and restore your run, its settings and the stage";
         let leave = Command::Lesson(LessonCommand::Leave);
         CommandButton::of(back, hint, leave).show(ui, commands);
-        if view.index + 1 < LESSONS.len() {
-            let next = Command::Lesson(LessonCommand::Begin(view.index + 1));
+        if let Some(next) = next_lesson(view.index) {
+            let next = Command::Lesson(LessonCommand::Begin(next));
             CommandButton::new("Next lesson", "", next).show(ui, commands);
         }
     });
-    let title = format!("{}. {}", view.index + 1, lesson.title);
-    ui.label(egui::RichText::new(title).size(theme::HEADING_SIZE).strong());
+    ui.label(egui::RichText::new(lesson.title).size(theme::HEADING_SIZE).strong());
     ui.label(egui::RichText::new(lesson.question).italics());
     ui.label(lesson.story);
     heading(ui, "Try it");

@@ -365,7 +365,7 @@ impl Viewer<'_, '_, '_> {
                 };
                 panels.champions.ui(ui, &view, commands);
             }
-            PanelKind::Lessons => lessons(ui, self.data.lessons.view(), commands),
+            PanelKind::Lessons => lessons(ui, &self.data.lessons, commands),
             PanelKind::Senses => {
                 let view = SensesView::of(lanes, focused, on_stage);
                 panels.senses.ui(ui, view.as_ref(), &self.data.exams, commands);

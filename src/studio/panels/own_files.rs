@@ -88,22 +88,36 @@ pub(super) fn known_files<'k, T: OwnKind>(
     about: impl Fn(&T) -> &str,
 ) -> Option<&'k T> {
     let mut clicked = None;
-    let mut choice = |ui: &mut egui::Ui, name: &str, file: &'k T| {
-        let button = ui.selectable_label(selected == Some(name), name);
+    for file in known.built_in() {
+        let button = ui.selectable_label(selected == Some(file.name()), file.name());
         if button.on_hover_text(about(file)).clicked() {
             clicked = Some(file);
         }
-    };
-    for file in known.built_in() {
-        choice(ui, file.name(), file);
     }
+    own_files(ui, known, heading, selected, about).or(clicked)
+}
+
+/// Draws the user's own files below a heading, if there are any. Returns the clicked one.
+pub(super) fn own_files<'k, T: OwnKind>(
+    ui: &mut egui::Ui,
+    known: &'k KnownFiles<T>,
+    heading: &str,
+    selected: Option<&str>,
+    about: impl Fn(&T) -> &str,
+) -> Option<&'k T> {
+    let mut clicked = None;
     if !known.own().is_empty() {
         ui.separator();
         explain(ui, heading);
     }
     for own in known.own() {
         match &own.content {
-            Ok(file) => choice(ui, &own.name, file),
+            Ok(file) => {
+                let button = ui.selectable_label(selected == Some(&own.name), &own.name);
+                if button.on_hover_text(about(file)).clicked() {
+                    clicked = Some(file);
+                }
+            }
             Err(reason) => {
                 let button = egui::Button::selectable(false, &own.name);
                 ui.add_enabled(false, button).on_disabled_hover_text(reason);

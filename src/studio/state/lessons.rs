@@ -9,15 +9,17 @@ mod prediction;
 #[cfg(test)]
 mod worksheets;
 
+use std::collections::BTreeSet;
+
 use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::undo::UndoHistory;
 use crate::studio::commands::LessonCommand;
-use crate::studio::stage::{Show, end_s};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::stage::{Show, end_s};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::RunPlan;
 use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
@@ -25,7 +27,7 @@ use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
 use catalogue::{champions, plan};
 use lesson::Side;
 
-pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSONS};
+pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSON_ORDER, LESSONS};
 pub(crate) use found::Found;
 pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
@@ -35,6 +37,8 @@ pub(crate) use prediction::{Asks, Progress};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Lessons {
     current: Option<Current>,
+    /// Titles of the lessons whose conclusion was reached.
+    pub finished: BTreeSet<String>,
 }
 
 /// State of the open lesson.
@@ -355,6 +359,12 @@ fn take_in(
     let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
+    let reached = lessons.view().filter(|view| view.shows_conclusion);
+    if let Some(title) = reached.map(|view| LESSONS[view.index].title)
+        && !lessons.finished.contains(title)
+    {
+        lessons.finished.insert(title.to_owned());
+    }
     let end_s = end_s(lanes.iter().copied());
     let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
     if is_over && playback.is_playing() && playback.time_s() >= end_s {

@@ -99,7 +99,8 @@ impl Layout {
     /// Returns to the default layout when the window has become much larger or smaller, unless the user has rearranged the panels.
     fn follow_height(&mut self, size: egui::Vec2) {
         let is_high = is_high(size);
-        let Some(before) = self.was_high.replace(is_high).filter(|before| *before != is_high) else {
+        let Some(before) = self.was_high.replace(is_high).filter(|before| *before != is_high)
+        else {
             return;
         };
         if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {

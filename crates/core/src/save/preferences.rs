@@ -53,6 +53,8 @@ pub struct Preferences {
     pub recent: Vec<String>,
     /// Titles of the sections whose advanced settings are shown.
     pub unfolded: Vec<String>,
+    /// Titles of the lessons whose conclusion was reached.
+    pub finished_lessons: Vec<String>,
     /// Address of the last used server, without a password; empty if none was used.
     pub server: String,
 }
@@ -71,6 +73,7 @@ impl Default for Preferences {
             tour_is_over: false,
             recent: Vec::new(),
             unfolded: Vec::new(),
+            finished_lessons: Vec::new(),
             server: String::new(),
         }
     }
@@ -96,6 +99,7 @@ impl Preferences {
         within("layout", self.layout.len(), 0..=LONGEST_LAYOUT)?;
         within("server", self.server.len(), 0..=LONGEST_ADDRESS)?;
         within("unfolded", self.unfolded.len(), 0..=100)?;
+        within("finished_lessons", self.finished_lessons.len(), 0..=100)?;
         within("overlays", self.overlays.len(), 0..=20)?;
         within("recent", self.recent.len(), 0..=MAX_RECENT)?;
         for path in &self.recent {

@@ -185,10 +185,7 @@ impl SettingGroup for AgentSettings {
                 .hint("Damping of a soft block's slowest vibration: at 0 it vibrates for long, at 1 it creeps back without a vibration")
                 .slider(0.0, 1.0);
         }
-        walk.section(Section {
-            title: "Joints",
-            about: "Range, strength and resistance of the joints.",
-        });
+        walk.section(Self::JOINTS);
         let limits = 0.0..=LARGEST_LIMIT_RAD;
         settings! { walk,
             bend_limit_rad: optional_per_part("Bend limit", limits.clone(), each_joint, 1.0)
@@ -253,6 +250,9 @@ impl SettingGroup for AgentSettings {
 }
 
 impl AgentSettings {
+    /// Section of settings for the joints.
+    pub const JOINTS: Section =
+        Section { title: "Joints", about: "Range, strength and resistance of the joints." };
     /// Section of settings for the material of the limbs.
     pub const SKIN: Section = Section { title: "Skin", about: "Material of the snake's blocks." };
 

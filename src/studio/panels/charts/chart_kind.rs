@@ -39,9 +39,15 @@ impl ChartKind {
         Self::Methods,
     ];
 
-    /// Returns whether runs of this strategy have a chart of this kind, even an empty one.
-    pub fn is_offered(self, strategy: StrategyKind) -> bool {
+    /// Returns whether runs of this strategy have data for a chart of this kind. `has_study` tells whether a study of
+    /// methods is open.
+    pub fn is_offered(self, strategy: StrategyKind, has_study: bool) -> bool {
         match self {
+            Self::Methods => has_study,
+            Self::Archive => strategy.info().has_archive,
+            Self::Parents if [StrategyKind::Random, StrategyKind::CmaEs].contains(&strategy) => {
+                false
+            }
             Self::Species => strategy.info().has_species,
             Self::Blocks | Self::Bodies => strategy.info().varies_bodies,
             Self::Stairs => strategy.info().evolves_stairs,
@@ -71,10 +77,10 @@ impl ChartKind {
                 "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
             ),
             Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
-            Self::Front => ("Front", "Best trade-offs between distance and energy"),
-            Self::Archive => ("Archive", "Best snake for each kind of behaviour (MAP-Elites)"),
+            Self::Front => ("Effort", "Best trade-offs between distance and energy"),
+            Self::Archive => ("Kinds", "Best snake for each kind of behaviour (MAP-Elites)"),
             Self::Runs => ("Runs", "Compare this run with other runs"),
-            Self::Methods => ("Methods", "Compare search methods over many runs"),
+            Self::Methods => ("Compare methods", "Compare search methods over many runs"),
         }
     }
 

@@ -76,12 +76,14 @@ impl ChartsPanel {
         commands: &mut Vec<Command>,
     ) {
         let strategy = run.settings().evolution.strategy;
-        if !self.kind.is_offered(strategy) {
+        let has_study = self.curves.is_some();
+        let is_offered = |kind: ChartKind| kind.is_offered(strategy, has_study);
+        if !is_offered(self.kind) {
             self.kind = ChartKind::default();
         }
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            for kind in ChartKind::ALL.into_iter().filter(|kind| kind.is_offered(strategy)) {
+            for kind in ChartKind::ALL.into_iter().filter(|kind| is_offered(*kind)) {
                 let (name, hint) = kind.labels();
                 ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
             }
@@ -229,9 +231,6 @@ fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
     match kind {
         ChartKind::Front if run.exploration().is_some() => {
             "No snake has ended ahead of its starting position yet."
-        }
-        ChartKind::Archive if !run.settings().evolution.strategy.info().has_archive => {
-            "Only MAP-Elites keeps an archive: the best snake for each kind of behaviour. Select it as the strategy in the Run panel and start a run."
         }
         _ => kind.empty_text(),
     }

@@ -2,13 +2,14 @@
 
 use bevy_egui::egui;
 
-use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
 use crate::studio::panels::champions::{FOLLOW, FOLLOW_COMMAND};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::following::Following;
 use crate::studio::ui::buttons::{CommandButton, command_box};
-use crate::studio::ui::text_rows::explain;
+use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
 
 /// Draws the card of the generation on the stage. `best` is the lane of the best snake, `shown` the number of lanes.
@@ -34,7 +35,56 @@ pub(crate) fn generation_card(
         let single = Command::Stage(StageCommand::Single);
         CommandButton::new("Only the best", hint, single).show(ui, commands);
     });
+    let champion = best.staged().champion();
+    if champion.evaluation.is_on_landing(&champion.trial.stairs) {
+        after_landing(ui, best.staged().source(), commands);
+    }
 }
+
+/// Draws large buttons for what to try after a landing, until one of them is used or they are closed. They come back
+/// with the next run.
+fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Command>) {
+    let id = egui::Id::new("after the landing");
+    if ui.data(|data| data.get_temp(id)) == Some(run) {
+        return;
+    }
+    ui.separator();
+    let mut is_done = false;
+    ui.horizontal(|ui| {
+        ui.label(title_text("It has landed. Try next:"));
+        is_done |= ui.small_button("Close").clicked();
+    });
+    let friction = "trial.surface.friction";
+    for (label, hint, command) in [
+        (
+            "On ice!",
+            "A copy of the snake starts beside it on smooth ice",
+            Command::Plan(PlanCommand::set(friction, ICE)),
+        ),
+        (
+            "Five values side by side",
+            "The snake on five surfaces, from slippery to rough",
+            Command::Stage(StageCommand::Sweep(friction.to_owned())),
+        ),
+        (
+            "Race the generations",
+            "The best snakes of the run, from the first generation to the latest",
+            Command::Stage(StageCommand::RaceGenerations),
+        ),
+    ] {
+        let button = egui::Button::new(egui::RichText::new(label).strong());
+        let button = button.min_size(LARGE_BUTTON);
+        is_done |= CommandButton::of(button, hint, command).show(ui, commands);
+    }
+    if is_done {
+        ui.data_mut(|data| data.insert_temp(id, run));
+    }
+}
+
+/// Friction of smooth ice.
+const ICE: &str = "0.05";
+/// Size of the buttons after a landing, in points.
+const LARGE_BUTTON: egui::Vec2 = egui::vec2(220.0, 34.0);
 
 /// Returns the caption of a generation, and a text about the number of its snakes on the stage.
 fn captions(number: u32, size: u32, shown: usize) -> (String, String) {
@@ -62,6 +112,17 @@ pub(crate) fn waiting_card(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::{clicked, panel, shows};
+
+    #[test]
+    fn after_a_landing_three_buttons_lead_on_until_they_are_closed() {
+        let run = ChampionSource::Run(0);
+        let mut panel = panel([300.0, 300.0], move |ui, commands| after_landing(ui, run, commands));
+        let race = Command::Stage(StageCommand::RaceGenerations);
+        assert_eq!(clicked(&mut panel, "Race the generations"), [race]);
+        panel.run();
+        assert!(!shows(&panel, "On ice!"), "the hint was taken");
+    }
 
     #[test]
     fn the_card_says_how_many_snakes_are_shown() {

@@ -62,11 +62,12 @@ impl EvolutionPanel {
     /// Draws the settings that the program is for: friction, height of the steps, limits of the joints, and the size of
     /// mutations in the selected strategy.
     fn knobs(&mut self, ui: &mut egui::Ui) {
-        let fixed = ["trial.surface.friction", "trial.stairs.rise_m", "genome.bend_limits_rad"];
+        let fixed = ["trial.surface.friction", "trial.stairs.rise_m", "trial.agent.bend_limit_rad"];
         for path in fixed {
             self.sheet.knob(ui, |of| of == path);
         }
-        let of_mutation = ["step", "mutation_step", "mutation_range_nm", "first_step", "weight_step"];
+        let of_mutation =
+            ["step", "mutation_step", "mutation_range_nm", "first_step", "weight_step"];
         self.sheet.knob(ui, |path| {
             let name = path.rsplit('.').next().unwrap_or_default();
             path.starts_with("evolution.") && of_mutation.contains(&name)
@@ -207,7 +208,9 @@ const HOW_IT_LEARNS: &str = "How it learns";
 /// Draws the buttons that open the panels with more about the run.
 fn more_views(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        for (label, kind) in [("More charts", PanelKind::Charts), ("Champions", PanelKind::Champions)] {
+        for (label, kind) in
+            [("More charts", PanelKind::Charts), ("Champions", PanelKind::Champions)]
+        {
             let open = Command::Window(WindowCommand::OpenPanel(kind));
             CommandButton::small(label, kind.hint(), open).show(ui, commands);
         }

@@ -11,9 +11,10 @@ use snakes_core::evolve::{HalvingSettings, StrategyKind};
 /// Calls `act` on the panel. Returns the commands that were sent.
 fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
     let mut panel = EvolutionPanel::default();
+    panel.unfold(&[HOW_IT_LEARNS.to_owned()].into());
     let mut harness = Harness::builder()
         .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
-        .build_ui_state(|ui, commands| panel.ui(ui, run, commands), Vec::new());
+        .build_ui_state(|ui, commands| panel.ui(ui, run, |_, _| {}, commands), Vec::new());
     act(&mut harness);
     harness.run();
     harness.state().clone()
@@ -166,17 +167,32 @@ fn typed_population_and_threads_are_sent() {
 }
 
 #[test]
-fn a_button_switches_between_the_original_experiment_and_the_climb() {
+fn one_button_runs_the_reports_experiment_and_one_the_standard_climb() {
     let mut run = run();
-    assert_eq!(
-        clicked(&run, &["Standard climb"]),
-        [Command::Plan(PlanCommand::SetPreset("climb".to_owned()))]
-    );
+    let begun = |preset: &str| {
+        [Command::Plan(PlanCommand::SetPreset(preset.to_owned())), Command::Run(RunCommand::New)]
+    };
+    assert_eq!(clicked(&run, &["Run the standard climb"]), begun("climb"));
     run.set_preset("climb").expect("shipped");
-    assert_eq!(
-        clicked(&run, &["Original experiment"]),
-        [Command::Plan(PlanCommand::SetPreset("report".to_owned()))]
-    );
+    assert_eq!(clicked(&run, &["Run the report's experiment"]), begun("report"));
+}
+
+#[test]
+fn the_first_view_has_the_main_settings_and_the_others_are_below_a_fold() {
+    let mut run = run();
+    run.set_preset("climb").expect("shipped");
+    let mut panel = EvolutionPanel::default();
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
+        .build_ui_state(|ui, commands| panel.ui(ui, &run, |_, _| {}, commands), Vec::new());
+    harness.run();
+    for shown in ["Friction", "Rise", "Bend limit", "Initial step size"] {
+        assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
+    }
+    assert!(!shows(&harness, "Seed") && !shows(&harness, "Strategy"));
+    harness.get_by_label(HOW_IT_LEARNS).click();
+    harness.run();
+    assert!(shows(&harness, "Seed") && shows(&harness, "Strategy"));
 }
 
 #[test]
@@ -210,11 +226,12 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
     for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 900.0] {
         let mut panel = EvolutionPanel::default();
         panel.unfold(&every_section());
+        panel.unfold(&[HOW_IT_LEARNS.to_owned()].into());
         let size = egui::vec2(width, 4000.0);
         let mut harness = Harness::builder().with_size(size).build_ui_state(
             |ui, commands| {
                 theme::apply(ui.ctx());
-                panel.ui(ui, &run, commands);
+                panel.ui(ui, &run, |_, _| {}, commands);
             },
             Vec::new(),
         );

@@ -92,23 +92,45 @@ impl WorldPanel {
         on_stage: &ReadLanes,
         commands: &mut Vec<Command>,
     ) {
-        for section in self.sheet.sections("trial.") {
-            ui.add_space(theme::GAP / 2.0);
-            let header = egui::CollapsingHeader::new(title_text(section.title))
-                .default_open(OPEN_AT_FIRST.contains(&section));
-            folded(ui, header, section.about, |ui| {
-                if section == Trial::GROUND {
-                    ground_switch(ui, run, commands);
-                }
-                if section == Stairs::SECTION {
-                    stairs_row(ui, run, commands);
-                }
-                if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
-                    on_stage.ui(ui, *surface);
-                }
-                self.sheet.section(ui, section);
-            });
+        let all = self.sheet.sections("trial.");
+        let (first, others): (Vec<Section>, Vec<Section>) =
+            all.into_iter().partition(|section| FIRST.contains(section));
+        self.sheet.knob(ui, |path| path == GRAVITY);
+        for section in first {
+            self.folded(ui, section, run, on_stage, commands);
         }
+        let label = title_text("Advanced");
+        if self.sheet.fold(ui, ADVANCED, label, ADVANCED) {
+            for section in others {
+                self.folded(ui, section, run, on_stage, commands);
+            }
+        }
+    }
+
+    /// Draws a section that its header unfolds.
+    fn folded(
+        &mut self,
+        ui: &mut egui::Ui,
+        section: Section,
+        run: &CurrentRun,
+        on_stage: &ReadLanes,
+        commands: &mut Vec<Command>,
+    ) {
+        ui.add_space(theme::GAP / 2.0);
+        let header = egui::CollapsingHeader::new(title_text(section.title))
+            .default_open(OPEN_AT_FIRST.contains(&section));
+        folded(ui, header, section.about, |ui| {
+            if section == Trial::GROUND {
+                ground_switch(ui, run, commands);
+            }
+            if section == Stairs::SECTION {
+                stairs_row(ui, run, commands);
+            }
+            if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
+                on_stage.ui(ui, *surface);
+            }
+            self.sheet.section(ui, section);
+        });
     }
 
     /// Draws the settings that match the search, by section: first those of sections whose title has all words, then
@@ -127,7 +149,8 @@ impl WorldPanel {
         };
         let sections = self.sheet.sections("");
         let mut is_anything = false;
-        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of))) {
+        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of)))
+        {
             let is_wanted = |listed: &ListedSetting| rank(listed) == Some(wanted);
             if self.sheet.in_section(section).any(is_wanted) {
                 is_anything = true;
@@ -142,8 +165,14 @@ impl WorldPanel {
     }
 }
 
+/// Sections above the fold.
+const FIRST: [Section; 4] = [Trial::SURFACE, Trial::GROUND, AgentSettings::JOINTS, Stairs::SECTION];
 /// Sections that are unfolded when the panel is shown for the first time.
-const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, Trial::GROUND, Trial::REWARD];
+const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, AgentSettings::JOINTS, Stairs::SECTION];
+/// Setting that is drawn above all sections.
+const GRAVITY: &str = "trial.physics.gravity_m_s2";
+/// Key and name of the fold with the other sections.
+const ADVANCED: &str = "Advanced settings of the world";
 
 /// Sections that begin with readings of a surface.
 const READ_OUT: [(Section, ReadSurface); 3] = [
@@ -341,7 +370,8 @@ mod tests {
         let run = prepared_run();
         sent(&run, |harness| {
             type_into(harness, "Find a setting", "joint");
-            let top = |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
+            let top =
+                |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
             let joints = top("Joints").expect("the section");
             let named = top("Genome").or(top("Controller")).unwrap_or(f32::MAX);
             let field = harness.get_by_label("Find a setting").rect();

@@ -3,9 +3,10 @@
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, PlanCommand};
-use crate::studio::panels::own_files::{OwnName, known_files};
+use crate::studio::panels::own_files::{OwnName, own_files};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, Preset};
 
@@ -22,7 +23,7 @@ impl PresetChoice {
         ui.horizontal_wrapped(|ui| {
             ui.label("Preset");
             let list = egui::ComboBox::from_id_salt("preset")
-                .selected_text(run.next_preset_in_words())
+                .selected_text(in_words(run))
                 .width(theme::COMBO_WIDTH)
                 .height(theme::list_height(ui))
                 .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
@@ -52,9 +53,90 @@ fn presets(
     // The rows are close together, so that all fit into a small window.
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
-    let preset = known_files(ui, presets, "Your presets", Some(chosen), |preset| &preset.about);
+    for (group, of_group) in &GROUPS {
+        if !group.is_empty() {
+            explain(ui, group);
+        }
+        for (name, title) in *of_group {
+            let preset = presets.built_in().iter().find(|preset| preset.name == *name);
+            let about = preset.map_or("", |preset| &preset.about);
+            let row = ui.selectable_label(chosen == *name, *title);
+            if row.on_hover_text(format!("{about}\n\nPreset {name}")).clicked() {
+                commands.push(Command::Plan(PlanCommand::SetPreset((*name).to_owned())));
+            }
+        }
+    }
+    let preset = own_files(ui, presets, "Your presets", Some(chosen), |preset| &preset.about);
     commands
         .extend(preset.map(|preset| Command::Plan(PlanCommand::SetPreset(preset.name.clone()))));
+}
+
+/// The built-in presets by group, each with its readable title. The first group is for a first look.
+const GROUPS: [(&str, &[(&str, &str)]); 6] = [
+    (
+        "",
+        &[
+            ("climb", "Climb"),
+            ("ice", "Smooth ice"),
+            ("mud", "Deep mud"),
+            ("house", "Stairs of a house"),
+            ("bodies", "Bodies that evolve"),
+            ("creatures", "Branching creatures"),
+        ],
+    ),
+    (
+        "Surfaces",
+        &[
+            ("rubber", "Rubber mat"),
+            ("trampoline", "Trampoline"),
+            ("moon", "The Moon"),
+            ("thick-air", "Thick air"),
+            ("panda-manual", "Surface of the engine's manual"),
+        ],
+    ),
+    (
+        "Stairs",
+        &[
+            ("ladder", "Steps that grow"),
+            ("mixed-stairs", "Many stairs, limbs with neurons"),
+            ("generalist", "Any stairs"),
+            ("poet", "Stairs that evolve, too (POET)"),
+        ],
+    ),
+    ("Bodies", &[("squishy", "Soft blocks")]),
+    (
+        "Brains",
+        &[
+            ("senses", "Reflexes"),
+            ("limb-neurons", "Neurons in the limbs"),
+            ("neat", "Networks that grow (NEAT)"),
+            ("q-learning", "Trial and error (Q-learning)"),
+            ("xcs", "Rules by accuracy (XCS)"),
+            ("zcs", "Rules by strength (ZCS)"),
+            ("waves-by-rules", "Rules that choose waves"),
+        ],
+    ),
+    (
+        "Research",
+        &[
+            ("report", "The report's experiment"),
+            ("steady", "The report's method, calmer snake"),
+            ("quick", "A quick try"),
+        ],
+    ),
+];
+
+/// Returns the readable title of a preset, or its name if it is one of the user's.
+pub(crate) fn title(name: &str) -> &str {
+    let mut all = GROUPS.iter().flat_map(|(_, presets)| presets.iter());
+    all.find(|(of, _)| *of == name).map_or(name, |(_, title)| title)
+}
+
+/// Describes the preset of the next run by its title, and whether its settings were changed.
+fn in_words(run: &CurrentRun) -> String {
+    let (name, words) = (run.next_preset(), run.next_preset_in_words());
+    let changes = words.strip_prefix(name).unwrap_or_default();
+    format!("{}{changes}", title(name))
 }
 
 #[cfg(test)]
@@ -101,10 +183,24 @@ mod tests {
             let mut panel = panel(&run);
             panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
             panel.run();
-            let sent = clicked(&mut panel, &name);
+            let sent = clicked(&mut panel, title(&name));
             let commands = [PlanCommand::ListPresets, PlanCommand::SetPreset(name)];
             assert_eq!(sent, commands.map(Command::Plan));
         }
+    }
+
+    #[test]
+    fn every_preset_of_the_program_is_in_one_group_under_a_title_of_its_own() {
+        let run = prepared_run();
+        let mut built_in: Vec<&str> =
+            run.presets().built_in().iter().map(|preset| preset.name.as_str()).collect();
+        let listed = || GROUPS.iter().flat_map(|(_, presets)| presets.iter());
+        let mut names: Vec<&str> = listed().map(|(name, _)| *name).collect();
+        built_in.sort_unstable();
+        names.sort_unstable();
+        assert_eq!(names, built_in);
+        let titles: std::collections::BTreeSet<&str> = listed().map(|(_, title)| *title).collect();
+        assert_eq!(titles.len(), names.len());
     }
 
     #[test]

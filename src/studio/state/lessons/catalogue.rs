@@ -19,6 +19,9 @@ use super::lesson::{Lesson, Side};
 pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it stops counting at 26.00 m, where the \
     whole snake is on the landing.";
 
+/// Order of the lessons in the panel, by their indices: first those that need no knowledge, last those about programming.
+pub(crate) const LESSON_ORDER: [usize; LESSONS.len()] = [0, 3, 5, 6, 8, 2, 7, 1, 4];
+
 /// All lessons. Only findings and conclusions may state a result, because the other texts are shown before the experiments.
 pub(crate) const LESSONS: [Lesson; 9] = [
     report::FRICTION,
