@@ -30,7 +30,7 @@ function subject() { return champions[state.chosen]; }
 
 function numbersTable() {
   const table = document.createElement("table"), head = table.insertRow();
-  for (const title of ["", "Middle at y", "Steps", "Energy"]) { const cell = document.createElement("th"); cell.textContent = title; head.append(cell); }
+  for (const title of ["", "Way", "Steps", "Energy"]) { const cell = document.createElement("th"); cell.textContent = title; head.append(cell); }
   state.lanes.forEach(({ champion }) => {
     const row = table.insertRow(), name = row.insertCell();
     const place = champions.indexOf(champion);
@@ -91,7 +91,7 @@ function tick(now) {
 
 function setPlaying(plays) {
   state.plays = plays;
-  find("play").textContent = plays ? "Hold" : "Play";
+  find("play").textContent = plays ? "Pause" : "Play";
   find("play").setAttribute("aria-pressed", plays);
 }
 

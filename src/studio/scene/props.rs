@@ -44,24 +44,28 @@ pub(crate) fn in_scene(color: Color32) -> Color {
     Color::srgb_u8(red, green, blue)
 }
 
-/// Opacity of a ghost's limbs.
-const GHOST_ALPHA: f32 = 0.18;
+/// Depth by which the best snake of a generation is drawn nearer than it is, so that the other snakes do not hide it: about
+/// a tenth to a fifth of its distance from the camera.
+const OVER_GHOSTS: f32 = 1.5e6;
+
+/// Returns a material that is drawn over the ghosts around it.
+pub(crate) fn over_ghosts(material: StandardMaterial) -> StandardMaterial {
+    StandardMaterial { depth_bias: OVER_GHOSTS, ..material }
+}
 
 /// Meshes and materials that the parts of the scene share.
 #[derive(Resource, Debug)]
 pub(crate) struct Props {
     /// A cube of one metre; a transform scales it to any box.
     pub cube: Handle<Mesh>,
-    /// Material of the first, third, ... limb.
-    pub red: Handle<StandardMaterial>,
-    /// Material of the second, fourth, ... limb.
-    pub blue: Handle<StandardMaterial>,
+    /// Materials of the red and of the blue limbs of a snake.
+    pub limbs: [Handle<StandardMaterial>; 2],
+    /// Materials of the limbs of the best snake of a generation.
+    pub limbs_of_best: [Handle<StandardMaterial>; 2],
     /// Cube for the limbs of ghosts. Its faces differ in brightness, because the materials of ghosts are unlit.
     pub ghost_cube: Handle<Mesh>,
-    /// Translucent material of the red limbs of ghosts. It must be cheap: where thirty ghosts overlap, each pixel is
-    /// drawn a hundred times.
-    pub red_ghost: Handle<StandardMaterial>,
-    pub blue_ghost: Handle<StandardMaterial>,
+    /// Pale, opaque materials of the limbs of ghosts: ghosts hide one another, and no pixel is drawn a hundred times.
+    pub ghosts: [Handle<StandardMaterial>; 2],
 }
 
 impl FromWorld for Props {
@@ -71,14 +75,23 @@ impl FromWorld for Props {
             [Cuboid::from_length(1.0).mesh().build(), shaded_cube()].map(|mesh| meshes.add(mesh));
         // A low reflectance preserves the red and the blue of the report under a bright sky.
         let limb = StandardMaterial { perceptual_roughness: 0.5, reflectance: 0.25, ..default() };
-        let ghost = StandardMaterial { alpha_mode: AlphaMode::Blend, unlit: true, ..limb.clone() };
+        let ghost = StandardMaterial { unlit: true, ..limb.clone() };
+        let best = over_ghosts(limb.clone());
         Self {
             cube,
-            red: themed(world, limb.clone(), |palette| palette.red_limb),
-            blue: themed(world, limb, |palette| palette.blue_limb),
+            limbs: [
+                themed(world, limb.clone(), |palette| palette.red_limb),
+                themed(world, limb, |palette| palette.blue_limb),
+            ],
+            limbs_of_best: [
+                themed(world, best.clone(), |palette| palette.red_limb),
+                themed(world, best, |palette| palette.blue_limb),
+            ],
             ghost_cube,
-            red_ghost: themed(world, ghost.clone(), |of| of.red_limb.with_alpha(GHOST_ALPHA)),
-            blue_ghost: themed(world, ghost, |of| of.blue_limb.with_alpha(GHOST_ALPHA)),
+            ghosts: [
+                themed(world, ghost.clone(), |palette| palette.ghosts[0]),
+                themed(world, ghost, |palette| palette.ghosts[1]),
+            ],
         }
     }
 }

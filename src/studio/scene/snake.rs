@@ -1,6 +1,6 @@
 //! Draws the snake as red and blue blocks with joints, interpolated between the last two physics steps.
 //!
-//! A ghost consists only of translucent blocks. Without details, shadow and collar, thirty ghosts are still cheap to draw.
+//! A ghost consists only of pale blocks. Without details, shadow and collar, thirty ghosts are still cheap to draw.
 
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
@@ -10,8 +10,9 @@ use bevy::prelude::*;
 use super::cache::SceneCache;
 use super::lane_marks::{LaneColors, LaneMark};
 use super::limb::LimbShape;
-use super::props::{Props, themed};
+use super::props::{Props, over_ghosts, themed};
 use crate::studio::schedule::FrameSet;
+use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::{JointPlan, Pose};
 
@@ -37,8 +38,10 @@ struct Shapes(SceneCache<LimbShape, LimbMeshes>);
 /// Materials of the details on limbs.
 #[derive(Resource, Debug)]
 struct Trim {
-    white: Handle<StandardMaterial>,
-    dark: Handle<StandardMaterial>,
+    /// Materials of the light and of the dark details.
+    usual: [Handle<StandardMaterial>; 2],
+    /// Materials of the details of the best snake of a generation.
+    of_best: [Handle<StandardMaterial>; 2],
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -47,6 +50,8 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
 
+/// Size of a ghost, as a fraction of the snake's: where a ghost moves as the best does, it is inside the best.
+const GHOST_SIZE: f32 = 0.96;
 /// Maximum number of cached shapes. Dragging a slider for the snake's size creates many.
 const MAX_SHAPES: usize = 64;
 
@@ -54,9 +59,15 @@ impl FromWorld for Trim {
     fn from_world(world: &mut World) -> Self {
         let white = StandardMaterial { perceptual_roughness: 0.4, ..default() };
         let dark = StandardMaterial { perceptual_roughness: 0.35, metallic: 0.4, ..default() };
+        let mut both = |[white, dark]: [StandardMaterial; 2]| {
+            [
+                themed(world, white, |palette| palette.white),
+                themed(world, dark, |palette| palette.metal),
+            ]
+        };
         Self {
-            white: themed(world, white, |palette| palette.white),
-            dark: themed(world, dark, |palette| palette.metal),
+            of_best: both([over_ghosts(white.clone()), over_ghosts(dark.clone())]),
+            usual: both([white, dark]),
         }
     }
 }
@@ -65,6 +76,7 @@ impl FromWorld for Trim {
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     (props, trim, colors): (Res<Props>, Res<Trim>, Res<LaneColors>),
+    mode: Res<StageMode>,
     mut shapes: ResMut<Shapes>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut bind_poses: ResMut<Assets<SkinnedMeshInverseBindposes>>,
@@ -72,10 +84,11 @@ fn build(
 ) {
     for (entity, lane) in &lanes {
         let body = lane.body();
-        let [red, blue] = if lane.is_ghost() {
-            [&props.red_ghost, &props.blue_ghost]
-        } else {
-            [&props.red, &props.blue]
+        let is_best = matches!(*mode, StageMode::Generation { .. });
+        let ([red, blue], [white, dark]) = match (lane.is_ghost(), is_best) {
+            (true, _) => (&props.ghosts, &trim.usual),
+            (false, true) => (&props.limbs_of_best, &trim.of_best),
+            (false, false) => (&props.limbs, &trim.usual),
         };
         let poses: Vec<Pose> = lane.drawn_poses().collect();
         for limb in 0..body.limbs() {
@@ -90,7 +103,7 @@ fn build(
                     let mut bone = commands.spawn((SnakePart(part), place, Visibility::default()));
                     bone.insert(ChildOf(entity));
                     if lane.is_ghost() {
-                        let size = Vec3::from(body.parts[part].size_m());
+                        let size = Vec3::from(body.parts[part].size_m()) * GHOST_SIZE;
                         let cube = Mesh3d(props.ghost_cube.clone());
                         let place = place.with_scale(size);
                         bone.insert((cube, color.clone(), place));
@@ -134,8 +147,8 @@ fn build(
                 piece.id()
             };
             spawn(shapes.block.clone(), color);
-            let white = spawn(shapes.white.clone(), MeshMaterial3d(trim.white.clone()));
-            let dark = spawn(shapes.dark.clone(), MeshMaterial3d(trim.dark.clone()));
+            let white = spawn(shapes.white.clone(), MeshMaterial3d(white.clone()));
+            let dark = spawn(shapes.dark.clone(), MeshMaterial3d(dark.clone()));
             let collar = (limb == 0)
                 .then(|| spawn(shapes.collar.clone(), MeshMaterial3d(colors.of(lane.number()))));
             if let Some(collar) = collar {
@@ -179,6 +192,7 @@ mod tests {
             .init_resource::<Assets<SkinnedMeshInverseBindposes>>()
             .init_resource::<Props>()
             .init_resource::<LaneColors>()
+            .init_resource::<StageMode>()
             .add_plugins(plugin);
         for lane in [lane(0), lane(1).into_ghost()] {
             app.world_mut().spawn((Transform::default(), Visibility::default(), lane));
@@ -188,11 +202,11 @@ mod tests {
     }
 
     #[test]
-    fn a_ghost_is_translucent_without_details_and_shadow() {
+    fn a_ghost_is_pale_without_details_and_shadow() {
         let mut app = app();
         let world = app.world_mut();
         let props = world.resource::<Props>();
-        let ghosts = [props.red_ghost.clone(), props.blue_ghost.clone()];
+        let ghosts = props.ghosts.clone();
         let mut parts = world.query::<(
             &SnakePart,
             Option<&MeshMaterial3d<StandardMaterial>>,

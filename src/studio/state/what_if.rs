@@ -161,7 +161,7 @@ pub(crate) fn another_beside(
         StageMode::WhatIf { beside, current, .. } if *current > beside.len() => {
             Err("There is no room for another copy: discard one first.".to_owned())
         }
-        _ => Err("Change a setting of the World panel first.".to_owned()),
+        _ => Err("Change a setting of the Change panel first.".to_owned()),
     }
 }
 

@@ -100,7 +100,11 @@ impl Fitness {
     pub fn text(self, fitness: f32) -> String {
         match self {
             Self::StepsClimbed => format!("{fitness:.0} steps"),
-            Self::Share => format!("share {fitness:.3}"),
+            // A share above one adds a bonus for an early landing.
+            Self::Share if fitness >= 1.0 => {
+                format!("all the way (+{:.1} %)", 100.0 * (fitness - 1.0))
+            }
+            Self::Share => format!("{:.1} % of the way", 100.0 * fitness),
             other => format!("{fitness:.2}{}", other.unit()),
         }
     }

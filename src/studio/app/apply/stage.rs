@@ -41,7 +41,7 @@ pub(crate) struct StageParams<'w, 's> {
 }
 
 /// Message for a user who leaves a what-if without discarding the change.
-const CHANGE_STAYS: &str = "The next run keeps the change: see the World panel.";
+const CHANGE_STAYS: &str = "The next run keeps the change: see the Change panel.";
 
 impl StageParams<'_, '_> {
     /// Suggests a file name for the champions on the stage, without an extension.
@@ -218,7 +218,7 @@ impl StageParams<'_, '_> {
                 let left = self.champions().into_iter().nth(self.selection.lane);
                 if let Some(left) = left.iter().find(|left| left.is_changed()) {
                     let text = format!(
-                        "The stage keeps {}. The settings in the World panel do not.",
+                        "The stage keeps {}. The settings in the Change panel do not.",
                         left.label()
                     );
                     let take = Command::Plan(PlanCommand::UseWorldOfLane);

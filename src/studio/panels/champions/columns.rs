@@ -17,7 +17,7 @@ const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
 const NAME_WIDTH: f32 = 170.0;
 /// Headings of the columns and their tooltips.
 const HEADS: [(&str, &str); 3] = [
-    ("Fitness", "What the run rewards: see Fitness in the Run panel"),
+    ("Fitness", "What the run rewards: see Fitness in the Watch panel"),
     (
         "Time",
         "Simulated time until the snake first reached the top of the stairs; - if it does not end there",

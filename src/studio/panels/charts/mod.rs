@@ -174,7 +174,7 @@ fn view_or_reason(
     }
 }
 
-/// The fitness chart of the Run panel, cached.
+/// The fitness chart of the Watch panel, cached.
 #[derive(Default)]
 pub(super) struct FitnessChart {
     known: Option<(Version, ChartView)>,

@@ -96,7 +96,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
             method.unwrap_or_default()
         ));
         lines.push(match &run.ended {
-            _ if is_open => "Open in this window: the Run panel controls it".to_owned(),
+            _ if is_open => "Open in this window: the Watch panel controls it".to_owned(),
             Some(why) => format!("Cannot be resumed: {why}"),
             None => "Can be resumed".to_owned(),
         });

@@ -73,7 +73,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     if let Some(latest) = run.reports().last() {
         let (out, all, reasons) = (latest.disqualified, latest.evaluations, reasons_text(latest));
         let disqualified = weak(ui, format!("Disqualified: {out} of {all}{reasons}"));
-        let hint = "In the latest finished generation. The limits are in the World panel";
+        let hint = "In the latest finished generation. The limits are in the Change panel";
         ui.add(egui::Label::new(disqualified).wrap()).on_hover_text(hint);
     }
 }

@@ -1,7 +1,7 @@
 //! The senses of the snake on the stage, and how its controller turns them into motion.
 //!
 //! The panel shows one lane at the displayed time. Its switches take senses away by the same command as the settings of
-//! the World panel, so a copy without these senses is added beside the snake.
+//! the Change panel, so a copy without these senses is added beside the snake.
 
 mod decision_view;
 mod exam;
@@ -148,7 +148,7 @@ fn sensing_controllers() -> String {
     let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
     let titles: Vec<&str> = sensing.map(|kind| kind.title()).collect();
     format!(
-        "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Run panel.",
+        "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Watch panel.",
         titles.join(", ")
     )
 }

@@ -11,8 +11,13 @@ use snakes_core::evolve::{Settings, fields};
 use snakes_core::save::NamedStairs;
 use snakes_core::world::Stairs;
 
-/// Text for stairs that are not among the known ones.
-const OTHER: &str = "none of these";
+/// Describes stairs that are not among the known ones: "10 equal steps".
+fn in_words(stairs: &Stairs) -> String {
+    let first = (stairs.step_rise_m(0), stairs.step_tread_m(0));
+    let is_equal = (1..stairs.steps)
+        .all(|step| (stairs.step_rise_m(step), stairs.step_tread_m(step)) == first);
+    format!("{} {} steps", stairs.steps, if is_equal { "equal" } else { "unequal" })
+}
 
 /// Draws the selection of stairs, and collects the user's commands.
 pub(in crate::studio::panels) fn stairs_choice(
@@ -25,7 +30,7 @@ pub(in crate::studio::panels) fn stairs_choice(
     let mut chosen: Option<&NamedStairs> = None;
     ui.label("Shape");
     let list = egui::ComboBox::from_id_salt("known stairs")
-        .selected_text(present.unwrap_or(OTHER))
+        .selected_text(present.map_or_else(|| in_words(&settings.trial.stairs), str::to_owned))
         .width(theme::COMBO_WIDTH)
         .height(theme::list_height(ui))
         .show_ui(ui, |ui| {

@@ -11,7 +11,7 @@ pub(super) fn codes(ui: &mut egui::Ui, stairs: &Stairs) {
     let Some([rise_mm, tread_mm]) = stairs.mean_step_mm() else { return };
     let degrees = libm::atan2f(rise_mm, tread_mm).to_degrees();
     let scale = 1000.0 / TRUE_MM_PER_M;
-    let text = format!("Mean step: {degrees:.0}°, {rise_mm:.0} × {tread_mm:.0} mm in true size");
+    let text = format!("Like a real step of {rise_mm:.0} × {tread_mm:.0} mm, {degrees:.0}° steep");
     ui.label(text).on_hover_text(format!(
         "Rise × tread where the snake of five blocks is 3.5 m long: these stairs are {scale:.2} times as large as real ones"
     ));

@@ -93,7 +93,7 @@ impl StairsPanel {
             edit = Some(StairsEdit::complete(drawn));
         }
         let hint =
-            "Width, landing, nosing and the other settings of the stairs, in the World panel";
+            "Width, landing, nosing and the other settings of the stairs, in the Change panel";
         let find = Command::Window(WindowCommand::FindSetting("Stairs"));
         CommandButton::new("More settings", hint, find).show(ui, commands);
         let listed = table(ui, &stairs, self.pointed);

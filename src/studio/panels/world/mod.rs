@@ -1,4 +1,4 @@
-//! The World panel: settings of the world and the snake of the next run by section, with a search over all settings.
+//! The Change panel: settings of the world and the snake of the next run by section, with a search over all settings.
 
 pub mod presets;
 pub mod surface_readout;
@@ -25,7 +25,7 @@ use snakes_core::world::Stairs;
 use presets::PresetChoice;
 use surface_readout::{ReadLanes, ReadSurface};
 
-/// The World panel, with its search text and fields.
+/// The Change panel, with its search text and fields.
 #[derive(Debug, Default)]
 pub(super) struct WorldPanel {
     sheet: Sheet,
@@ -77,7 +77,7 @@ impl WorldPanel {
                 .desired_width(ui.available_width() - clear - theme::GAP);
             let field = named(ui.add(field), egui::WidgetType::TextEdit, "Find a setting");
             field.on_hover_text(
-                "Searches the settings of all sections, including those of the Run panel",
+                "Searches the settings of all sections, including those of the Watch panel",
             );
             if is_searching && ui.small_button("Clear").clicked() {
                 self.search.clear();
@@ -223,7 +223,7 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         RunStatus::Running | RunStatus::Paused => {
             "The current run uses these settings already: change a setting first"
         }
-        RunStatus::Ready => "The next run uses these settings: start it in the Run panel",
+        RunStatus::Ready => "The next run uses these settings: start it in the Watch panel",
         RunStatus::Finished => "The finished run used these settings: change a setting first",
     };
     if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn a_disabled_button_for_a_new_run_says_why() {
         let mut run = prepared_run();
-        for reason in ["start it in the Run panel", "change a setting first"] {
+        for reason in ["start it in the Watch panel", "change a setting first"] {
             let commands = sent(&run, |harness| {
                 harness.get_by_label("New run in this world").hover();
                 harness.run_steps(60);

@@ -15,7 +15,7 @@ use snakes_core::world::TouchedSurface;
 
 use lane_column::{LaneColumn, in_m_s, in_mm, in_watts};
 
-/// Lanes whose contacts the World panel shows.
+/// Lanes whose contacts the Change panel shows.
 #[derive(Clone, Default)]
 pub(crate) struct ReadLanes<'l> {
     /// The selected lane, or all lanes of a what-if.
@@ -26,7 +26,7 @@ pub(crate) struct ReadLanes<'l> {
     pub is_playing: bool,
 }
 
-/// Surface that a section of the World panel is about.
+/// Surface that a section of the Change panel is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ReadSurface {
     /// The stairs, and the ground if it shares their surface.
@@ -99,7 +99,7 @@ const LINES: [ReadoutLine; 6] = [
         detail: ReadoutDetail::Limbs,
     },
     ReadoutLine {
-        name: "Dent",
+        name: "Sinks in",
         term: "penetration",
         hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. \
                In a soft one, a limb that stands on its end can sink in by more than a metre",
@@ -107,7 +107,7 @@ const LINES: [ReadoutLine; 6] = [
         detail: ReadoutDetail::Limbs,
     },
     ReadoutLine {
-        name: "Lost here",
+        name: "Heat",
         term: "dissipation",
         hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's \
                damping takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
@@ -127,10 +127,6 @@ const LINES: [ReadoutLine; 6] = [
 
 /// Width of the lines' names, in points.
 const NAME_WIDTH: f32 = theme::GAP * 11.0;
-/// Minimum width of the panel at which the technical terms are beside the names, in points.
-const WIDTH_FOR_TERMS: f32 = theme::GAP * 35.0;
-/// Width of a name together with its term, in points.
-const TERM_WIDTH: f32 = theme::GAP * 21.0;
 /// Minimum width of a lane's column, in points: enough for every number.
 const LEAST_COLUMN: f32 = theme::GAP * 8.5;
 
@@ -187,15 +183,13 @@ impl<'l> ReadLanes<'l> {
         }
         let columns: Vec<LaneColumn> =
             self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
-        let has_terms = columns.len() == 1 && ui.available_width() >= WIDTH_FOR_TERMS;
-        let names_width = if has_terms { TERM_WIDTH } else { NAME_WIDTH };
-        let all_room = ui.available_width() - names_width;
+        let all_room = ui.available_width() - NAME_WIDTH;
         // Columns for which there is no room are drawn below the first ones.
         let most = ((all_room / (LEAST_COLUMN + theme::GAP)) as usize).max(1);
         let beside = columns.len().div_ceil(columns.len().div_ceil(most));
         let room = all_room / beside as f32 - theme::GAP;
         for (index, columns) in columns.chunks(beside).enumerate() {
-            let table = ReadoutTable { columns, is_meant, has_terms, names_width, room };
+            let table = ReadoutTable { columns, is_meant, room };
             self.grid(ui, (surface, index), &table);
         }
     }
@@ -251,22 +245,20 @@ struct ReadoutTable<'c, 'l> {
     columns: &'c [LaneColumn<'l>],
     /// Returns whether a surface that a limb touches belongs to the section.
     is_meant: &'c dyn Fn(TouchedSurface) -> bool,
-    has_terms: bool,
-    /// Widths of the names, and of a column, in points.
-    names_width: f32,
+    /// Width of a column, in points.
     room: f32,
 }
 
 impl ReadoutTable<'_, '_> {
     fn line(&self, ui: &mut egui::Ui, line: &ReadoutLine) {
-        let name = match line.term {
-            term if self.has_terms && !term.is_empty() => format!("{} ({term})", line.name),
-            _ => line.name.to_owned(),
+        let hint = match line.term {
+            "" => line.hint.to_owned(),
+            term => format!("{}.\nIn the terms of the field: {term}", line.hint),
         };
-        let size = egui::vec2(self.names_width, theme::GAP * 2.25);
+        let size = egui::vec2(NAME_WIDTH, theme::GAP * 2.25);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_width(self.names_width);
-            ui.label(weak(ui, name)).on_hover_text(line.hint);
+            ui.set_width(NAME_WIDTH);
+            ui.label(weak(ui, line.name)).on_hover_text(hint);
         });
         for column in self.columns {
             let cell = self.cell(ui, |ui| (line.draw)(column, ui));

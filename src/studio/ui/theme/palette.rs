@@ -42,6 +42,8 @@ pub struct Palette {
     pub red_limb: Color,
     /// Blue of the report, for the second and fourth limb.
     pub blue_limb: Color,
+    /// Pale colours of the other snakes of a generation, for the limbs that are red and blue in the best.
+    pub ghosts: [Color; 2],
     /// Colour of contact forces.
     pub force: Color,
     /// Colour of bend torques.
@@ -125,6 +127,7 @@ pub const LIGHT: Palette = Palette {
     empty_cell: Color32::from_rgb(0xda, 0xdf, 0xe8),
     red_limb: Color::srgb(0.86, 0.13, 0.12),
     blue_limb: Color::srgb(0.10, 0.27, 0.84),
+    ghosts: [Color::srgb(0.90, 0.86, 0.83), Color::srgb(0.82, 0.85, 0.90)],
     force: Color::srgb(0.02, 0.45, 0.30),
     bend: Color32::from_rgb(0x1a, 0x66, 0xd9),
     twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
@@ -186,6 +189,7 @@ pub const DARK: Palette = Palette {
     empty_cell: Color32::from_rgb(0x12, 0x15, 0x1c),
     red_limb: Color::srgb(0.88, 0.14, 0.14),
     blue_limb: Color::srgb(0.14, 0.32, 0.95),
+    ghosts: [Color::srgb(0.40, 0.37, 0.37), Color::srgb(0.34, 0.37, 0.43)],
     force: Color::srgb(0.45, 0.95, 0.70),
     bend: Color32::from_rgb(0x6c, 0xb0, 0xff),
     twist: Color32::from_rgb(0xff, 0xb8, 0x5c),

@@ -90,14 +90,6 @@ fn pointing_at_a_number_explains_it_limb_by_limb() {
 }
 
 #[test]
-fn terms_of_the_field_are_shown_where_there_is_room() {
-    let [lane, _] = on_stone_and_ice();
-    assert!(shows(&panel(vec![&lane], ReadSurface::Stairs, 420.0), "Grip used (friction cone)"));
-    let narrow = panel(vec![&lane], ReadSurface::Stairs, 260.0);
-    assert!(!shows(&narrow, "friction cone") && shows(&narrow, "Dent"));
-}
-
-#[test]
 fn without_contact_it_says_none_and_a_recording_has_no_readings() {
     let start = climber_lane(0, "climber");
     let at_start = panel(vec![&start], ReadSurface::Stairs, 320.0);

@@ -12,10 +12,10 @@ pub(super) const FRICTION: Lesson = Lesson {
     story: "In the original experiment, the surface was tuned by eye, which took a long time. The stage shows \
             the same snake on a surface like ice, on its own surface and on a surface like glue.",
     to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
-             the start, open the World panel and drag Friction: a copy of the snake starts beside it with the new value.",
+             the start, open the Change panel and drag Friction: a copy of the snake starts beside it with the new value.",
     look_for: "How far each snake gets. The genome is the same in all lanes; only the surface differs.",
     conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
-                 any. The World panel lets you set every property of a surface as a number and \
+                 any. The Change panel lets you set every property of a surface as a number and \
                  see its effect at once.",
     scenes: &[
         LessonScene::Lanes {
@@ -140,7 +140,7 @@ pub(super) const MUTATIONS: Lesson = Lesson {
              by only 5 % per generation.",
     look_for: "The two lines, early and late: which is ahead, and which still rises?",
     conclusion: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
-                 generations can only refine. You can set the range and its decay in the Run panel; some other \
+                 generations can only refine. You can set the range and its decay in the Watch panel; some other \
                  strategies, such as CMA-ES, adapt the size of their changes themselves.",
     scenes: &[
         AS_FOUND,
