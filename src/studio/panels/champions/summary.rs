@@ -43,10 +43,6 @@ impl ReportSummary {
         };
         let all = reports.iter().map(is_better).enumerate();
         let better = all.filter(|(_, is_better)| *is_better).map(|(index, _)| index).collect();
-        Self {
-            champions: champions.count(),
-            best: marked,
-            better,
-        }
+        Self { champions: champions.count(), best: marked, better }
     }
 }

@@ -198,8 +198,8 @@ fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     let forward = ui.add(accent_button(ui, label));
     // The button never takes the focus by itself, because Space would then press it instead of pausing the stage.
     let is_free = ui.memory(|memory| memory.focused().is_none());
-    let enter = is_free
-        && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
+    let enter =
+        is_free && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
     if forward.clicked() || enter {
         commands.push(next);
     }

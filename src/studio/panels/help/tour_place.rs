@@ -19,7 +19,8 @@ const AROUND: f32 = theme::GAP * 4.0;
 
 /// Returns the width of a card's contents, in points: the usual one, or less if the card then fits beside its target.
 pub(super) fn content_width(target: Option<Rect>, screen: Rect) -> f32 {
-    let beside = |target: Rect| (target.left() - screen.left()).max(screen.right() - target.right());
+    let beside =
+        |target: Rect| (target.left() - screen.left()).max(screen.right() - target.right());
     let room = target.map_or(0.0, beside) - GAP - theme::GAP - AROUND;
     let usual = theme::TOUR_WIDTH.min(screen.width() - AROUND);
     if room < LEAST_WIDTH { usual } else { room.min(usual) }

@@ -127,7 +127,8 @@ impl WorldPanel {
         };
         let sections = self.sheet.sections("");
         let mut is_anything = false;
-        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of))) {
+        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of)))
+        {
             let is_wanted = |listed: &ListedSetting| rank(listed) == Some(wanted);
             if self.sheet.in_section(section).any(is_wanted) {
                 is_anything = true;
@@ -341,7 +342,8 @@ mod tests {
         let run = prepared_run();
         sent(&run, |harness| {
             type_into(harness, "Find a setting", "joint");
-            let top = |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
+            let top =
+                |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
             let joints = top("Joints").expect("the section");
             let named = top("Genome").or(top("Controller")).unwrap_or(f32::MAX);
             let field = harness.get_by_label("Find a setting").rect();

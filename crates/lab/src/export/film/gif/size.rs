@@ -47,7 +47,11 @@ impl GifChoices {
         let (width, height) = ordered.size;
         let scaled = |pixels: u32, share: f64| libm::round(f64::from(pixels) * share) as u32;
         let choice = |(share, fps): (f64, u32)| GifChoice {
-            size: if smaller { (scaled(width, share), scaled(height, share)) } else { ordered.size },
+            size: if smaller {
+                (scaled(width, share), scaled(height, share))
+            } else {
+                ordered.size
+            },
             fps: if slower { fps } else { ordered.fps },
         };
         let mut left: Vec<GifChoice> = QUALITIES.into_iter().map(choice).collect();
