@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::args::{ExportArgs, FPS, FilmArgs, SPEED, number_if, size};
 use super::error::CliError;
 use super::replay::{champions_to_draw, longest_s};
-use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film, frame_folder_of};
+use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film};
 use snakes_core::check::Invalid;
 use snakes_core::save::{LoadedChampion, load_run};
-use snakes_lab::export::gif::GIF_FPS;
+use snakes_lab::export::film::{GIF_FPS, frame_folder_of};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 /// Maximum width and height of frames that common graphics drivers draw and players show, in pixels.

@@ -243,8 +243,8 @@ const RESTRICTED_WORDS: [(&str, &[&str], &str); 12] = [
     ("std::net", &["cluster"], "only an evaluator connects to other machines"),
     (
         "process::Command",
-        &["run", "plot", "studio"],
-        "child processes evaluate, find fonts, or replace a failed studio",
+        &["run", "plot", "export", "studio"],
+        "child processes evaluate, find fonts, write films, or replace a failed studio",
     ),
     ("std::fs", &["save"], "only one module accesses files"),
     ("Instant", &["run", "cluster", "studio"], "a clock must not decide a result"),

@@ -1,4 +1,4 @@
-//! Time limits of clicks.
+//! Time limits of clicks, and the keyboard after a click.
 
 use bevy_egui::egui;
 
@@ -14,9 +14,36 @@ pub(crate) fn set_click_limits(context: &egui::Context) {
     });
 }
 
+/// Takes the keyboard from a button or list when the mouse is pressed, unless text is being typed. Space would otherwise
+/// press the button again instead of pausing the stage.
+pub(crate) fn leave_keyboard_to_stage(context: &egui::Context) {
+    if context.input(|input| input.pointer.any_pressed()) && !context.text_edit_focused() {
+        context.memory_mut(|memory| {
+            memory.focused().into_iter().for_each(|focused| memory.surrender_focus(focused));
+        });
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::testing::{clicked, panel, press};
+    use crate::studio::ui::buttons::CommandButton;
+
+    #[test]
+    fn a13_space_does_not_press_a_button_again_that_was_clicked_after_it_had_the_keyboard() {
+        use crate::studio::commands::Command;
+        let mut panel = panel([300.0, 100.0], |ui, commands| {
+            leave_keyboard_to_stage(ui.ctx());
+            CommandButton::new("Undo", "", Command::Undo).show(ui, commands);
+        });
+        press(&mut panel, egui::Key::Tab);
+        press(&mut panel, egui::Key::Space);
+        assert_eq!(*panel.state(), [Command::Undo], "the keyboard presses it");
+        clicked(&mut panel, "Undo");
+        press(&mut panel, egui::Key::Space);
+        assert_eq!(*panel.state(), [Command::Undo, Command::Undo]);
+    }
 
     #[test]
     fn a_click_that_spans_a_slow_frame_still_counts() {

@@ -296,16 +296,10 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
     }
     let of_bodies = asks == Some(Asks::LateBodyChanges);
     let middle = if of_bodies { "Late changes" } else { "Disqualified" };
-    // The answer to the question about the best run is a place, which can differ from the fitness.
-    let of_places = asks == Some(Asks::BestRun);
-    let first = if of_places { "Best ends at" } else { "Best" };
-    table(ui, "runs", &["", first, middle, "Run hash"], |ui| {
+    table(ui, "runs", &["", "Best", middle, "Run hash"], |ui| {
         for (lane, found) in runs.iter().enumerate() {
             lane_name(ui, lane, &found.name);
-            let best = found.best().map(|best| match of_places {
-                true => format!("{:.2} m", best.evaluation.centre_y_m),
-                false => format!("{:.2}{unit}", best.evaluation.fitness),
-            });
+            let best = found.best().map(|best| format!("{:.2}{unit}", best.evaluation.fitness));
             ui.label(best.unwrap_or_else(|| "-".to_owned()));
             if of_bodies {
                 ui.label(found.late_body_changes().to_string()).on_hover_text(

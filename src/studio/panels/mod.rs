@@ -59,7 +59,7 @@ use super::workspace::scale::UiScale;
 use body::BodyPanel;
 use champions::{ChampionsPanel, ChampionsView};
 use charts::{ChartsPanel, FitnessChart};
-use click_limits::set_click_limits;
+use click_limits::{leave_keyboard_to_stage, set_click_limits};
 use help::command_palette::CommandPalette;
 use help::key_list::key_overlay;
 use help::menu::menu;
@@ -176,6 +176,7 @@ fn draw(
     };
     panels.letters.warm_up(&context, scale, is_presenting);
     set_click_limits(&context);
+    leave_keyboard_to_stage(&context);
     // A new scale takes effect in the next frame.
     let is_settled = context.zoom_factor() == scale;
     context.set_zoom_factor(scale);

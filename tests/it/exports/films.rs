@@ -89,6 +89,32 @@ fn a_gif_has_the_frames_the_size_and_the_time_that_were_ordered_and_its_snake_mo
 }
 
 #[test]
+fn a3_a_gif_shows_only_the_climb_and_its_size_is_told_before_it_is_written() {
+    if lacks("small gif", false) {
+        return;
+    }
+    let folder = folder();
+    let order = format!("export {CLIMBER} -o a.gif --size 96x54 --speed 8 --json");
+    let said = stdout_of(folder.path(), &order);
+    let lines: Vec<Value> =
+        said.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let told = lines.iter().position(|line| line["type"] == "expected").expect("a size");
+    assert!(lines[..told].iter().all(|line| line["progress"] == 0.0), "{said}");
+    let expected = lines[told]["bytes"].as_f64().expect("bytes");
+    let written = fs::metadata(folder.path().join("a.gif")).expect("written").len() as f64;
+    assert!((0.6..1.6).contains(&(written / expected)), "{written} instead of {expected}");
+    let file = fs::File::open(folder.path().join("a.gif")).expect("written");
+    let mut reader = gif::DecodeOptions::new().read_info(BufReader::new(file)).expect("a GIF");
+    let mut hundredths = 0;
+    while let Some(frame) = reader.read_next_frame().expect("whole") {
+        hundredths += u32::from(frame.delay);
+    }
+    // The trial lasts 15 s, and the snake lands before.
+    let shown_s = f64::from(hundredths) / 100.0 * 8.0;
+    assert!((6.0..14.5).contains(&shown_s), "{shown_s} s");
+}
+
+#[test]
 fn frames_show_the_moment_that_a_single_picture_of_it_shows() {
     if lacks("frames", false) {
         return;

@@ -19,6 +19,14 @@ pub enum ExportError {
         "a film is drawn by the studio, which this program was built without; choose another format, or build it with the default features"
     )]
     Film,
+    /// The program that writes .mp4 films is missing.
+    #[error(
+        "a .mp4 film is written by ffmpeg, which is not installed here or not in PATH; install it, or write a .gif"
+    )]
+    NoFfmpeg,
+    /// The system refused to start the program that writes .mp4 films, or a thread for it.
+    #[error("ffmpeg: cannot be started: {0}")]
+    Ffmpeg(std::io::Error),
     /// The user cancelled the export.
     #[error("cancelled; nothing was written")]
     Cancelled,

@@ -114,7 +114,7 @@ impl ExportFormat {
             Self::Gif => FormatInfo {
                 ending: "gif",
                 title: "Film as GIF",
-                sentence: "A film that plays by itself in web pages and messages; larger than the same .mp4.",
+                sentence: "The climb as a film that plays by itself in web pages and messages, of at most 8 MB.",
                 most_champions: MOST_LANES,
                 most_generations: MOST_LANES,
             },

@@ -6,8 +6,8 @@
 mod columns;
 mod error;
 mod facts;
+pub mod film;
 mod format;
-pub mod gif;
 mod gltf;
 mod mjcf;
 mod motion;

@@ -118,26 +118,6 @@ fn finished_playbacks_are_listed_with_every_digit_and_their_hash() {
 }
 
 #[test]
-fn a25_the_table_names_the_same_place_as_the_answer_about_the_best_run() {
-    let mut report = testing::report_of(1);
-    let best = report.champion.as_mut().expect("a healthy snake");
-    (best.evaluation.centre_y_m, best.evaluation.fitness) = (7.76, 7.19);
-    let found = |name: &str| Found {
-        name: name.to_owned(),
-        reports: vec![report.clone()],
-        run_hash: Some(1),
-    };
-    let runs_of = vec![found("one"), found("two")];
-    let progress = Progress { runs: runs_of, is_revealed: true, ..Progress::default() };
-    let shows = |asks| {
-        let harness = Harness::builder().build_ui(|ui| runs(ui, &progress, Some(asks), false));
-        ["7.76 m", "7.19 m"].map(|text| harness.query_all_by_label(text).next().is_some())
-    };
-    assert_eq!(shows(Asks::BestRun), [true, false]);
-    assert_eq!(shows(Asks::SameHash), [false, true]);
-}
-
-#[test]
 fn results_have_the_colours_of_their_lanes() {
     let runs_of = |name: &str| Found { name: name.to_owned(), reports: Vec::new(), run_hash: None };
     let progress = Progress {

@@ -134,22 +134,26 @@ impl WorldPanel {
     }
 
     /// Draws the settings that match the search, by section: first those of sections whose title has all words, then
-    /// those whose own name has them, and last those that only mention them.
+    /// those whose own name has them, and then those that only mention them; settings that the next run does not use come
+    /// after all others.
     fn search_results(&mut self, ui: &mut egui::Ui) {
         let words = self.search.to_lowercase();
         let has_all = |text: &str| {
             let text = text.to_lowercase();
             words.split_whitespace().all(|word| text.contains(word))
         };
-        let rank = |listed: &ListedSetting| match listed.setting.kind {
-            SettingKind::Absent(_) => None,
-            _ if has_all(listed.section.title) => Some(0),
-            _ if has_all(&listed.setting.title()) => Some(1),
-            _ => listed.setting.is_about(&words).then_some(2),
+        let rank = |listed: &ListedSetting| {
+            let by_words = match listed.setting.kind {
+                SettingKind::Absent(_) => None,
+                _ if has_all(listed.section.title) => Some(0),
+                _ if has_all(&listed.setting.title()) => Some(1),
+                _ => listed.setting.is_about(&words).then_some(2),
+            };
+            by_words.map(|rank| if listed.is_used { rank } else { rank + 3 })
         };
         let sections = self.sheet.sections("");
         let mut is_anything = false;
-        for (wanted, section) in (0..3).flat_map(|rank| sections.iter().map(move |of| (rank, *of)))
+        for (wanted, section) in (0..6).flat_map(|rank| sections.iter().map(move |of| (rank, *of)))
         {
             let is_wanted = |listed: &ListedSetting| rank(listed) == Some(wanted);
             if self.sheet.in_section(section).any(is_wanted) {
@@ -373,9 +377,15 @@ mod tests {
             let top =
                 |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
             let joints = top("Joints").expect("the section");
-            let named = top("Genome").or(top("Controller")).unwrap_or(f32::MAX);
             let field = harness.get_by_label("Find a setting").rect();
-            assert!(joints < named && joints < field.bottom() + theme::GAP * 4.0, "{joints}");
+            assert!(joints < field.bottom() + theme::GAP * 4.0, "{joints}");
+            // This run uses neither decisions nor a network.
+            for unused in ["XCS", "Hidden neurons"] {
+                let last = harness.query_all_by_label(unused).map(|of| of.rect().top());
+                let last = last.fold(f32::MAX, f32::min);
+                let damping = harness.get_by_label("Joint damping, N·m·s/rad").rect().top();
+                assert!(last > damping, "{unused}: {last}");
+            }
         });
     }
 

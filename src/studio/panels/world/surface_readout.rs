@@ -202,7 +202,10 @@ impl<'l> ReadLanes<'l> {
         table: &ReadoutTable,
     ) {
         let gap = theme::GAP;
-        let grid = egui::Grid::new(("read-out", surface as u8, index))
+        // A table with other columns is another one. It would be drawn once with the widths of the one before, so that its
+        // texts overlap.
+        let columns = (table.columns.len(), table.has_terms);
+        let grid = egui::Grid::new(("read-out", surface as u8, index, columns))
             .min_col_width(0.0)
             .min_row_height(gap * 2.25)
             .spacing([gap, gap / 8.0]);

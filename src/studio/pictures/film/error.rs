@@ -2,7 +2,6 @@
 
 use crate::studio::error::StudioError;
 use snakes_core::check::Invalid;
-use snakes_core::save::SaveError;
 use snakes_lab::export::ExportError;
 use snakes_lab::plot::PlotError;
 
@@ -21,24 +20,10 @@ pub enum FilmError {
     /// The GIF would be larger than allowed, in bytes. A smaller one can be made.
     #[error("the GIF would have {0} bytes")]
     TooLarge(u64),
-    /// The program that writes .mp4 films is missing.
-    #[error(
-        "a .mp4 film is written by ffmpeg, which is not installed here or not in PATH; install it, or write a .gif"
-    )]
-    NoFfmpeg,
-    /// The system refused to start the program that writes .mp4 films, or a thread for it.
-    #[error("ffmpeg: cannot be started: {0}")]
-    Ffmpeg(std::io::Error),
 }
 
 impl From<Invalid> for FilmError {
     fn from(invalid: Invalid) -> Self {
         Self::Export(invalid.into())
-    }
-}
-
-impl From<SaveError> for FilmError {
-    fn from(error: SaveError) -> Self {
-        Self::Export(error.into())
     }
 }

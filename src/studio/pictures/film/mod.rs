@@ -1,37 +1,30 @@
 //! Films of champions, rendered without a window at exact simulated times. No clock influences a frame: the same
 //! champions and options give the same frames on every machine, however slowly it draws.
 //!
-//! [`plan`] determines the time that each frame shows, and [`camera_path`] the camera. [`shooting`] draws the frames,
-//! and [`gif`], [`video`] and [`frame_folder`] write them.
+//! [`plan`] determines the time that each frame shows, and [`camera_path`] the camera. [`shooting`] draws the frames.
 
 mod camera_path;
 mod error;
-mod film_file;
-mod frame_folder;
 mod order;
 mod plan;
 mod shooting;
-mod video;
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::studio::stage::evenly;
 use snakes_core::check::{Invalid, within};
-use snakes_lab::export::gif::{
-    BegunGif, ESTIMATED_BYTES, GifChoice, GifChoices, GifFile, GifPalette, PAIRS,
+use snakes_lab::export::film::{
+    BegunGif, ESTIMATED_BYTES, FilmFile, FrameFolder, GifChoice, GifChoices, GifFile, GifPalette,
+    PAIRS, Video, check_video_size,
 };
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 pub use error::FilmError;
-pub(crate) use frame_folder::frame_folder_of;
 pub use order::{FilmOrder, FilmPart};
 
-use film_file::FilmFile;
-use frame_folder::FrameFolder;
 use plan::{FilmFrame, planned};
 use shooting::shoot;
-use video::Video;
 
 /// Maximum number of frames of a film: almost an hour at 30 frames per second.
 const MOST_FRAMES: usize = 100_000;
@@ -41,7 +34,7 @@ const MOST_FRAMES: usize = 100_000;
 /// # Errors
 /// The format does not support the size.
 pub(crate) fn check_film_size(format: ExportFormat, size: (u32, u32)) -> Result<(), Invalid> {
-    if format == ExportFormat::Mp4 { video::check_size(size) } else { Ok(()) }
+    if format == ExportFormat::Mp4 { check_video_size(size) } else { Ok(()) }
 }
 
 /// Draws a film and writes it.
@@ -69,13 +62,13 @@ pub fn film(
     shoot(order, &plan, |shooting| {
         shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
             progress.reach(index as f64 / all as f64)?;
-            let added = file.add(&frame);
+            let added = file.add(&frame).map_err(FilmError::from);
             // If the interrupt key has cancelled the film, it may also have ended ffmpeg; the failure of ffmpeg is then not reported.
             progress.reach((index + 1) as f64 / all as f64)?;
             added
         })
     })?;
-    file.finish()
+    Ok(file.finish()?)
 }
 
 fn checked_plan(order: &FilmOrder) -> Result<Vec<FilmFrame>, FilmError> {

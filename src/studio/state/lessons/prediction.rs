@@ -117,7 +117,8 @@ impl Progress {
                 furthest(&ends)
             }
             Asks::BestRun => {
-                let end = |found: &Found| found.best().map(|best| best.evaluation.centre_y_m);
+                // The panel's table and the worksheet have the fitness, too: the mean place over the last half second.
+                let end = |found: &Found| found.best().map(|best| best.evaluation.fitness);
                 let ends: Vec<_> =
                     self.runs.iter().map(|found| (found.name.as_str(), end(found))).collect();
                 let mut truth = furthest(&ends)?;
@@ -188,6 +189,7 @@ fn more_often(counts: &[(&str, usize)]) -> Option<Truth> {
 mod tests {
     use super::super::LESSONS;
     use super::*;
+    use crate::studio::state::current_run::explored_run;
 
     fn progress(guess: Option<usize>, ends_m: &[f32]) -> Progress {
         let names = ["friction 0.1", "original", "friction 5"].into_iter();
@@ -213,6 +215,21 @@ mod tests {
             let words = of.comparison(scene).expect("revealed");
             assert!(words.starts_with(start), "{words}");
         }
+    }
+
+    #[test]
+    fn a25_the_answer_about_the_best_run_names_the_number_of_the_table() {
+        let mut report = explored_run().reports()[0].clone();
+        let best = report.champion.as_mut().expect("a healthy snake");
+        (best.evaluation.centre_y_m, best.evaluation.fitness) = (7.76, 7.19);
+        let of = |name: &str| Found {
+            name: name.to_owned(),
+            reports: vec![report.clone()],
+            run_hash: None,
+        };
+        let progress = Progress { runs: vec![of("one")], ..Progress::default() };
+        let words = progress.truth(Asks::BestRun).expect("a run").words;
+        assert!(words.contains("7.19 m") && !words.contains("7.76"), "{words}");
     }
 
     #[test]

@@ -158,3 +158,32 @@ fn the_columns_of_one_settings_values_are_told_apart_by_their_values() {
         assert!(shows(&panel, value), "{value}");
     }
 }
+
+#[test]
+fn a23_texts_do_not_overlap_in_the_frame_after_a_change_is_discarded() {
+    let lanes = on_stone_and_ice();
+    let shown = std::cell::Cell::new(2);
+    let size = egui::vec2(384.0, 400.0);
+    let mut harness = Harness::builder().with_size(size).build_ui(|ui| {
+        theme::apply(ui.ctx());
+        let lanes: Vec<&Lane> = lanes.iter().take(shown.get()).collect();
+        let are_named = lanes.len() > 1;
+        ReadLanes { lanes, are_named, is_playing: false }.ui(ui, ReadSurface::Stairs);
+    });
+    harness.run();
+    shown.set(1);
+    harness.step();
+    let texts = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) => {
+            Some((text.galley.text().to_owned(), clipped.shape.visual_bounding_rect()))
+        }
+        _ => None,
+    });
+    let texts: Vec<_> = texts.collect();
+    assert!(texts.len() > 8, "{texts:?}");
+    for (index, (text, rect)) in texts.iter().enumerate() {
+        for (other, beside) in &texts[index + 1..] {
+            assert!(!rect.shrink(1.0).intersects(beside.shrink(1.0)), "{text} and {other}");
+        }
+    }
+}

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::error::FilmError;
-use super::film_file::FilmFile;
+use super::{ExportError, FilmFile};
 use snakes_core::save::{Picture, UnfinishedFolder};
 
 /// A folder of numbered pictures that is being written.
@@ -25,7 +24,10 @@ pub fn frame_folder_of(path: &Path) -> PathBuf {
 
 impl FrameFolder {
     /// Creates the folder of a film with this number of frames.
-    pub fn begin(path: &Path, frames: usize) -> Result<Self, FilmError> {
+    ///
+    /// # Errors
+    /// The folder cannot be created, or exists and has files in it.
+    pub fn begin(path: &Path, frames: usize) -> Result<Self, ExportError> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let folder = UnfinishedFolder::create(&frame_folder_of(path))?;
         let digits = frames.to_string().len().max(LEAST_DIGITS);
@@ -34,14 +36,14 @@ impl FrameFolder {
 }
 
 impl FilmFile for FrameFolder {
-    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+    fn add(&mut self, frame: &Picture) -> Result<(), ExportError> {
         let (number, digits) = (self.next, self.digits);
         self.next += 1;
         let name = format!("{}-{number:0digits$}.png", self.name);
         Ok(self.folder.store_picture(&name, frame)?)
     }
 
-    fn finish(self: Box<Self>) -> Result<(), FilmError> {
+    fn finish(self: Box<Self>) -> Result<(), ExportError> {
         Ok(self.folder.finish()?)
     }
 }

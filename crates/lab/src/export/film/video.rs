@@ -4,12 +4,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
-use super::error::FilmError;
-use super::film_file::FilmFile;
+use super::{ExportError, FilmFile};
+use crate::run::BackgroundTask;
 use snakes_core::check::Invalid;
 use snakes_core::save::{Picture, UnfinishedFile};
-use snakes_lab::export::ExportError;
-use snakes_lab::run::BackgroundTask;
 
 /// Name of the program that writes the film, which must be in PATH.
 const FFMPEG: &str = "ffmpeg";
@@ -41,35 +39,38 @@ impl Drop for RunningFfmpeg {
 
 impl Video {
     /// Creates the file and starts ffmpeg.
-    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, FilmError> {
-        check_size(size)?;
+    ///
+    /// # Errors
+    /// The size does not suit a video, the file cannot be created, or ffmpeg cannot be started.
+    pub fn begin(path: &Path, size: (u32, u32), fps: u32) -> Result<Self, ExportError> {
+        check_video_size(size)?;
         let file = UnfinishedFile::create(path)?;
         let ffmpeg =
             RunningFfmpeg::start(file.temporary_path(), size, fps).map_err(|error| match error
                 .kind()
             {
-                io::ErrorKind::NotFound => FilmError::NoFfmpeg,
-                _ => FilmError::Ffmpeg(error),
+                io::ErrorKind::NotFound => ExportError::NoFfmpeg,
+                _ => ExportError::Ffmpeg(error),
             })?;
         Ok(Self { ffmpeg, file, path: path.to_owned() })
     }
 
     /// Returns the reason why ffmpeg has ended early.
-    fn failure(&mut self, error: io::Error) -> FilmError {
+    fn failure(&mut self, error: io::Error) -> ExportError {
         let said = self.ffmpeg.last_words().unwrap_or_else(|| error.to_string());
         ExportError::unwritable(&self.path)(io::Error::other(said)).into()
     }
 }
 
 impl FilmFile for Video {
-    fn add(&mut self, frame: &Picture) -> Result<(), FilmError> {
+    fn add(&mut self, frame: &Picture) -> Result<(), ExportError> {
         let ended = || io::Error::from(io::ErrorKind::BrokenPipe);
         let frames = self.ffmpeg.frames.as_mut().ok_or_else(ended);
         let written = frames.and_then(|frames| frames.write_all(&frame.rgb));
         written.map_err(|error| self.failure(error))
     }
 
-    fn finish(mut self: Box<Self>) -> Result<(), FilmError> {
+    fn finish(mut self: Box<Self>) -> Result<(), ExportError> {
         let frames = self.ffmpeg.frames.take();
         let flushed = frames.map_or(Ok(()), |mut frames| frames.flush());
         let ended = flushed.and_then(|()| self.ffmpeg.process.wait());
@@ -132,7 +133,10 @@ impl RunningFfmpeg {
 }
 
 /// Checks that the size in pixels suits H.264, in which each block of 2 by 2 pixels shares a colour.
-pub fn check_size((width, height): (u32, u32)) -> Result<(), Invalid> {
+///
+/// # Errors
+/// The width or the height is odd.
+pub fn check_video_size((width, height): (u32, u32)) -> Result<(), Invalid> {
     let is_even = width.is_multiple_of(2) && height.is_multiple_of(2);
     let allowed = "an even width and an even height for a .mp4 film";
     if is_even { Ok(()) } else { Err(Invalid::new("--size", format!("{width}x{height}"), allowed)) }
