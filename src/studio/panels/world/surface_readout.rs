@@ -204,7 +204,7 @@ impl<'l> ReadLanes<'l> {
         let gap = theme::GAP;
         // A table with other columns is another one. It would be drawn once with the widths of the one before, so that its
         // texts overlap.
-        let columns = (table.columns.len(), table.has_terms);
+        let columns = table.columns.len();
         let grid = egui::Grid::new(("read-out", surface as u8, index, columns))
             .min_col_width(0.0)
             .min_row_height(gap * 2.25)
