@@ -84,9 +84,8 @@ fn buttons_and_champion_list_control_run_and_stage() {
     studio.wait_for_title("showing generation 1");
     studio.click_champion(0);
     studio.wait_for_title("showing climber");
-    studio.click_label("Reset");
-    studio.wait_for_title("0 of 1000 generations, ready");
-    studio.click_label("Start");
+    studio.click_label("New run");
+    studio.wait_for_title("seed 2 - ");
     studio.wait_for_title("running");
 }
 
@@ -115,13 +114,12 @@ fn a_typed_seed_starts_another_run() {
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
     let Some(studio) = Studio::open("seed", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
+    studio.click_label("How it learns");
     studio.type_into("Seed", "77");
-    studio.click_label("Reset");
-    studio.wait_for_title("seed 77 - 0 of 4 generations, ready");
+    // Stage shortcuts must ignore text that is typed into a field, so the key for generation 7 must not show that generation.
     assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
-    // Stage shortcuts must ignore text that is typed into a field, so the key for generation 1 must not show that generation.
-    studio.click_label("Start");
-    studio.wait_for_title("4 of 4 generations, finished");
+    studio.scroll_and_click("Button", "New run");
+    studio.wait_for_title("seed 77 - 4 of 4 generations, finished");
     studio.key("0");
     studio.wait_for_title("showing first-climber");
     studio.type_into("Seed", "1");
@@ -142,7 +140,7 @@ fn the_mouse_moves_the_camera_and_home_resets_it() {
     studio.drag(3, (x, y), (x + 40, y + 40));
     let moved = studio.still_picture();
     assert!(difference(&turned, &moved) > 2000, "a drag with the right button moves it");
-    let title = studio.place_of("Label", "Evolution").area.middle();
+    let title = studio.place("Panel Watch").area.middle();
     studio.wheel(true, title);
     studio.drag(1, title, (x, y));
     let unmoved = studio.still_picture();
@@ -206,7 +204,7 @@ fn what_was_chosen_stays_and_a_better_generation_is_offered() {
 }
 
 #[test]
-fn a_second_start_begins_the_next_seed_and_offers_the_stopped_run() {
+fn a_second_start_opens_the_stopped_run_with_continue_and_new_run() {
     let folder = folder();
     let arguments =
         format!("--preset quick --generations 1000 --saves {}", folder.path().join("s").display());
@@ -215,10 +213,12 @@ fn a_second_start_begins_the_next_seed_and_offers_the_stopped_run() {
     studio.wait_for_title("showing generation ");
     drop(studio);
     let studio = Studio::open_following("second-start", &arguments).expect("it opened before");
-    studio.wait_for_title("seed 2 - ");
-    studio.place_with("quick, seed 1 stopped after generation ");
-    studio.click_label("Resume");
     studio.wait_for_title("seed 1 - ");
+    studio.wait_for_title("paused");
+    studio.place("Continue");
+    studio.click_label("New run");
+    studio.wait_for_title("seed 2 - ");
+    studio.wait_for_title("running");
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn a_stopped_run_can_be_resumed_from_the_list() {
     std::fs::write(&log, two).expect("written");
     let Some(studio) = Studio::open("continue", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.scroll_and_click("Button", "Resume a stopped run");
+    studio.scroll_and_click("Button", "Open an earlier run");
     let is_it = |place: &Place| place.role == "Button" && place.label.starts_with("quick, seed 7");
     studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");

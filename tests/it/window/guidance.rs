@@ -8,10 +8,10 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     const ANSWER: &str = "holds the others back";
     let Some(studio) = Studio::open("lesson", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.open_panel("World");
+    studio.open_panel("Change");
     let friction = studio.value_of("TextInput", "Friction");
     let title = studio.title();
-    studio.open_panel("Lessons");
+    studio.open_panel("Learn");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
     // The race waits at its start for a guess, and the conclusion waits until the result was seen.
@@ -23,12 +23,12 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
     studio.place_with("You guessed \"original\"");
     studio.place_with(ANSWER);
     // Opening another panel in between loses nothing.
-    studio.open_panel("World");
-    studio.open_panel("Lessons");
+    studio.open_panel("Change");
+    studio.open_panel("Learn");
     studio.place_with("You guessed \"original\"");
     studio.scroll_and_click("Button", "Back to my own run");
     studio.wait_for_title(&title);
-    studio.open_panel("World");
+    studio.open_panel("Change");
     assert_eq!(studio.value_of("TextInput", "Friction"), friction);
 }
 
@@ -36,7 +36,7 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
 fn the_fifth_lesson_repeats_a_run_bit_for_bit() {
     let Some(studio) = Studio::open("lesson-5", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.open_panel("Lessons");
+    studio.open_panel("Learn");
     studio.scroll_and_click("Button", "Begin lesson 5");
     studio.wait_for_title("showing a lesson");
     studio.scroll_and_click("Button", "The same run twice");

@@ -59,14 +59,14 @@ fn f1_keys_act_by_their_position_under_a_russian_layout() {
     studio.key("Escape");
     // A clicker's key turns the stage black.
     studio.key("F11");
-    studio.wait_for_no("Panel World");
+    studio.wait_for_no("Panel Change");
     let is_black = |picture: &Picture| picture.count(|pixel| *pixel == [0; 3]) > 100_000;
     studio.key(B);
     studio.picture_with(is_black);
     studio.key(B);
     studio.picture_with(|picture| !is_black(picture));
     studio.key("Escape");
-    studio.place("Panel World");
+    studio.place("Panel Change");
 }
 
 #[test]

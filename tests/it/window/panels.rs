@@ -12,7 +12,7 @@ fn button_and_menu_start_and_pause_a_run() {
     studio.wait_for_title("running");
     studio.choose("Run", "Start or pause evolution");
     studio.wait_for_title("paused");
-    studio.click_label("Resume");
+    studio.click_label("Continue");
     studio.wait_for_title("running");
 }
 
@@ -20,7 +20,7 @@ fn button_and_menu_start_and_pause_a_run() {
 fn a_slider_starts_a_what_if_and_can_be_undone_and_redone() {
     let Some(studio) = Studio::open("slider", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.open_panel("World");
+    studio.open_panel("Change");
     let before = studio.value_of("TextInput", "Friction");
     studio.drag_slider("Friction", 0.25);
     studio.wait_for_title("showing climber with a what-if copy");
@@ -67,6 +67,7 @@ fn search_settings_can_change_during_a_run() {
         return;
     };
     studio.wait_for_title("running");
+    studio.click_label("How it learns");
     studio.type_into("Generations", "2000");
     studio.wait_for_title("of 2000 generations, running");
     studio.place("1 setting changed during the run");
@@ -82,10 +83,10 @@ fn panels_can_be_hidden_and_shown_again() {
     studio.pause_evolution();
     let beside = studio.stage();
     studio.key("h");
-    studio.wait_for_no("Panel Run");
+    studio.wait_for_no("Panel Watch");
     let alone = studio.stage();
     assert!(alone.left == 0 && alone.width() > beside.width(), "{alone:?}");
     studio.key("h");
-    studio.place("Panel Run");
+    studio.place("Panel Watch");
     assert_eq!(studio.stage(), beside);
 }

@@ -167,7 +167,13 @@ impl Studio {
 
     /// Brings a panel to the front.
     pub fn open_panel(&self, name: &str) {
-        self.click_label(&format!("Panel {name}"));
+        let tab = format!("Panel {name}");
+        // Panels that are rarely needed open on demand.
+        if self.find(|place| place.label == tab).is_none() {
+            self.choose("Panels", name);
+        } else {
+            self.click_label(&tab);
+        }
     }
 
     /// Opens a menu and selects an entry.
@@ -196,9 +202,10 @@ impl Studio {
 
     /// Waits for a control of the upper panels that meets a condition, scrolling until it is visible.
     pub fn scrolled_to_where(&self, what: &str, is: impl Fn(&Place) -> bool) -> Place {
-        let [top, below] = ["Panel Run", "Panel Champions"].map(|tab| self.place(tab).area);
+        let top = self.place("Panel Watch").area;
+        let below = self.find(|place| place.label == "Panel Champions").map(|tab| tab.area.top);
         // In a low window all panels are side by side at full height.
-        let bottom = if below.top < top.bottom { self.size().1 } else { below.top };
+        let bottom = below.filter(|below| *below > top.bottom).unwrap_or(self.size().1);
         for _ in 0..40 {
             let place = self.place_where(what, &is);
             let is_above = place.area.top < top.bottom;

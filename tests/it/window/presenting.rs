@@ -5,7 +5,7 @@ use super::picture::Picture;
 use super::places::Place;
 
 /// A tab of the panels, which the presenting mode hides.
-const TAB: &str = "Panel World";
+const TAB: &str = "Panel Change";
 /// A button of the player, which the presenting mode hides, too.
 const PLAYER: &str = "Play from start";
 

@@ -56,7 +56,7 @@ fn main_view(studio: &Studio) {
 }
 
 fn world(studio: &Studio) {
-    studio.open_panel("World");
+    studio.open_panel("Change");
     studio.drag_slider("Friction", 0.3);
     studio.wait_for_title("what-if");
     hold(studio, 0.5);
@@ -95,7 +95,7 @@ fn library(studio: &Studio) {
 }
 
 fn lesson(studio: &Studio) {
-    studio.open_panel("Lessons");
+    studio.open_panel("Learn");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
     studio.scroll_and_click("Button", "Guess: original");

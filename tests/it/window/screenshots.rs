@@ -87,7 +87,7 @@ impl Album {
 
         studio.key("0");
         studio.wait_for_title("showing climber");
-        studio.open_panel("World");
+        studio.open_panel("Change");
         studio.drag_slider("Friction", 0.3);
         studio.wait_for_title("what-if");
         studio.key("space");
@@ -162,7 +162,7 @@ impl Album {
         studio.key("Escape");
         studio.wait_for_no("Keyboard and mouse");
 
-        studio.open_panel("Lessons");
+        studio.open_panel("Learn");
         studio.click_label("Begin lesson 1");
         studio.wait_for_title("showing a race of 3");
         // The race waits for a guess.

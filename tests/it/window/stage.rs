@@ -77,7 +77,7 @@ fn a_race_starts_by_key_or_click_and_ends_by_key() {
 fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
     let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.open_panel("World");
+    studio.open_panel("Change");
     studio.scroll_and_click("CheckBox", "The ground has its own surface");
     studio.wait_for_title("showing climber with a what-if copy");
     studio.click_label("Discard");
@@ -96,7 +96,7 @@ fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
 fn a_change_is_tried_from_the_present_moment_on_and_copies_stay_side_by_side() {
     let Some(studio) = Studio::open("what-if-moment", "--preset quick") else { return };
     studio.pause_evolution();
-    studio.open_panel("World");
+    studio.open_panel("Change");
     studio.key("0");
     studio.wait_for_title("showing climber");
     studio.seek(0.4);
