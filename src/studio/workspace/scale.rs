@@ -8,21 +8,26 @@ use snakes_core::save::UI_SCALES;
 /// would leave fewer points is not used.
 pub const LEAST_WINDOW: egui::Vec2 = egui::vec2(800.0, 480.0);
 
+/// Minimum size of the window in points at its usual scale. In a larger window, panels and their texts grow.
+const USUAL_WINDOW: egui::Vec2 = egui::vec2(1280.0, 720.0);
+
 /// Window size at which the presenting mode has the scale 1, in logical pixels.
 const PRESENTED: egui::Vec2 = egui::vec2(1000.0, 625.0);
 
-/// Scale of the panels: the user's choice and the window's limit.
+/// Scale of the panels: the usual one of the window, the user's choice and the window's limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
-    /// Scale that the user chose. It applies again when the window becomes large enough.
+    /// Factor that the user chose, relative to the usual scale. It applies again when the window becomes large enough.
     chosen: f32,
+    /// Usual scale of a window of this size.
+    usual: f32,
     /// Largest scale for which the window has room.
     largest: f32,
 }
 
 impl Default for UiScale {
     fn default() -> Self {
-        Self { chosen: 1.0, largest: UI_SCALES[UI_SCALES.len() - 1] }
+        Self { chosen: 1.0, usual: 1.0, largest: UI_SCALES[UI_SCALES.len() - 1] }
     }
 }
 
@@ -32,9 +37,12 @@ impl UiScale {
         self.chosen
     }
 
-    /// Returns the scale in use: the user's choice, or the largest scale that fits.
+    /// Returns the scale in use: the allowed one that is nearest to the user's choice, or the largest that fits.
     pub fn shown(self) -> f32 {
-        self.chosen.min(self.largest)
+        let wanted = self.usual * self.chosen;
+        let distance = |scale: &f32| (scale - wanted).abs();
+        let nearest = UI_SCALES.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.unwrap_or(1.0).min(self.largest)
     }
 
     /// Stores the user's choice.
@@ -42,13 +50,17 @@ impl UiScale {
         self.chosen = scale;
     }
 
-    /// Limits the scale to a window of this size, in logical pixels.
+    /// Adapts the scale to a window of this size, in logical pixels.
     pub fn fit(&mut self, window: egui::Vec2) {
-        let has_room = |scale: &&f32| {
-            let points = window / **scale;
-            points.x >= LEAST_WINDOW.x && points.y >= LEAST_WINDOW.y
+        let largest = |least: egui::Vec2| {
+            let has_room = |scale: &f32| {
+                let points = window / *scale;
+                points.x >= least.x && points.y >= least.y
+            };
+            UI_SCALES.into_iter().rev().find(has_room)
         };
-        self.largest = UI_SCALES.iter().rev().find(has_room).copied().unwrap_or(UI_SCALES[0]);
+        self.largest = largest(LEAST_WINDOW).unwrap_or(UI_SCALES[0]);
+        self.usual = largest(USUAL_WINDOW).unwrap_or(1.0).max(1.0);
     }
 
     /// Returns the scale of the presenting mode for a window of this size, in logical pixels. Texts take the same share
@@ -77,7 +89,8 @@ impl UiScale {
                 Err("The window is too small for larger panels. Enlarge the window first.")
             }
             Some(next) => {
-                self.chosen = *next;
+                let [smallest, .., largest] = UI_SCALES;
+                self.chosen = (next / self.usual).clamp(smallest, largest);
                 Ok(())
             }
         }
@@ -97,15 +110,34 @@ mod tests {
 
     #[test]
     fn the_scale_changes_in_steps_within_its_limits() {
-        let mut scale = fitted(3840.0, 2160.0, 1.0);
+        let mut scale = fitted(1280.0, 720.0, 1.0);
         assert_eq!(scale.change(true), Ok(()));
         assert_eq!(scale.shown(), 1.1);
         assert_eq!(scale.change(false), Ok(()));
         assert_eq!(scale.shown(), 1.0);
         while scale.change(true).is_ok() {}
-        assert_eq!(scale.shown(), UI_SCALES[UI_SCALES.len() - 1]);
+        assert_eq!(scale.shown(), 1.5, "the largest for which there is room");
         while scale.change(false).is_ok() {}
         assert_eq!(scale.shown(), UI_SCALES[0]);
+    }
+
+    #[test]
+    fn texts_grow_with_the_window_and_a_choice_is_relative_to_it() {
+        for (width, height, usual) in [
+            (800.0, 600.0, 1.0),
+            (1280.0, 720.0, 1.0),
+            (1600.0, 900.0, 1.25),
+            (1920.0, 1080.0, 1.5),
+            (3840.0, 2160.0, 2.0),
+        ] {
+            assert_eq!(fitted(width, height, 1.0).shown(), usual, "{width} x {height}");
+        }
+        let mut scale = fitted(1920.0, 1080.0, 1.0);
+        assert_eq!(scale.change(false), Ok(()));
+        assert_eq!(scale.shown(), 1.25);
+        scale.fit(egui::vec2(1280.0, 720.0));
+        assert_eq!(scale.shown(), 0.9, "smaller there, too");
+        assert!((0.75..=2.0).contains(&scale.chosen()));
     }
 
     #[test]
