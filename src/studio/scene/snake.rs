@@ -46,6 +46,7 @@ struct Trim {
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Shapes>()
+        .init_resource::<StageMode>()
         .init_resource::<Trim>()
         .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
@@ -192,7 +193,6 @@ mod tests {
             .init_resource::<Assets<SkinnedMeshInverseBindposes>>()
             .init_resource::<Props>()
             .init_resource::<LaneColors>()
-            .init_resource::<StageMode>()
             .add_plugins(plugin);
         for lane in [lane(0), lane(1).into_ghost()] {
             app.world_mut().spawn((Transform::default(), Visibility::default(), lane));

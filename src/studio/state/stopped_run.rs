@@ -38,7 +38,7 @@ fn open(
         return;
     }
     let own = run.next_plan();
-    let is_plain = run.preset_settings() == Some(&own.settings);
+    let is_plain = run.presets().settings_of(&own.preset) == Some(&own.settings);
     let is_alike = |of: &RunSummary| {
         of.plan.preset == own.preset && (is_plain || of.plan.settings == own.settings)
     };

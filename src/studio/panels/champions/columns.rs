@@ -10,6 +10,7 @@ use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::Thumbnail;
+use snakes_core::score::Fitness;
 
 /// Widths of the columns for fitness, time and energy, in points.
 const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
@@ -40,8 +41,11 @@ pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
         LandingTime::None => "-".to_owned(),
         LandingTime::Pending => "…".to_owned(),
     };
-    // The column has no room for the word, which the tooltip has.
-    let score = champion.score().trim_start_matches("share ").to_owned();
+    // The column has no room for the words, which the tooltip has.
+    let score = match (champion.trial.fitness, champion.evaluation.fitness) {
+        (Fitness::Share, share) => format!("{:.1} %", 100.0 * share),
+        _ => champion.score(),
+    };
     [score, time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 

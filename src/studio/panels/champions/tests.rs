@@ -109,7 +109,7 @@ fn a19_texts_of_a_row_do_not_overlap_and_the_highest_stairs_are_not_called_the_b
     }
     reports[1].champion.as_mut().expect("healthy").trial.stairs.rise_m = PerPart::All(0.7);
     let panel = panel(&[], &reports);
-    assert!(shows(&panel, "Generation 149, highest, 0.892, "));
+    assert!(shows(&panel, "Generation 149, highest, 89.2 %, "));
     let row = panel.get_by_label_contains("Generation 149").rect();
     let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
         egui::Shape::Text(text) if row.contains(text.pos) => {

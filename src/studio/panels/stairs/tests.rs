@@ -209,7 +209,7 @@ fn stairs_are_saved_under_a_suggested_name() {
 #[test]
 fn building_codes_are_compared_in_words() {
     let window = editing(&house(), theme::PANEL_WIDTH);
-    assert!(shows(&window, "32°, 175 × 280 mm"));
+    assert!(shows(&window, "175 × 280 mm, 32° steep"));
     assert_eq!(window.query_all_by_label("rises and treads allowed").count(), 3);
     let steep = Stairs { rise_m: 0.7.into(), ..house() };
     let window = editing(&steep, theme::PANEL_WIDTH);

@@ -118,7 +118,7 @@ impl WorldPanel {
     ) {
         ui.add_space(theme::GAP / 2.0);
         let header = egui::CollapsingHeader::new(title_text(section.title))
-            .default_open(OPEN_AT_FIRST.contains(&section));
+            .default_open(FIRST.contains(&section));
         folded(ui, header, section.about, |ui| {
             if section == Trial::GROUND {
                 ground_switch(ui, run, commands);
@@ -169,10 +169,8 @@ impl WorldPanel {
     }
 }
 
-/// Sections above the fold.
+/// Sections above the fold, which are open at first.
 const FIRST: [Section; 4] = [Trial::SURFACE, Trial::GROUND, AgentSettings::JOINTS, Stairs::SECTION];
-/// Sections that are unfolded when the panel is shown for the first time.
-const OPEN_AT_FIRST: [Section; 3] = [Trial::SURFACE, AgentSettings::JOINTS, Stairs::SECTION];
 /// Setting that is drawn above all sections.
 const GRAVITY: &str = "trial.physics.gravity_m_s2";
 /// Key and name of the fold with the other sections.
@@ -383,7 +381,7 @@ mod tests {
             for unused in ["XCS", "Hidden neurons"] {
                 let last = harness.query_all_by_label(unused).map(|of| of.rect().top());
                 let last = last.fold(f32::MAX, f32::min);
-                let damping = harness.get_by_label("Joint damping, N·m·s/rad").rect().top();
+                let damping = top("Joint damping, N·m·s/rad").expect("a setting in use");
                 assert!(last > damping, "{unused}: {last}");
             }
         });
@@ -422,7 +420,7 @@ mod tests {
         }
         for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 600.0, 900.0] {
             sent_at(&run, width, &UndoHistory::default(), |harness| {
-                for title in ["Body", "Joints", "Repeated trials", "Disqualification"] {
+                for title in [ADVANCED, "Body", "Repeated trials", "Disqualification"] {
                     harness.get_by_label(title).click();
                     harness.run();
                 }

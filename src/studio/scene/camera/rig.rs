@@ -64,21 +64,6 @@ impl CameraRig {
         }
     }
 
-    /// Restores an earlier mode and view after the presenting mode has moved the camera. If the number of lanes has
-    /// changed between one and several, only the mode is restored, because the view would not suit them.
-    pub fn restore(&mut self, before: &Self) {
-        self.take(before.camera_mode);
-        let is_free = before.camera_mode == CameraMode::Free;
-        if !is_free && (before.lanes > 1) != (self.lanes > 1) {
-            return;
-        }
-        (self.view, self.shown, self.lane) = (before.view, before.view, before.lane);
-        if is_free {
-            // A free camera returns to its position. A following camera starts at its snake.
-            self.anchor = before.anchor;
-        }
-    }
-
     /// Turns the view about the vertical axis, in radians.
     pub fn turn_by(&mut self, yaw_rad: f32) {
         self.view.yaw_rad += yaw_rad;
@@ -130,33 +115,6 @@ impl CameraRig {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_free_camera_comes_back_to_its_place() {
-        let mut rig = CameraRig { anchor: Some(Vec3::new(0.0, -7.0, 0.5)), ..CameraRig::default() };
-        rig.take(CameraMode::Free);
-        rig.view.yaw_rad = 0.3;
-        rig.shown = rig.view;
-        let (before, place) = (rig.clone(), rig.place());
-        rig.take(CameraMode::Follow);
-        rig.anchor = Some(Vec3::new(0.0, 20.0, 5.0));
-        rig.restore(&before);
-        assert_eq!((rig.place(), rig.camera_mode()), (place, CameraMode::Free));
-        assert!(!rig.follows);
-    }
-
-    #[test]
-    fn a_turned_camera_follows_again_with_the_same_view_unless_other_lanes_are_on_stage() {
-        let mut rig = CameraRig::default();
-        rig.view.yaw_rad = 0.3;
-        let before = rig.clone();
-        rig.take(CameraMode::Follow);
-        rig.restore(&before);
-        assert_eq!(rig.view, before.view);
-        rig.lanes = 3;
-        rig.restore(&before);
-        assert_eq!(rig.view, CameraView::of(CameraMode::Follow, 3));
-    }
 
     #[test]
     fn a_view_turned_by_hand_is_no_longer_the_one_from_the_side_or_from_above() {

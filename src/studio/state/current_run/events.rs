@@ -4,7 +4,6 @@ use bevy::prelude::*;
 
 use super::live_changes::{news_of, refusal_in_words};
 use super::{CurrentRun, RunStatus};
-use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::ExistingRun;
 use snakes_lab::run::{OpenedRun, RunEvent};
@@ -16,12 +15,8 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Starts evolution together with the program, unless a stopped run may be opened instead.
-fn start_at_once(
-    mut run: ResMut<CurrentRun>,
-    context: Res<RunContext>,
-    mut notices: ResMut<Notices>,
-) {
-    if !context.offers_stopped_run {
+fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if !run.context.offers_stopped_run {
         notices.problems(run.start().err());
     }
 }
@@ -105,6 +100,7 @@ mod tests {
     use crate::studio::schedule::RESULTS_HZ;
     use crate::studio::state::current_run::{prepared_run, small_run};
     use crate::studio::state::options::Options;
+    use crate::studio::state::run_context::RunContext;
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
     use snakes_core::schema::SettingValue;

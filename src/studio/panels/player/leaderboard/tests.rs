@@ -98,7 +98,7 @@ fn the_leaderboard_is_narrower_over_a_narrow_stage() {
     let lanes = [climber_lane(0, "one")];
     let width = |is_narrow| {
         let board = board(&lanes, StageMode::Race, 0.0, is_narrow);
-        let [name, value] = ["one", " m"].map(|label| board.get_by_label_contains(label));
+        let (name, value) = (board.get_by_label("one"), board.get_by_label_contains(" m"));
         value.rect().right() - name.rect().left()
     };
     assert!(width(true) + 30.0 < width(false), "{} of {}", width(true), width(false));
