@@ -89,16 +89,19 @@ fn excursions() -> Vec<(&'static str, Command, Command)> {
     let leave = Command::Stage(StageCommand::Leave);
     let present = Command::Window(WindowCommand::TogglePresenting);
     let watch = ExamCommand::Watch { suite: ExamSuite::Stairs, cell: 12 };
+    let sweep = StageCommand::Sweep("trial.surface.friction".to_owned());
+    let (learn, end) = (LessonCommand::Begin(0), LessonCommand::Leave);
+    let back = ExamCommand::BackToOwnStairs;
     vec![
-        (Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned())), leave.clone()),
-        (Command::Stage(StageCommand::RaceStairs), leave.clone()),
-        (Command::Stage(StageCommand::RaceGenerations), leave.clone()),
-        (Command::Stage(StageCommand::Single), leave),
-        (set("0.31"), Command::Plan(PlanCommand::DropChange)),
-        (set("0.32"), Command::Undo),
-        (Command::Lesson(LessonCommand::Begin(0)), Command::Lesson(LessonCommand::Leave)),
-        (present.clone(), present),
-        (Command::Exam(watch), Command::Exam(ExamCommand::BackToOwnStairs)),
+        ("race", Command::Stage(sweep), leave.clone()),
+        ("race", Command::Stage(StageCommand::RaceStairs), leave.clone()),
+        ("race", Command::Stage(StageCommand::RaceGenerations), leave.clone()),
+        ("snake", Command::Stage(StageCommand::Single), leave),
+        ("what-if", set("0.31"), Command::Plan(PlanCommand::DropChange)),
+        ("what-if", set("0.32"), Command::Undo),
+        ("lesson", Command::Lesson(learn), Command::Lesson(end)),
+        ("presenting", present.clone(), present),
+        ("exam", Command::Exam(watch), Command::Exam(back)),
     ]
 }
 
