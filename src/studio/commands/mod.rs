@@ -259,11 +259,11 @@ pub(super) enum WindowCommand {
     },
     /// Reset the UI scale to 1.
     ResetScale,
-    /// Remember whether the advanced settings of a section are unfolded.
-    FoldAdvanced {
-        /// Title of the section.
+    /// Remember whether a fold is open.
+    Fold {
+        /// Key of the fold, such as the title of a section.
         section: &'static str,
-        /// Whether the advanced settings are unfolded.
+        /// Whether the fold is open.
         is_open: bool,
     },
     /// Open a modal view, or close it if it is open.

@@ -70,7 +70,7 @@ use machines::MachinesPanel;
 use on_stage::OnStage;
 use player::cards::{CardSituation, around_stage, lesson_card};
 use player::presented_caption::{PresentedCaption, caption_band};
-use player::timeline::{TimelinePanel, TimelineSpan};
+use player::timeline::{TORQUES, TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
@@ -201,6 +201,7 @@ fn draw(
     if let Some(label) = workspace.sought.take() {
         panels.world.set_search(label);
     }
+    panels.timeline.shows_torques = workspace.unfolded.contains(TORQUES);
     let mut viewer = Viewer {
         small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,

@@ -139,7 +139,7 @@ pub const LIMB_CARD_WIDTH: f32 = 284.0;
 /// Font size of a name tag, in points.
 pub const TAG_SIZE: f32 = 13.0;
 /// Height of a chart, in points.
-pub const CHART_HEIGHT: f32 = 170.0;
+pub const CHART_HEIGHT: f32 = 140.0;
 /// Minimum height of a chart, in points.
 pub const MIN_CHART_HEIGHT: f32 = 80.0;
 /// Minimum height of a chart in the charts panel, and height of a lesson's chart, in points.

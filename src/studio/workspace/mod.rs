@@ -100,10 +100,10 @@ impl Workspace {
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
-            WindowCommand::FoldAdvanced { section, is_open: true } => {
+            WindowCommand::Fold { section, is_open: true } => {
                 self.unfolded.insert((*section).to_owned());
             }
-            WindowCommand::FoldAdvanced { section, is_open: false } => {
+            WindowCommand::Fold { section, is_open: false } => {
                 self.unfolded.remove(*section);
             }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),

@@ -42,7 +42,9 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
         Command::Stage(ToggleFollowEvolution | TellStory)
         | Command::Plan(PlanCommand::StartFromSave(_)) => Effect::Forget,
         Command::Stage(Leave) => {
-            way.innermost().map_or(Effect::None, |(innermost, _)| Effect::Leave(innermost))
+            // Lessons and presentations end by commands of their own.
+            let innermost = way.innermost().filter(|_| way.can_leave());
+            innermost.map_or(Effect::None, |(innermost, _)| Effect::Leave(innermost))
         }
         Command::Plan(PlanCommand::DropChange) | Command::Undo | Command::Redo
             if is_what_if(from) && shown.is_some_and(|mode| !is_what_if(mode)) =>

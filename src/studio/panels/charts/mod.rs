@@ -195,7 +195,6 @@ impl FitnessChart {
             self.known = Some((version, fitness::view(run.settings(), run.reports())));
         }
         let Some((_, view)) = &self.known else { return };
-        header(ui, &view.figure, (ChartKind::Fitness, true), commands);
         draw::draw(ui, "fitness alone", view, height, shown, commands);
     }
 }

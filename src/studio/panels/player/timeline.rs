@@ -2,8 +2,8 @@
 
 use bevy_egui::egui;
 
-use super::torque_strip::TorqueStrip;
-use crate::studio::commands::{Command, PlayerCommand, StageCommand};
+use super::torque_strip::{THIN, TorqueStrip};
+use crate::studio::commands::{Command, PlayerCommand, StageCommand, WindowCommand};
 use crate::studio::panels::own_stairs_button::own_stairs_button;
 use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
@@ -42,7 +42,12 @@ impl TimelineSpan {
 #[derive(Default)]
 pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
+    /// Whether the strip has a row with the torques of each joint.
+    pub shows_torques: bool,
 }
+
+/// Key under which the choice of the torques is remembered.
+pub(crate) const TORQUES: &str = "Torques of the player";
 
 /// Width of the button that lists further readings, in points.
 const MORE_WIDTH: f32 = 40.0;
@@ -68,9 +73,14 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
             player(ui, playback, span.end_s, commands);
+            let button = egui::Button::selectable(self.shows_torques, "Torques");
+            let hint = "Show the torques of each joint over time";
+            let is_open = !self.shows_torques;
+            let fold = WindowCommand::Fold { section: TORQUES, is_open };
+            CommandButton::of(button, hint, Command::Window(fold)).show(ui, commands);
             at_right(ui, |ui| readings(ui, lane));
         });
-        let height = theme::TORQUE_STRIP_HEIGHT;
+        let height = if self.shows_torques { theme::TORQUE_STRIP_HEIGHT } else { THIN };
         let moment = self.torque_strip.ui(ui, lane, playback.time_s(), span, height);
         commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }

@@ -42,6 +42,8 @@ const COLUMN_WIDTH: f32 = 2.0;
 const RULER_HEIGHT: f32 = 11.0;
 /// Height of the band with the marks of the climb, in points.
 const MARKS_HEIGHT: f32 = 12.0;
+/// Height of the strip without torques, in points.
+pub(super) const THIN: f32 = MARKS_HEIGHT + RULER_HEIGHT + 3.0;
 /// Vertical margin of a row, in points.
 const ROW_MARGIN: f32 = 1.5;
 /// Width of the names of the joints beside a wide strip and beside a narrow one, in points.
@@ -50,7 +52,7 @@ const NAMES_WIDTH: [f32; 2] = [82.0, 42.0];
 const WIDE: f32 = 480.0;
 
 impl TorqueStrip {
-    /// Draws the strip in the available width, with its legend above. Returns the time that was clicked or dragged to,
+    /// Draws the strip in the available width, with its legend above unless the height is [`THIN`]. Returns the time that was clicked or dragged to,
     /// in simulated seconds.
     pub fn ui(
         &mut self,
@@ -61,8 +63,12 @@ impl TorqueStrip {
         height: f32,
     ) -> Option<f64> {
         let is_wide = ui.available_width() >= WIDE;
-        legend(ui, &lane.body().joints);
-        let names_width = NAMES_WIDTH[usize::from(!is_wide)];
+        // A thin bar has the marks of the climb only.
+        let has_torques = height > THIN;
+        if has_torques {
+            legend(ui, &lane.body().joints);
+        }
+        let names_width = if has_torques { NAMES_WIDTH[usize::from(!is_wide)] } else { 0.0 };
         let size = egui::vec2(ui.available_width(), height);
         let (whole, _) = ui.allocate_exact_size(size, egui::Sense::hover());
         let rect = Rect::from_min_max(whole.min + egui::vec2(names_width, 0.0), whole.max);
@@ -90,19 +96,24 @@ impl TorqueStrip {
         painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
         let of_whole = Rect::from_x_y_ranges(whole.left()..=plot.left(), plot.y_range());
-        names(ui, of_whole, lane.body(), is_wide);
+        if has_torques {
+            names(ui, of_whole, lane.body(), is_wide);
+        }
         let mut climb = Vec::new();
         match lane.history() {
             Some(history) => {
                 let drawn = self.drawn(history, lane, plot, end_s, ui.visuals().dark_mode);
                 let seen = if hides_future { played } else { rect };
                 let seen = painter.with_clip_rect(seen.intersect(painter.clip_rect()));
-                seen.extend(drawn.shapes.iter().cloned());
+                if has_torques {
+                    seen.extend(drawn.shapes.iter().cloned());
+                }
                 // A snake that was pulled does not climb as in its undisturbed rollout.
                 if !lane.is_disturbed() {
                     climb.clone_from(&drawn.events);
                 }
             }
+            None if !has_torques => climb = events(lane),
             None => {
                 climb = events(lane);
                 let text = match lane.lookahead_share() {

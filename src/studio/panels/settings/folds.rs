@@ -92,7 +92,7 @@ impl Sheet {
                 self.folds.open.insert(section.to_owned());
             }
             let is_open = !is_open;
-            self.sent.push(Command::Window(WindowCommand::FoldAdvanced { section, is_open }));
+            self.sent.push(Command::Window(WindowCommand::Fold { section, is_open }));
         }
         is_open
     }
@@ -139,7 +139,7 @@ mod tests {
         panel.run();
         assert!(!shows(&panel, "Creep"));
         let command =
-            |is_open| Command::Window(WindowCommand::FoldAdvanced { section: "Surface", is_open });
+            |is_open| Command::Window(WindowCommand::Fold { section: "Surface", is_open });
         assert_eq!(panel.state().1, [command(true), command(false)]);
     }
 

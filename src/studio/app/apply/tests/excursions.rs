@@ -22,6 +22,7 @@ struct Seen {
     selected: (usize, Option<usize>),
     follows: bool,
     friction: f32,
+    is_presenting: bool,
 }
 
 fn seen(app: &mut App) -> Seen {
@@ -40,6 +41,7 @@ fn seen(app: &mut App) -> Seen {
         selected: (selection.lane, selection.limb),
         follows: world.resource::<Following>().follows_evolution(),
         friction: world.resource::<CurrentRun>().next_settings().trial.surface.friction,
+        is_presenting: world.resource::<Workspace>().is_presenting(),
     }
 }
 
@@ -124,6 +126,7 @@ fn differences(a: &Seen, b: &Seen) -> Vec<&'static str> {
         ("selection", a.selected == b.selected),
         ("following", a.follows == b.follows),
         ("friction", a.friction == b.friction),
+        ("presenting", a.is_presenting == b.is_presenting),
     ];
     fields.into_iter().filter(|(_, is_alike)| !is_alike).map(|(name, _)| name).collect()
 }
