@@ -34,6 +34,19 @@ fn pressed(name: &str) -> (Key, Held) {
 }
 
 #[test]
+fn a7_at_the_end_of_a_run_its_key_begins_no_other() {
+    let finished = Situation { is_finished: true, ..Situation::default() };
+    let sent = command(&character("e"), NONE, finished);
+    assert!(matches!(sent, Some(Command::Notify(_))), "{sent:?}");
+}
+
+#[test]
+fn a14_the_key_for_a_new_run_begins_one() {
+    let sent = command(&character("n"), CONTROL, Situation::default());
+    assert_eq!(sent, Some(Command::Run(RunCommand::New)));
+}
+
+#[test]
 fn every_shortcut_triggers_its_action() {
     let situation =
         Situation { can_leave: true, can_undo: true, can_redo: true, ..Situation::default() };

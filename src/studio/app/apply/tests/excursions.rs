@@ -165,3 +165,18 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
         }
     }
 }
+
+#[test]
+fn a5_a6_one_snake_of_a_crowd_keeps_its_moment_and_leads_back_to_the_crowd() {
+    let mut app = studio();
+    send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
+    settle(&mut app);
+    let crowd = seen(&mut app);
+    send(&mut app, &Command::Stage(StageCommand::Single));
+    let alone = seen(&mut app);
+    assert_eq!((alone.labels.len(), &alone.mode), (1, &StageMode::Solo));
+    assert_eq!((alone.time_s, alone.is_playing), (0.5, false), "where the crowd stood");
+    assert_eq!(alone.poses[0], crowd.poses[0]);
+    send(&mut app, &Command::Stage(StageCommand::Leave));
+    assert_eq!(differences(&seen(&mut app), &crowd), Vec::<&str>::new());
+}
