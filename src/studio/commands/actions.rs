@@ -304,8 +304,9 @@ fn camera_rows() -> [ActionRow; 5] {
 }
 
 /// Returns the other rows of the view menu.
-fn window_rows() -> [ActionRow; 7] {
+fn window_rows() -> [ActionRow; 8] {
     [
+        ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
         ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
         ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
         (

@@ -259,6 +259,8 @@ pub(super) enum WindowCommand {
     },
     /// Reset the UI scale to 1.
     ResetScale,
+    /// Show or hide the torques of each joint over time, in the player.
+    ToggleTorques,
     /// Remember whether a fold is open.
     Fold {
         /// Key of the fold, such as the title of a section.

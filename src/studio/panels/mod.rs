@@ -34,9 +34,9 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use egui_dock::DockArea;
 
-use super::commands::Command;
 use super::commands::actions::Situation;
 use super::commands::modal::Modal;
+use super::commands::{Command, WindowCommand};
 use super::stage::lane::Lane;
 use super::stage::opening::OpeningChampions;
 use super::stage::staged_champion::ChampionSource;
@@ -70,7 +70,7 @@ use machines::MachinesPanel;
 use on_stage::OnStage;
 use player::cards::{CardSituation, around_stage, lesson_card};
 use player::presented_caption::{PresentedCaption, caption_band};
-use player::timeline::{TORQUES, TimelinePanel, TimelineSpan};
+use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
@@ -201,7 +201,7 @@ fn draw(
     if let Some(label) = workspace.sought.take() {
         panels.world.set_search(label);
     }
-    panels.timeline.shows_torques = workspace.unfolded.contains(TORQUES);
+    panels.timeline.shows_torques = workspace.shows_torques();
     let mut viewer = Viewer {
         small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,
@@ -223,7 +223,11 @@ fn draw(
     } else {
         let frame = bar_frame(theme::of_context(&context), theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(frame).show(&mut root, |ui| {
-            let is_on = |command: &Command| on_stage.is_on(command, *data.theme);
+            let shows_torques = workspace.shows_torques();
+            let is_on = |command: &Command| match command {
+                Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
+                _ => on_stage.is_on(command, *data.theme),
+            };
             let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.seed());
             let share = data.shares.progress();
             let right = (about.as_str(), share.as_ref());
@@ -246,7 +250,8 @@ fn draw(
             let is_touring = matches!(workspace.modal(), Some(Modal::Tour(_)));
             let (theme, progress) = (*data.theme, data.run.progress());
             let messages = area.messages_size();
-            let of = CardSituation { theme, progress, is_touring, messages };
+            let shows_torques = workspace.shows_torques();
+            let of = CardSituation { theme, progress, is_touring, messages, shows_torques };
             let around = around_stage(&context, stage, on_stage, &lanes, lane, &of, &mut commands);
             (cards, messages_room) = (around.cards, around.messages_room);
             let is_in_sight =

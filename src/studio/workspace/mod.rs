@@ -17,6 +17,9 @@ use super::state::options::OpenedComparison;
 use layout::Layout;
 use scale::UiScale;
 
+/// Key under which the choice to show torques over time is remembered.
+const TORQUES: &str = "Torques of the player";
+
 /// State of the window: panel layout, UI scale, modal view.
 #[derive(Resource, Debug)]
 pub(super) struct Workspace {
@@ -66,6 +69,11 @@ impl Workspace {
         self.modal.filter(|modal| !self.is_presenting || !matches!(modal, Modal::Tour(_)))
     }
 
+    /// Returns whether the player shows the torques of each joint over time.
+    pub fn shows_torques(&self) -> bool {
+        self.unfolded.contains(TORQUES)
+    }
+
     /// Returns whether the stage is presented in full screen: without panels and cards, under a large caption.
     pub fn is_presenting(&self) -> bool {
         self.is_presenting
@@ -105,6 +113,11 @@ impl Workspace {
             }
             WindowCommand::Fold { section, is_open: false } => {
                 self.unfolded.remove(*section);
+            }
+            WindowCommand::ToggleTorques => {
+                if !self.unfolded.remove(TORQUES) {
+                    self.unfolded.insert(TORQUES.to_owned());
+                }
             }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
             WindowCommand::CloseModal if self.modal().is_some() => self.close_modal(),

@@ -6,7 +6,7 @@ use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
-use crate::studio::commands::{Command, ViewCommand};
+use crate::studio::commands::{Command, ViewCommand, WindowCommand};
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::theme::Theme;
@@ -16,7 +16,7 @@ pub(crate) fn view_bar(
     ui: &mut egui::Ui,
     camera_mode: CameraMode,
     overlays: &Overlays,
-    has_smooth_edges: bool,
+    [has_smooth_edges, shows_torques]: [bool; 2],
     theme: Theme,
     commands: &mut Vec<Command>,
 ) {
@@ -45,6 +45,9 @@ pub(crate) fn view_bar(
                 command_box(ui, is_shown, words, toggle, commands);
             }
             ui.separator();
+            let hint = "Torques of each joint over the whole trial, below the player";
+            let (words, toggle) = (("Torques over time", hint), WindowCommand::ToggleTorques);
+            command_box(ui, shows_torques, words, Command::Window(toggle), commands);
             let hint = "Smooth edges with four samples per pixel; slow without a graphics card";
             let (words, toggle) = (("Anti-aliasing", hint), ViewCommand::ToggleSmoothEdges);
             command_box(ui, has_smooth_edges, words, Command::View(toggle), commands);
@@ -76,7 +79,7 @@ mod tests {
         ] {
             let mut bar = panel([800.0, 600.0], |ui, commands| {
                 let overlays = Overlays::default();
-                view_bar(ui, CameraMode::Follow, &overlays, false, Theme::Light, commands);
+                view_bar(ui, CameraMode::Follow, &overlays, [false; 2], Theme::Light, commands);
             });
             assert_eq!(clicked(&mut bar, label), [command], "{label}");
         }

@@ -72,6 +72,8 @@ pub(crate) struct CardSituation {
     pub is_touring: bool,
     /// Size of the messages in the last frame, in points.
     pub messages: egui::Vec2,
+    /// Whether the player shows the torques of each joint over time.
+    pub shows_torques: bool,
 }
 
 /// Draws the cards over the edges of the stage.
@@ -99,7 +101,7 @@ pub(crate) fn around_stage(
                 ui,
                 on_stage.rig.camera_mode(),
                 &on_stage.overlays,
-                is_smooth,
+                [is_smooth, situation.shows_torques],
                 situation.theme,
                 commands,
             );

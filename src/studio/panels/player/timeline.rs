@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use super::torque_strip::{THIN, TorqueStrip};
-use crate::studio::commands::{Command, PlayerCommand, StageCommand, WindowCommand};
+use crate::studio::commands::{Command, PlayerCommand, StageCommand};
 use crate::studio::panels::own_stairs_button::own_stairs_button;
 use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
@@ -46,9 +46,6 @@ pub(crate) struct TimelinePanel {
     pub shows_torques: bool,
 }
 
-/// Key under which the choice of the torques is remembered.
-pub(crate) const TORQUES: &str = "Torques of the player";
-
 /// Width of the button that lists further readings, in points.
 const MORE_WIDTH: f32 = 40.0;
 /// Minimum width of a truncated sentence, in points: enough for "disqualified".
@@ -73,11 +70,6 @@ impl TimelinePanel {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
             player(ui, playback, span.end_s, commands);
-            let button = egui::Button::selectable(self.shows_torques, "Torques");
-            let hint = "Show the torques of each joint over time";
-            let is_open = !self.shows_torques;
-            let fold = WindowCommand::Fold { section: TORQUES, is_open };
-            CommandButton::of(button, hint, Command::Window(fold)).show(ui, commands);
             at_right(ui, |ui| readings(ui, lane));
         });
         let height = if self.shows_torques { theme::TORQUE_STRIP_HEIGHT } else { THIN };

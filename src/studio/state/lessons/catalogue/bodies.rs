@@ -33,8 +33,8 @@ pub(super) const PROTECTION: Lesson = Lesson {
             label: "With and without protection",
             preset: "bodies",
             question: later_bodies(
-                "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait improves, \
-                 even a little further. Other seeds may differ.",
+                "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait improves. \
+                 Other seeds may differ.",
             ),
             runs: &[
                 run("with protection", 1, 1, &PROTECTED),
