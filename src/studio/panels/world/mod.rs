@@ -355,7 +355,7 @@ mod tests {
             for unused in ["XCS", "Hidden neurons"] {
                 let last = harness.query_all_by_label(unused).map(|of| of.rect().top());
                 let last = last.fold(f32::MAX, f32::min);
-                let damping = harness.get_by_label("Joint damping, N·m·s/rad").rect().top();
+                let damping = top("Joint damping, N·m·s/rad").expect("a setting");
                 assert!(last > damping, "{unused}: {last}");
             }
         });
