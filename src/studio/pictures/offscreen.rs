@@ -1,6 +1,7 @@
 //! Renders the studio's scene to a picture, without a window.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -47,6 +48,8 @@ pub(crate) struct Offscreen {
 #[derive(Resource, Default)]
 struct FinishedPictures(Mutex<BTreeMap<u64, Option<Picture>>>);
 
+/// Whether the messages of this process have a log.
+static HAS_LOG: AtomicBool = AtomicBool::new(false);
 /// Number of frames after which uploads have finished and a picture is complete.
 const FRAMES: u32 = 4;
 /// Maximum number of frames to wait for pipelines that are still compiling.
@@ -80,24 +83,27 @@ impl Offscreen {
     }
 
     fn new((width, height): (u32, u32), theme: Theme) -> Self {
+        let mut plugins = DefaultPlugins
+            .set(WindowPlugin {
+                primary_window: None,
+                exit_condition: ExitCondition::DontExit,
+                ..default()
+            })
+            // Each frame waits until all pipelines are compiled.
+            .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+            .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
+            .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
+            // Its handler of the interrupt key would ask an event loop to end, which does not run here.
+            .disable::<TerminalCtrlCHandlerPlugin>()
+            .disable::<WinitPlugin>()
+            .disable::<PipelinedRenderingPlugin>();
+        if HAS_LOG.swap(true, Ordering::Relaxed) {
+            // A second film in a smaller size would report that there is a log already.
+            plugins = plugins.disable::<LogPlugin>();
+        }
         let mut app = App::new();
         app.insert_resource(theme)
-            .add_plugins(
-                DefaultPlugins
-                    .set(WindowPlugin {
-                        primary_window: None,
-                        exit_condition: ExitCondition::DontExit,
-                        ..default()
-                    })
-                    // Each frame waits until all pipelines are compiled.
-                    .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
-                    .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
-                    .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
-                    // Its handler of the interrupt key would ask an event loop to end, which does not run here.
-                    .disable::<TerminalCtrlCHandlerPlugin>()
-                    .disable::<WinitPlugin>()
-                    .disable::<PipelinedRenderingPlugin>(),
-            )
+            .add_plugins(plugins)
             .configure_sets(
                 Update,
                 (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),

@@ -99,10 +99,11 @@ impl LibraryPanel {
                 self.order.rows().iter().map(|row| library.items()[*row].place()).collect();
             self.selection.retain(|place| shown.contains(place));
         }
-        // The details of a selected save take no more than a part of the list; they scroll instead.
+        // The details of a selected save leave a part of the panel to the rows of the list; they scroll instead.
         let rest = available - above - self.details_height;
-        let height = rest.max(available * theme::LEAST_LIST_SHARE).floor();
-        self.list(ui, library, height);
+        let rows = (self.order.rows().len() as f32 + 0.5) * theme::LIBRARY_ROW_HEIGHT;
+        let least = rows.min(available * theme::LEAST_LIST_SHARE);
+        self.list(ui, library, rest.max(least).floor());
         let details = egui::ScrollArea::vertical().id_salt("details").auto_shrink([false, true]);
         let footer = details.show(ui, |ui| self.footer(ui, library));
         self.details_height = footer.content_size.y;
