@@ -16,7 +16,7 @@ use crate::studio::ui::theme;
 use snakes_core::schema::NumberRange;
 
 /// Width of the switch between a single value and one value per part, in points.
-const SWITCH_WIDTH: f32 = 52.0;
+const SWITCH_WIDTH: f32 = 72.0;
 
 /// A control for the text of one value.
 pub(super) struct Control<'a> {
@@ -258,7 +258,7 @@ fn number_name(
         } else {
             format!("Set each {of_what} separately")
         };
-        let switch = ui.selectable_label(is_each, "each").on_hover_text(hint);
+        let switch = ui.selectable_label(is_each, format!("per {of_what}")).on_hover_text(hint);
         let said = format!("{}: {of_what} by {of_what}", shown.setting.label);
         let kind = egui::WidgetType::SelectableLabel;
         if named_selected(switch, kind, is_each, &said).clicked() {
