@@ -319,7 +319,9 @@ fn a_stopped_run_can_be_resumed_from_the_list() {
     let two: String = text.split_inclusive('\n').take(2).collect();
     std::fs::write(&log, two).expect("written");
     let Some(studio) = Studio::open("continue", &arguments) else { return };
-    studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
+    studio.wait_for_title("seed 7 - 2 of 4 generations, paused");
+    studio.click_label("New run");
+    studio.wait_for_title("seed 8 - 4 of 4 generations, finished");
     studio.scroll_and_click("Button", "Open an earlier run");
     let is_it = |place: &Place| place.role == "Button" && place.label.starts_with("quick, seed 7");
     studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());

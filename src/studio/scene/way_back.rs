@@ -86,6 +86,14 @@ impl WayBack {
         self.0.drain(index..).next().map(|(_, scene)| scene)
     }
 
+    /// Ends all excursions within the innermost one of a kind, and makes that one of another kind.
+    pub fn turn(&mut self, excursion: Excursion, into: Excursion) {
+        if let Some(index) = self.0.iter().rposition(|(of, _)| *of == excursion) {
+            self.0.truncate(index + 1);
+            self.0[index].0 = into;
+        }
+    }
+
     /// Forgets all scenes back to the innermost lesson or presentation, because the stage shows something new.
     pub fn forget(&mut self) {
         let kept = self.0.iter().rposition(|(excursion, _)| excursion.is_frame());

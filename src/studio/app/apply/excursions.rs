@@ -109,6 +109,14 @@ impl StageParams<'_, '_> {
         let mode = shown.as_ref().map(|show| &show.mode);
         let (presents, teaches) = (Excursion::Presenting, Excursion::Lesson);
         let effect = match (before, after) {
+            // A lesson ends a presentation, and returns to the scene before it.
+            (
+                Frames { is_presenting: true, .. },
+                Frames { is_presenting: false, is_lesson: true },
+            ) => {
+                self.way_back.turn(presents, teaches);
+                Effect::None
+            }
             (Frames { is_presenting: false, .. }, Frames { is_presenting: true, .. }) => {
                 Effect::Enter(presents)
             }
