@@ -217,6 +217,12 @@ impl Studio {
         panic!("{what} could not be scrolled into sight");
     }
 
+    /// Scrolls to a fold of the upper panels and opens or closes it.
+    pub fn fold(&self, label: &str) {
+        let place = self.scrolled_to_where(label, |place| place.label == label);
+        self.click_at(place.area.middle());
+    }
+
     /// Scrolls to a control of the upper panels and clicks it.
     pub fn scroll_and_click(&self, role: &str, label: &str) {
         self.click_at(self.scrolled_to(role, label).area.middle());
