@@ -72,7 +72,7 @@ fn moments(flags: &FilmArgs, longest_s: f64) -> Result<[Option<f64>; 2], Invalid
     let start_s = number_if("--start", &flags.start, 0.0..=longest_s)?;
     let from_s = start_s.unwrap_or(0.0);
     let end_s = |text: &String| {
-        let end_s = text.parse().ok().filter(|end_s| *end_s > from_s && *end_s <= longest_s);
+        let end_s = text.parse::<f64>().ok().filter(|end_s| *end_s > from_s && *end_s <= longest_s);
         let allowed = || format!("more than {from_s}, at which the film starts, up to {longest_s}");
         end_s.ok_or_else(|| Invalid::new("--end", format!("{text:?}"), allowed()))
     };

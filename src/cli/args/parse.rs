@@ -71,7 +71,7 @@ fn refuse_homes(arguments: &[OsString]) -> Result<(), CliError> {
     for word in arguments.iter().skip(1) {
         let word = word.to_string_lossy();
         let flag = word.split_once('=').filter(|(flag, _)| flag.starts_with('-'));
-        let (flag, path) = flag.unwrap_or(("a path", &word));
+        let (flag, path) = flag.unwrap_or(("a path", &*word));
         if path == "~" || path.starts_with("~/") {
             let allowed = "a path that the shell has completed: write ~ at the beginning of a word and without quotes, or \
                            ./~ for a file of this name";
