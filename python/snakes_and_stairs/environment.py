@@ -187,7 +187,8 @@ class SnakesAndStairsEnv(gymnasium.Env):
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
         """Begins an episode. ``seed`` starts the random numbers of the perturbations anew; there are no options."""
-        super().reset(seed=seed)
+        # Gymnasium refuses NumPy's integers, which the vector environment and its own spaces take.
+        super().reset(seed=int(seed) if isinstance(seed, np.integer) else seed)
         if options:
             raise ValueError(f"options is {options!r}; allowed: None: this environment has none")
         seeds = np.array([draw_seed(self.np_random)], dtype=np.uint64)

@@ -216,6 +216,18 @@ def test_stairs_and_settings_change_the_world():
     assert longer.poses()[3, 1] == pytest.approx(-9)
 
 
+def test_s9_a_seed_of_numpy_is_that_of_python():
+    env = make(perturbation=True)
+    starts = []
+    for seed in (5, np.int64(5), np.uint8(5)):
+        env.reset(seed=seed)
+        starts.append(env.unwrapped.poses().tolist())
+    assert starts[0] == starts[1] == starts[2]
+    for seed in (5.0, np.float32(5), np.int64(-5)):
+        with pytest.raises(Exception, match="Seed must be"):
+            env.reset(seed=seed)
+
+
 def test_perturbations_follow_the_seed():
     env = make(perturbation={"start_m": 1.0})
     starts = []

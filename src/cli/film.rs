@@ -75,12 +75,12 @@ impl OrderedFilm {
 fn moments(flags: &FilmArgs, longest_s: f64) -> Result<[Option<f64>; 2], Invalid> {
     let start_s = number_if("--start", &flags.start, 0.0..=longest_s)?;
     let from_s = start_s.unwrap_or(0.0);
-    let end_s = number_if("--end", &flags.end, from_s..=longest_s)?;
-    if end_s.is_some_and(|end_s| end_s <= from_s) {
-        let given = flags.end.as_deref().unwrap_or_default();
-        return Err(Invalid::new("--end", given, format!("more than --start, {from_s}")));
-    }
-    Ok([start_s, end_s])
+    let end_s = |text: &String| {
+        let end_s = text.parse::<f64>().ok().filter(|end_s| *end_s > from_s && *end_s <= longest_s);
+        let allowed = || format!("more than {from_s}, at which the film starts, up to {longest_s}");
+        end_s.ok_or_else(|| Invalid::new("--end", format!("{text:?}"), allowed()))
+    };
+    Ok([start_s, flags.end.as_ref().map(end_s).transpose()?])
 }
 
 /// Returns the parts of the film: all champions side by side or, as a story, some generations in turn.

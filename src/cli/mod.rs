@@ -34,6 +34,8 @@ use std::process::ExitCode;
 
 use args::{Args, Task};
 pub use error::CliError;
+#[cfg(unix)]
+use output::survive_large_files;
 use output::{cancel_on_interrupt, print};
 
 use snakes_core::save::run_name;
@@ -43,6 +45,8 @@ use snakes_lab::run::report_panics;
 /// Runs the program with these arguments, of which the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     report_panics();
+    #[cfg(unix)]
+    survive_large_files();
     let result = args::parse(arguments).and_then(|parsed| match parsed {
         args::Parsed::Run(args, task) => dispatch(*args, &task),
         args::Parsed::Print(text) => print(&text),

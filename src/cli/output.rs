@@ -79,11 +79,21 @@ pub fn cancel_on_interrupt() -> Result<Arc<RunControl>, CliError> {
     Ok(control)
 }
 
-/// Calls `act` at each request to end the program: the interrupt key, SIGTERM and, when the terminal is closed, SIGHUP.
+/// Makes a write beyond the largest size of files (`ulimit -f`) fail with an error that can be told. By default the system ends the program
+/// without a word, and a file that is half written stays.
+#[cfg(unix)]
+pub fn survive_large_files() {
+    let flag = Arc::new(std::sync::atomic::AtomicBool::new(false));
+    // Where no handler can be set, the system does as by default.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, flag);
+}
+
+/// Calls `act` at each request to end the program: the interrupt key, SIGTERM, when the terminal is closed SIGHUP, and when the allowed
+/// time of the processor (`ulimit -St`, or a queue of a computing centre) is spent SIGXCPU.
 #[cfg(unix)]
 fn at_requests_to_end(mut act: impl FnMut() + Send + 'static) -> io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let mut requests = vec![SIGINT, SIGTERM];
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXCPU};
+    let mut requests = vec![SIGINT, SIGTERM, SIGXCPU];
     if !is_ignored(SIGHUP) {
         requests.push(SIGHUP);
     }

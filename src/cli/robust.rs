@@ -9,7 +9,7 @@ use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print, print_json, print_line};
 use super::replay::equals_record;
-use snakes_core::save::load_champion;
+use snakes_core::save::{SaveError, load_champion};
 use snakes_core::score::PerturbationRange;
 use snakes_lab::run::headless::HeadlessError;
 use snakes_lab::run::progress_bar::{bar_of, with_bar};
@@ -21,6 +21,10 @@ pub fn robust(args: &Args, files: &[PathBuf], wanted: &PerturbationArgs) -> Resu
     let trials = number_if("--trials", &wanted.trials, 1..=1_000_000)?.unwrap_or_default();
     let seed = number_if("--seed", &wanted.seed, 0..=u64::MAX)?.unwrap_or(1);
     let range = wanted.range()?;
+    for file in files {
+        let champion = load_champion(file)?.champion;
+        champion.check_shift("--off-start", range.start_m).map_err(SaveError::invalid(file))?;
+    }
     // On a server, the name of the first file identifies the command.
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;

@@ -118,6 +118,9 @@ fn asked(mut study: Study, args: &Args, wanted: &StudyArgs) -> Result<Study, Cli
         "controllers" => of_flag("--controllers")(invalid),
         _ => invalid,
     })?;
+    if !(wanted.strategies.is_empty() && wanted.controllers.is_empty()) {
+        study.forget_lacking_baseline();
+    }
     study.baseline = wanted.baseline.clone().or(study.baseline);
     for name in &wanted.arms {
         study.named("--arms", name)?;

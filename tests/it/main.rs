@@ -19,6 +19,8 @@ mod headless;
 mod hostile;
 mod keep;
 mod learned_files;
+#[cfg(target_os = "linux")]
+mod limits;
 #[cfg(unix)]
 mod names;
 mod opening;

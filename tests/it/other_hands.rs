@@ -85,6 +85,8 @@ fn f12_every_request_to_end_stops_a_run_after_its_generation_but_nohup_ignores_h
         ("", vec!["-INT"]),
         ("", vec!["-TERM"]),
         ("", vec!["-HUP"]),
+        // The time of the processor that a queue allows is spent.
+        ("", vec!["-XCPU"]),
         ("HUP", vec!["-HUP", "-TERM"]),
     ] {
         let folder = folder();

@@ -30,7 +30,9 @@ pub enum Trouble {
 pub const NO_RIGHT: &str = "the server refuses the credentials (--creds FILE)";
 /// Remedy for a full store of the server.
 const MORE_STORE: &str = "make room in its store (snakes machines --purge RUN removes what a stopped run left), or raise \
-                          max_file_store";
+                          max_file_store (max_mem_store, if its streams are in memory)";
+/// Remedy for a full memory of the server, which only streams that somebody made for memory use.
+const MORE_MEMORY: &str = "raise max_mem_store, or remove the streams SNAKES_WORK and SNAKES_RESULTS, which are made again as files";
 /// Remedy for too many connections.
 const MORE_CONNECTIONS: &str = "end other programs that use it, or raise max_connections";
 /// The rights that every user of the server needs.
@@ -81,8 +83,8 @@ impl Trouble {
             Code::INSUFFICIENT_RESOURCES
             | Code::ACCOUNT_RESOURCES_EXCEEDED
             | Code::STORAGE_RESOURCES_EXCEEDED
-            | Code::MEMORY_RESOURCES_EXCEEDED
             | Code::STREAM_STORE_FAILED => (Self::Full, MORE_STORE),
+            Code::MEMORY_RESOURCES_EXCEEDED => (Self::Full, MORE_MEMORY),
             Code::MAXIMUM_STREAMS_LIMIT => {
                 (Self::Full, "remove a stream, or raise max_streams of the account")
             }
@@ -228,6 +230,12 @@ mod tests {
         ] {
             let trouble = of_answer(code, error_code, description);
             assert!(matches!(trouble, Trouble::Never(_)), "{trouble:?}");
+        }
+        for (error_code, remedy) in
+            [(10028, "; raise max_mem_store, "), (10023, " (max_mem_store, ")]
+        {
+            let told = of_answer(500, error_code, "insufficient").to_string();
+            assert!(told.contains(remedy), "{told}");
         }
         let other = of_answer(500, 10049, "it broke");
         let words = "the server says: it broke (code 500, error code 10049)";

@@ -22,7 +22,11 @@ pub struct Invalid {
 impl Invalid {
     /// Makes an error about a field with its value and a description of the allowed values.
     pub fn new(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
-        Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
+        Self {
+            field: field.into(),
+            value: without_zeros(value.to_string()),
+            allowed: allowed.into(),
+        }
     }
 
     /// Returns this error with `parent` and a dot in front of its field's name.
@@ -30,6 +34,16 @@ impl Invalid {
         self.field = format!("{parent}.{}", self.field);
         self
     }
+}
+
+/// Digits of the longest whole number, 2⁶⁴ - 1.
+const MOST_DIGITS: usize = 20;
+
+/// Returns the text of a number with a power of ten if the text is longer than any whole number: `1e300` instead of 300 zeros. Other texts
+/// stay as they are.
+fn without_zeros(text: String) -> String {
+    let number = if text.len() > MOST_DIGITS { text.parse::<f64>().ok() } else { None };
+    number.filter(|number| number.is_finite()).map_or(text, |number| format!("{number:e}"))
 }
 
 /// Accepts `value` if it lies in `range`, ends included. NaN lies in no range.
@@ -175,6 +189,19 @@ mod tests {
     fn a_message_has_the_field_the_value_and_the_range() {
         let error = within("duration_s", -1.0, 0.1..=600.0).unwrap_err().inside("trial");
         assert_eq!(error.to_string(), "trial.duration_s is -1; allowed: 0.1 to 600");
+    }
+
+    #[test]
+    fn s8_a_number_with_hundreds_of_zeros_is_told_as_a_power_of_ten() {
+        let told = |value: f64| within("x", value, 0.0..=1.0).unwrap_err().value;
+        assert_eq!(told(-1e300), "-1e300");
+        assert_eq!(told(-2.5e-30), "-2.5e-30");
+        assert_eq!(within("x", 1.0e30_f32, 0.0..=1.0).unwrap_err().value, "1e30");
+        assert_eq!(told(-1234.5), "-1234.5");
+        assert_eq!(told(f64::NEG_INFINITY), "-inf");
+        assert_eq!(within("x", u64::MAX, 0..=1).unwrap_err().value, u64::MAX.to_string());
+        let text = "\"100000000000000000000000\"";
+        assert_eq!(Invalid::new("x", text, "a name").value, text);
     }
 
     #[test]

@@ -3,11 +3,12 @@
 use std::ffi::OsString;
 
 use clap::error::{ContextKind, ErrorKind};
-use clap::{CommandFactory, FromArgMatches};
+use clap::{Command, CommandFactory, FromArgMatches};
 
 use super::flags::CommandLine;
 use super::task::{Args, Task};
 use crate::cli::error::CliError;
+use snakes_core::check::{Invalid, quoted};
 use snakes_core::evolve::{Settings, fields};
 
 /// The result of parsing.
@@ -45,7 +46,8 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
     if let Some((earlier, now)) = named {
         return Err(CliError::Usage(format!("snakes {earlier} is now: snakes {now}")));
     }
-    let parsed = CommandLine::command().try_get_matches_from(arguments).and_then(|matches| {
+    refuse_homes(&arguments)?;
+    let parsed = CommandLine::command().try_get_matches_from(&arguments).and_then(|matches| {
         let line = CommandLine::from_arg_matches(&matches)?;
         Ok((line, matches))
     });
@@ -58,23 +60,72 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
                 Ok(Parsed::Print(error.render().to_string()))
             }
-            _ => Err(CliError::Usage(one_line(&error))),
+            _ => Err(CliError::Usage(one_line(&error, &arguments))),
         },
     }
 }
 
+/// Refuses paths that begin with `~`, which a shell replaces only at the beginning of a word and without quotes. Otherwise `--out=~/runs`
+/// would make a folder that is named `~`.
+fn refuse_homes(arguments: &[OsString]) -> Result<(), CliError> {
+    for word in arguments.iter().skip(1) {
+        let word = word.to_string_lossy();
+        let flag = word.split_once('=').filter(|(flag, _)| flag.starts_with('-'));
+        let (flag, path) = flag.unwrap_or(("a path", &*word));
+        if path == "~" || path.starts_with("~/") {
+            let allowed = "a path that the shell has completed: write ~ at the beginning of a word and without quotes, or \
+                           ./~ for a file of this name";
+            return Err(Invalid::new(flag, quoted(path), allowed).into());
+        }
+    }
+    Ok(())
+}
+
 /// Returns the error and its tip, if it has one, as one line.
-fn one_line(error: &clap::Error) -> String {
+fn one_line(error: &clap::Error, arguments: &[OsString]) -> String {
+    match error.kind() {
+        ErrorKind::InvalidUtf8 => {
+            let word = arguments.iter().find(|word| word.to_str().is_none());
+            let word = word.map(|word| word.to_string_lossy()).unwrap_or_default();
+            return Invalid::new("an argument", quoted(&word), "text in UTF-8 here").to_string();
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => return lists_to_show(),
+        _ => (),
+    }
     let text = error.render().to_string();
     let mut paragraphs = text.split("\n\n");
     let problem = paragraphs.next().unwrap_or_default();
-    let tip = setting_tip(error)
+    let tip = hyphen_tip(error, arguments)
+        .or_else(|| setting_tip(error))
         .or_else(|| order_tip(error))
         .or_else(|| paragraphs.find(|text| text.trim().starts_with("tip:")).map(str::to_owned));
     let in_one_line = |text: &str| text.split_whitespace().collect::<Vec<&str>>().join(" ");
     let problem = in_one_line(problem);
     let tip = tip.map(|tip| format!("; {}", in_one_line(&tip))).unwrap_or_default();
     format!("{}{tip} (see snakes --help)", problem.trim_start_matches("error: "))
+}
+
+/// Returns the error that `snakes show` needs the name of a list. No other command lacks a part that is not named.
+fn lists_to_show() -> String {
+    let command = CommandLine::command();
+    let show = command.find_subcommand("show");
+    let names: Vec<&str> =
+        show.into_iter().flat_map(|show| show.get_subcommands().map(Command::get_name)).collect();
+    format!("snakes show needs a list; allowed: {} (see snakes show --help)", names.join(", "))
+}
+
+/// Returns the tip how to name a file whose name begins with a hyphen, if the argument that was not expected is more than a flag of one
+/// letter.
+fn hyphen_tip(error: &clap::Error, arguments: &[OsString]) -> Option<String> {
+    let flag = error.get(ContextKind::InvalidArg)?.to_string();
+    let is_short = flag.starts_with('-') && flag.chars().count() == 2 && flag != "--";
+    let is_file = |word: &&OsString| {
+        let word = word.to_string_lossy();
+        word.starts_with(&flag) && word.len() > flag.len()
+    };
+    let word = arguments.iter().find(is_file).filter(|_| is_short)?.to_string_lossy();
+    (error.kind() == ErrorKind::UnknownArgument)
+        .then(|| format!("tip: if {word} is a file, write ./{word}"))
 }
 
 /// Returns the tip to use --set if an unknown flag has the name of exactly one setting, with or without its unit.
@@ -136,6 +187,53 @@ pub(super) mod tests {
             message.contains("found; tip: a similar argument exists: '--population'"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn s3_a_path_in_which_the_shell_left_a_tilde_is_refused() {
+        for (words, flag) in [
+            ("run --out=~/runs", "--out"),
+            ("export a.ron -o=~/a.csv", "-o"),
+            ("exam ~/a.ron", "a path"),
+            ("run --out ~", "a path"),
+        ] {
+            let refusal = refusal(words);
+            assert!(refusal.starts_with(&format!("{flag} is \"~")), "{refusal}");
+            assert!(refusal.contains("allowed: a path that the shell has completed"), "{refusal}");
+        }
+        for words in ["exam ./~/a.ron", "exam a~.ron", "export a.ron -o=b~/~.csv", "exam ~a.ron"] {
+            assert!(asked(words).is_ok(), "{words}");
+        }
+    }
+
+    #[test]
+    fn s4_a_file_whose_name_begins_with_a_hyphen_gives_the_tip_to_write_its_folder() {
+        for (words, name) in [("export a.ron -o -x.csv", "-x.csv"), ("exam -.ron", "-.ron")] {
+            let refusal = refusal(words);
+            let tip = format!("tip: if {name} is a file, write ./{name} (see");
+            assert!(refusal.contains(&tip) && !refusal.contains("--set"), "{refusal}");
+        }
+        assert!(!refusal("exam -x a.ron").contains("is a file"));
+    }
+
+    #[test]
+    fn s5_a_list_that_is_not_named_is_asked_for_with_the_names_of_all() {
+        let allowed =
+            "snakes show needs a list; allowed: presets, settings, body (see snakes show --help)";
+        assert_eq!(refusal("show"), allowed);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn s6_an_argument_that_is_not_utf_8_is_named() {
+        use std::os::unix::ffi::OsStringExt;
+        for flag in ["--preset", "--stairs", "--set"] {
+            let name = OsString::from_vec(b"ice-\xff.ron".to_vec());
+            let words = ["snakes", "run", flag].map(OsString::from);
+            let refusal = parse(words.into_iter().chain([name])).err().expect("refused");
+            let expected = "an argument is \"ice-\u{fffd}.ron\"; allowed: text in UTF-8 here";
+            assert_eq!(refusal.to_string(), expected);
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ pub struct StudyArgs {
     /// Make and show only these arms; the others are still compared with
     #[arg(long, value_name = "A,B", value_delimiter = ',')]
     pub arms: Vec<String>,
-    /// The arm with which the others are compared
+    /// The arm with which the others are compared [default: the study's, or the first if that is not among them]
     #[arg(long, value_name = "ARM")]
     pub baseline: Option<String>,
     /// Strategies of a study of methods, in this order [default: the study's]

@@ -225,8 +225,16 @@ fn flags_without_effect_and_values_that_are_not_allowed_are_refused_by_name() {
         ("-o a.gif --show all", 2, "--show is \"all\"; allowed: contacts"),
         ("-o a.gif --start 20", 2, "--start is 20; allowed: 0 to 15"),
         ("-o a.gif --start NaN", 2, "--start is NaN; allowed: 0 to 15"),
-        ("-o a.gif --start 3 --end 3", 2, "--end is 3; allowed: more than --start, 3"),
-        ("-o a.gif --start 3 --end 2", 2, "--end is 2; allowed: 3 to 15"),
+        (
+            "-o a.gif --start 3 --end 3",
+            2,
+            "--end is \"3\"; allowed: more than 3, at which the film starts, up to 15",
+        ),
+        (
+            "-o a.gif --start 3 --end 2",
+            2,
+            "--end is \"2\"; allowed: more than 3, at which the film starts, up to 15",
+        ),
         ("-o a.avi", 2, "--output is \"a.avi\"; allowed: a name that ends in "),
     ] {
         let (given, line) = refusal(&run(folder.path(), &format!("export {CLIMBER} {flags}")));
@@ -271,6 +279,33 @@ fn a_film_that_cannot_be_written_is_one_line_and_leaves_nothing_behind() {
         assert!(line.contains(name) && line.contains("cannot be written"), "{line}");
     }
     assert!(names_in(folder.path()).is_empty(), "{:?}", names_in(folder.path()));
+}
+
+#[test]
+fn s11_a_film_that_ffmpeg_does_not_write_is_an_error_and_the_earlier_film_stays() {
+    use std::os::unix::fs::PermissionsExt;
+    if lacks("unwritten", false) {
+        return;
+    }
+    for (script, reason) in [
+        ("cat > /dev/null", "ffmpeg reports success, but has written nothing"),
+        ("exit 0", "ffmpeg ended early: exit status: 0"),
+        ("kill -9 $$", "ffmpeg ended early: signal: 9 (SIGKILL)"),
+    ] {
+        let folder = folder();
+        let ffmpeg = folder.path().join("ffmpeg");
+        fs::write(&ffmpeg, format!("#!/bin/sh\n{script}\n")).expect("written");
+        fs::set_permissions(&ffmpeg, fs::Permissions::from_mode(0o755)).expect("runnable");
+        fs::write(folder.path().join("a.mp4"), "an earlier film").expect("written");
+        let own = std::env::var("PATH").unwrap_or_default();
+        let order = format!("export {CLIMBER} -o a.mp4 --size 160x90 --end 5");
+        let mut command = snakes(folder.path(), &order);
+        let path = format!("{}:{own}", folder.path().display());
+        let (code, line) = refusal(&command.env("PATH", path).output().expect("it starts"));
+        assert_eq!((code, line), (Some(1), format!("error: a.mp4: cannot be written: {reason}")));
+        let kept = fs::read_to_string(folder.path().join("a.mp4")).expect("a file");
+        assert_eq!((kept.as_str(), names_in(folder.path()).len()), ("an earlier film", 2));
+    }
 }
 
 #[test]

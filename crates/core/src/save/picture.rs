@@ -1,11 +1,11 @@
 //! Writing of pictures as PNG, of tables as CSV, and of plain text.
 
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use super::SaveError;
 use super::files::read_bytes;
-use super::whole_file::write_whole;
+use super::whole_file::UnfinishedFile;
 use crate::check::no_formula;
 
 /// Maximum size of a picture that is read, in MiB: more than that of the largest window.
@@ -29,12 +29,12 @@ impl Picture {
     }
 }
 
-/// Writes a picture as PNG, atomically.
+/// Writes a picture as PNG, atomically, and removes what a kill left in its folder.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
-    write_whole(path, &encoded(picture).map_err(SaveError::unwritable(path))?)
+    store_bytes(path, &encoded(picture).map_err(SaveError::unwritable(path))?)
 }
 
 /// Encodes a picture as a PNG file.
@@ -67,15 +67,21 @@ pub fn load_picture(path: &Path) -> Result<Picture, SaveError> {
     decode().map_err(std::io::Error::other).map_err(SaveError::unreadable(path))
 }
 
-/// Writes a text atomically.
+/// Writes a text atomically, and removes what a kill left in its folder.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store_text(path: &Path, text: &str) -> Result<(), SaveError> {
-    write_whole(path, text.as_bytes())
+    store_bytes(path, text.as_bytes())
 }
 
-/// Writes records as CSV (RFC 4180), atomically. No cell is a formula: see [`no_formula`].
+fn store_bytes(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
+    let mut file = UnfinishedFile::create(path)?;
+    file.write_all(bytes).map_err(SaveError::unwritable(path))?;
+    file.finish()
+}
+
+/// Writes records as CSV (RFC 4180), atomically, and removes what a kill left in the folder. No cell is a formula: see [`no_formula`].
 ///
 /// # Errors
 /// Fails if the file cannot be written.
@@ -88,13 +94,29 @@ pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> 
         writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()).into())
     };
     let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
-    write_whole(path, &bytes)
+    store_bytes(path, &bytes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::files::names_in;
     use std::fs;
+
+    #[test]
+    fn f12_texts_tables_and_pictures_remove_what_a_kill_left() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a");
+        let store: [&dyn Fn() -> Result<(), SaveError>; 3] =
+            [&|| store_text(&path, "text"), &|| store_csv(&path, &[]), &|| {
+                store_picture(&path, &Picture::new(1, 1))
+            }];
+        for store in store {
+            fs::write(folder.path().join(".unfinished-snakes-Ab12Cd"), "half").expect("written");
+            store().expect("written");
+            assert_eq!(names_in(folder.path()), ["a"]);
+        }
+    }
 
     #[test]
     fn a_picture_is_read_back_from_its_file() {

@@ -98,6 +98,11 @@ impl UnfinishedFile {
         self.file.path()
     }
 
+    /// Returns whether nothing has been written yet.
+    pub fn is_empty(&self) -> bool {
+        self.file.as_file().metadata().is_ok_and(|about| about.len() == 0)
+    }
+
     /// Flushes the file to the disk and gives it its name, in place of an earlier file.
     ///
     /// # Errors
@@ -155,9 +160,12 @@ pub(super) fn without_temporary_name(error: Error) -> Error {
     if error.raw_os_error().is_some() || error.kind() == ErrorKind::Other {
         return error;
     }
+    // Only the words have the reason of the system: most reasons have no kind of their own.
+    let words = error.to_string();
+    let reason = words.split(" at path ").next().unwrap_or(&words);
     match error.kind() {
         ErrorKind::NotFound => Error::new(ErrorKind::NotFound, "its folder does not exist"),
-        kind => kind.into(),
+        kind => Error::new(kind, reason),
     }
 }
 
@@ -261,6 +269,19 @@ mod tests {
         remove_unfinished(around.path());
         let names = [".unfinished-snakes-linked", ".unfinished-snakes-pipe00", "mine"];
         assert_eq!(names_in(around.path()), names);
+    }
+
+    #[test]
+    fn s1_the_reason_of_the_system_is_told_also_if_it_has_no_kind() {
+        // As the library for temporary files makes it of a refusal for too many open files.
+        let system = Error::from_raw_os_error(24);
+        let (kind, reason) = (system.kind(), system.to_string());
+        let error = Error::new(
+            kind,
+            format!("{system} at path \"/a at path b/.unfinished-snakes-Ab12Cd\""),
+        );
+        let told = without_temporary_name(error);
+        assert_eq!((told.kind(), told.to_string()), (kind, reason));
     }
 
     #[test]

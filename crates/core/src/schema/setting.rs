@@ -334,7 +334,8 @@ fn names(choices: fn() -> Vec<Choice>) -> Vec<&'static str> {
 /// Reads a finite number. The text is read as a 64-bit float and then rounded to 32 bits, as in the first files of settings.
 #[expect(clippy::cast_possible_truncation, reason = "a setting is a 32-bit float")]
 fn parse_number(text: &str) -> Option<f32> {
-    text.parse::<f64>().ok().map(|number| number as f32).filter(|number| number.is_finite())
+    // Zero has no sign, so that `-0` names the same run as `0`.
+    text.parse::<f64>().ok().map(|number| number as f32 + 0.0).filter(|number| number.is_finite())
 }
 
 /// Reads the numbers of a text such as `[1, 2]`.

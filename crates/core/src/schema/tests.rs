@@ -100,6 +100,14 @@ fn a_text_sets_the_field_that_its_path_ends_with() {
 }
 
 #[test]
+fn s12_zero_has_no_sign() {
+    for text in ["-0", "-0.0", "-1e-60", "0"] {
+        let angles = changed("angles_rad", &format!("[{text}]")).expect("allowed").angles_rad;
+        assert_eq!(angles[0].to_bits(), 0, "{text}");
+    }
+}
+
+#[test]
 fn a_wrong_value_is_refused_with_its_path_and_what_is_allowed() {
     for (path, text, message) in [
         ("count", "2.5", "count is \"2.5\"; allowed: 2 to 6, whole numbers"),

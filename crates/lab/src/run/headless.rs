@@ -43,14 +43,14 @@ pub enum HeadlessError {
         /// Command-line flags that choose the run's evaluator: see [`Evaluator::flags`].
         flags: String,
     },
-    /// A generation could not be saved.
+    /// A generation could not be saved, or its line could not be written.
     #[error(
         "{source}; generations up to {saved} are saved; continue the run with: snakes --no-render --resume {}{flags}",
         folder.display()
     )]
     NotSaved {
-        /// Error of the file that could not be written.
-        source: Box<SaveError>,
+        /// Error of the file or the output that could not be written.
+        source: Box<HeadlessError>,
         /// Number of saved generations.
         saved: u32,
         /// Folder of the run.
@@ -164,16 +164,16 @@ pub fn evolve(
             folder: folder.clone(),
             flags: evaluator.flags(),
         })?;
-        let crashes = recorder.record_generation(&experiment, &report).map_err(|source| {
-            HeadlessError::NotSaved {
-                source: Box::new(source),
-                saved: experiment.finished() - 1,
-                folder: folder.clone(),
-                flags: evaluator.flags(),
-            }
-        })?;
+        let not_saved = |source: HeadlessError, saved| HeadlessError::NotSaved {
+            source: Box::new(source),
+            saved,
+            folder: folder.clone(),
+            flags: evaluator.flags(),
+        };
+        let crashes = recorder.record_generation(&experiment, &report);
+        let crashes = crashes.map_err(|source| not_saved(source.into(), finished - 1))?;
         crashes.iter().for_each(|crash| say(crash));
-        print(&report)?;
+        print(&report).map_err(|source| not_saved(source.into(), finished))?;
     }
     let run_hash = format!("{:016x}", experiment.run_hash());
     let best = experiment.best();

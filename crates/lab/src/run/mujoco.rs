@@ -56,6 +56,14 @@ pub enum MujocoError {
         /// Reason of the system.
         reason: io::Error,
     },
+    /// The folder for temporary files, in which MuJoCo works, cannot be written. Holds the reason and the path.
+    #[error("{}: a temporary folder cannot be made: {reason}; TMPDIR names the folder for temporary files", within.display())]
+    NoFolder {
+        /// Folder for temporary files.
+        within: PathBuf,
+        /// Reason of the system, without the path.
+        reason: String,
+    },
     /// The Python process failed during the exam. Holds the reason.
     #[error("MuJoCo failed: {0}")]
     Failed(String),
@@ -115,6 +123,14 @@ enum Answer {
     Error(String),
 }
 
+/// Makes a folder for temporary files within a folder.
+fn working_folder(within: &Path) -> Result<tempfile::TempDir, MujocoError> {
+    tempfile::tempdir_in(within).map_err(|error| MujocoError::NoFolder {
+        within: within.to_owned(),
+        reason: error.to_string().split(" at path ").next().unwrap_or_default().to_owned(),
+    })
+}
+
 impl Mujoco {
     /// Starts the Python process.
     ///
@@ -133,7 +149,7 @@ impl Mujoco {
             }
             _ => MujocoError::NotStarted { python: python.to_string_lossy().into_owned(), reason },
         };
-        let folder = tempfile::tempdir().map_err(failed)?;
+        let folder = working_folder(&std::env::temp_dir())?;
         let mut command = Command::new(program(&python));
         command
             .args(["-c", include_str!("../../../../tests/peers/mujoco.py")])
@@ -345,6 +361,19 @@ mod tests {
         assert_eq!(program(OsStr::new("python3")), Path::new("python3"));
         let absolute = here.join("venv/bin/python");
         assert_eq!(program(absolute.as_os_str()), absolute);
+    }
+
+    #[test]
+    fn s10_a_missing_folder_for_temporary_files_is_named_instead_of_python() {
+        let missing = tempfile::tempdir().expect("a folder").path().join("none");
+        let told = working_folder(&missing).expect_err("no folder").to_string();
+        let path = missing.display().to_string();
+        assert!(
+            told.starts_with(&format!("{path}: a temporary folder cannot be made: ")),
+            "{told}"
+        );
+        assert!(told.ends_with("; TMPDIR names the folder for temporary files"), "{told}");
+        assert_eq!(told.matches(&path).count(), 1, "{told}");
     }
 
     #[test]

@@ -323,6 +323,13 @@ impl Study {
         Ok(())
     }
 
+    /// Makes the first arm the baseline if the study names one that is not among its arms, as when other methods are chosen than the
+    /// study's.
+    pub fn forget_lacking_baseline(&mut self) {
+        let is_there = |name: &String| self.arms.iter().any(|arm| arm.name == *name);
+        self.baseline = self.baseline.take().filter(is_there);
+    }
+
     /// Returns the arm with this name.
     ///
     /// # Errors

@@ -186,6 +186,22 @@ fn methods_are_crossed_in_the_order_in_which_they_are_named() {
     );
 }
 
+#[test]
+fn r7_methods_without_the_baseline_of_the_study_are_compared_with_the_first() {
+    let chosen = |strategies: Vec<StrategyKind>| {
+        let mut study = Study::load("methods").expect("built in");
+        study.methods = study.methods.map(|methods| Methods { strategies, ..methods });
+        study.set_methods().expect("allowed");
+        study.forget_lacking_baseline();
+        study.check().expect("its baseline is one of its arms");
+        let last = study.arms.last().expect("an arm");
+        study.baseline_of(last).map(|arm| arm.name.clone())
+    };
+    assert_eq!(chosen(vec![StrategyKind::Ga, StrategyKind::CmaEs]).as_deref(), Some("ga-signal"));
+    let with_random = vec![StrategyKind::Random, StrategyKind::CmaEs];
+    assert_eq!(chosen(with_random).as_deref(), Some("random-gait"), "that of the study");
+}
+
 /// Values by their names, each with a number for each run. An infinite number stands for a missing one.
 type Values<'a> = &'a [(&'a str, &'a [f64])];
 

@@ -57,7 +57,10 @@ impl Video {
 
     /// Returns the reason why ffmpeg has ended early.
     fn failure(&mut self, error: io::Error) -> ExportError {
-        let said = self.ffmpeg.last_words().unwrap_or_else(|| error.to_string());
+        let said = self.ffmpeg.last_words().unwrap_or_else(|| match self.ffmpeg.process.wait() {
+            Ok(status) => format!("ffmpeg ended early: {status}"),
+            Err(_) => error.to_string(),
+        });
         ExportError::unwritable(&self.path)(io::Error::other(said)).into()
     }
 }
@@ -80,8 +83,13 @@ impl FilmFile for Video {
         if let Some(reason) = failed.or_else(|| (!status.success()).then(|| status.to_string())) {
             return Err(ExportError::unwritable(&self.path)(io::Error::other(reason)).into());
         }
-        let Self { ffmpeg, file, .. } = *self;
+        let Self { ffmpeg, file, path } = *self;
         drop(ffmpeg);
+        // A film takes the place of an earlier one, so the word of ffmpeg is not enough.
+        if file.is_empty() {
+            let reason = "ffmpeg reports success, but has written nothing";
+            return Err(ExportError::unwritable(&path)(io::Error::other(reason)).into());
+        }
         Ok(file.finish()?)
     }
 }
