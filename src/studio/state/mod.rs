@@ -23,11 +23,6 @@ pub mod turns;
 pub mod undo;
 pub mod what_if;
 
-/// Short descriptions of changed settings, for titles and labels.
-pub mod wording {
-    pub use snakes_core::evolve::{changes_in_words, world_in_words};
-}
-
 use bevy::prelude::*;
 
 use super::schedule::RESULTS_HZ;

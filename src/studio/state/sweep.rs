@@ -1,9 +1,8 @@
 //! Sweep: one setting of the world at five values, in five lanes side by side.
 
-use super::wording::world_in_words;
 use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
-use snakes_core::evolve::{Settings, fields, with_fields_and_engine};
+use snakes_core::evolve::{Settings, fields, with_fields_and_engine, world_in_words};
 use snakes_core::schema::{NumberRange, SettingKind, SettingValue, list};
 use snakes_core::score::Trial;
 

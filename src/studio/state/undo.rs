@@ -9,10 +9,9 @@ use std::collections::VecDeque;
 
 use bevy::prelude::*;
 
-use super::wording::changes_in_words;
 use crate::studio::commands::{Command, PlanCommand, RunCommand};
 use crate::studio::schedule::FrameSet;
-use snakes_core::evolve::RunPlan;
+use snakes_core::evolve::{RunPlan, changes_in_words};
 use snakes_core::save::library::FileStep;
 
 pub(crate) use follow::followed;

@@ -8,10 +8,9 @@ use std::fmt::Display;
 use bevy::prelude::*;
 
 use super::current_run::CurrentRun;
-use super::wording::world_in_words;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
-use snakes_core::evolve::{RunPlan, Settings, with_fields_and_engine};
+use snakes_core::evolve::{RunPlan, Settings, with_fields_and_engine, world_in_words};
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::PhysicsSettings;
 

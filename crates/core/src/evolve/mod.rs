@@ -12,6 +12,7 @@ mod settings;
 mod stairs_tree;
 mod strategies;
 mod strategy;
+mod wording;
 
 pub use archives::{
     Archive, ArchiveAxis, AxisScale, Descriptor, Elite, EliteGenes, Front, FrontMember,
@@ -31,9 +32,9 @@ pub use settings::{
     HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, MccSettings, Mutation,
     NeatSettings, NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind,
     Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, changed_values,
-    changes_in_words, check_effects, fields, with_field, with_fields, with_fields_and_engine,
-    with_value, world_in_words,
+    check_effects, fields, with_field, with_fields, with_fields_and_engine, with_value,
 };
 pub use stairs_tree::{Agent, StairsCount, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};
 pub use strategy::{Strategy, StrategyState, ranking};
+pub use wording::{changes_in_words, world_in_words};

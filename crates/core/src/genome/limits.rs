@@ -92,7 +92,7 @@ mod tests {
                 {
                     let Some(changed) = with_value(&genome, index, beyond) else { continue };
                     let message = check(&changed).expect_err(field).to_string();
-                    let expected = format!("{field} is {beyond}; allowed: {allowed}");
+                    let expected = Invalid::new(field, beyond, &allowed).to_string();
                     assert!(message.ends_with(&expected), "{message}, not {expected}");
                 }
                 // A body with such parts may be impossible for another reason.

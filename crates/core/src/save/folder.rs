@@ -13,7 +13,7 @@ use super::plan::is_run;
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
 use super::whole_file::prepare_folder;
-use super::{LoadedChampion, SaveError, load_champion, settings_in_words};
+use super::{LoadedChampion, SaveError, load_champion};
 use crate::evolve::RunPlan;
 
 /// Folder of saved champions and runs.
@@ -113,8 +113,6 @@ pub struct RunSummary {
     pub folder: PathBuf,
     /// Plan of the run, after all its changes.
     pub plan: RunPlan,
-    /// Description of the plan's settings: see [`settings_in_words`].
-    pub settings: String,
     /// Number of finished generations.
     pub finished: u32,
     /// Name that the user gave the run. None: the run has no name.
@@ -139,8 +137,7 @@ impl RunSummary {
         let name = notes.own_name().map(str::to_owned);
         let log = fs::metadata(folder.join("log.jsonl"));
         let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
-        let settings = settings_in_words(&plan);
-        Ok(Self { folder, plan, settings, finished, name, saved_at, is_stopped })
+        Ok(Self { folder, plan, finished, name, saved_at, is_stopped })
     }
 
     /// Returns whether generations are left to evolve.

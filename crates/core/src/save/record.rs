@@ -158,7 +158,7 @@ mod tests {
             (vec![of(1, 6, None)], "species.size is 6; allowed: 1 to 5"),
             (vec![of(1, 3, None), of(2, 3, None)], "sum of species.size is 6; allowed: 0 to 5"),
             (vec![of(2, 1, None), of(2, 1, None)], "species.id is 2; allowed: 3 to 4294967295"),
-            (vec![of(1, 1, Some(f32::MAX))], "species.best is 34028"),
+            (vec![of(1, 1, Some(f32::MAX))], "species.best is 3.4028235e38"),
             (vec![of(1, 1, None); 25], "number of species is 25; allowed: 0 to 24"),
         ] {
             let error = with(species).expect_err("refused").to_string();

@@ -25,7 +25,7 @@ enum Effect {
 
 /// Whether the stage is presented and whether a lesson is open, before a command or after it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frames {
+pub(super) struct FrameState {
     pub is_presenting: bool,
     pub is_lesson: bool,
 }
@@ -102,7 +102,7 @@ impl StageParams<'_, '_> {
         &mut self,
         command: &Command,
         left: LeftScene,
-        (before, after): (Frames, Frames),
+        (before, after): (FrameState, FrameState),
         camera: &mut CameraRig,
     ) {
         let shown = self.pending.take();
@@ -111,22 +111,22 @@ impl StageParams<'_, '_> {
         let effect = match (before, after) {
             // A lesson ends a presentation, and returns to the scene before it.
             (
-                Frames { is_presenting: true, .. },
-                Frames { is_presenting: false, is_lesson: true },
+                FrameState { is_presenting: true, is_lesson: false },
+                FrameState { is_presenting: false, is_lesson: true },
             ) => {
                 self.way_back.turn(presents, teaches);
                 Effect::None
             }
-            (Frames { is_presenting: false, .. }, Frames { is_presenting: true, .. }) => {
+            (FrameState { is_presenting: false, .. }, FrameState { is_presenting: true, .. }) => {
                 Effect::Enter(presents)
             }
-            (Frames { is_presenting: true, .. }, Frames { is_presenting: false, .. }) => {
+            (FrameState { is_presenting: true, .. }, FrameState { is_presenting: false, .. }) => {
                 Effect::Leave(presents)
             }
-            (Frames { is_lesson: false, .. }, Frames { is_lesson: true, .. }) => {
+            (FrameState { is_lesson: false, .. }, FrameState { is_lesson: true, .. }) => {
                 Effect::Enter(teaches)
             }
-            (Frames { is_lesson: true, .. }, Frames { is_lesson: false, .. }) => {
+            (FrameState { is_lesson: true, .. }, FrameState { is_lesson: false, .. }) => {
                 Effect::Leave(teaches)
             }
             _ => effect(command, &left.mode, mode, &self.way_back),

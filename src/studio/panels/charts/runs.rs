@@ -104,7 +104,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         }
     }
     let Some(runs) = others.runs() else { return explain(ui, "Loading the list of runs…") };
-    let mut choices = runs.iter().filter(|other| other.folder != run.folder()).peekable();
+    let listed = runs.iter().zip(others.settings());
+    let mut choices = listed.filter(|(other, _)| other.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
@@ -115,9 +116,9 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         }
     });
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
-        for other in choices {
+        for (other, settings) in choices {
             let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
-            let name = other.name.clone().unwrap_or_else(|| title(&other.settings, &other.plan));
+            let name = other.name.clone().unwrap_or_else(|| title(settings, &other.plan));
             let name = format!("{name}, {}", other.generations_in_words());
             let is_on = is_shown || others.compared().len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));

@@ -9,9 +9,11 @@ use snakes_lab::run::BackgroundTask;
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<Vec<RunSummary>>>,
+    listing: Option<BackgroundTask<(Vec<RunSummary>, Vec<String>)>>,
     /// All runs in the saves folder; `None` until they are listed.
     runs: Option<Vec<RunSummary>>,
+    /// Description of the settings of each listed run.
+    settings: Vec<String>,
     compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
     version: u64,
@@ -44,7 +46,11 @@ pub(crate) const MOST_COMPARED: usize = 3;
 impl ComparedRuns {
     /// Starts to list all runs.
     pub fn list(&mut self, saves: SavesFolder) -> Result<(), String> {
-        let listing = BackgroundTask::start(move || saves.runs());
+        let listing = BackgroundTask::start(move || {
+            let runs = saves.runs();
+            let settings = runs.iter().map(|run| settings_in_words(&run.plan)).collect();
+            (runs, settings)
+        });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);
         Ok(())
@@ -74,7 +80,8 @@ impl ComparedRuns {
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
         if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
-            (self.runs, self.listing) = (Some(runs.unwrap_or_default()), None);
+            let (runs, settings) = runs.unwrap_or_default();
+            (self.runs, self.settings, self.listing) = (Some(runs), settings, None);
             self.version += 1;
         }
         for run in &mut self.compared {
@@ -89,6 +96,11 @@ impl ComparedRuns {
     /// Returns all runs in the saves folder, or `None` until they are listed.
     pub fn runs(&self) -> Option<&[RunSummary]> {
         self.runs.as_deref()
+    }
+
+    /// Returns the description of the settings of each listed run: see [`settings_in_words`].
+    pub fn settings(&self) -> &[String] {
+        &self.settings
     }
 
     /// Returns the runs that are compared with the current one.

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::what_if::{ChangedStage, unsuited};
-use crate::studio::state::wording::world_in_words;
-use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine};
+use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine, world_in_words};
 use snakes_core::score::Trial;
 
 /// Returns the champions to show after the plan changed from `from` to `to`. The world settings that differ also change

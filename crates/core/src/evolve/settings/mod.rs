@@ -19,7 +19,6 @@ mod poet;
 mod size;
 mod start;
 mod strategy_kind;
-mod wording;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
 pub use by_name::{
@@ -40,7 +39,6 @@ pub use novelty::NoveltySettings;
 pub use poet::PoetSettings;
 pub use size::{GenomeSize, LARGEST_POPULATION, LARGEST_SAMPLE};
 pub use strategy_kind::{StrategyInfo, StrategyKind};
-pub use wording::{changes_in_words, world_in_words};
 
 use serde::{Deserialize, Serialize};
 

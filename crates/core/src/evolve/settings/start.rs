@@ -43,7 +43,7 @@ impl Trial {
     /// `None` without stairs.
     fn room_m(&self, has_own_body: bool) -> Option<f32> {
         let front_m = self.start_y_m + reach_m(self, has_own_body);
-        (self.stairs.steps > 0).then(|| self.stairs.first_riser_y_m - front_m)
+        (self.stairs.steps > 0).then_some(self.stairs.first_riser_y_m - front_m)
     }
 }
 

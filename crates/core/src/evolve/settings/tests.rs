@@ -107,7 +107,7 @@ fn every_setting_is_allowed_within_its_range_and_refused_beyond_it_by_name_value
         };
         let refuses = |text: &str, value: &str, allowed: &str| {
             let refusal = with_field(&settings, path, text).expect_err(path).to_string();
-            assert_eq!(refusal, format!("{path} is {value}; allowed: {allowed}"));
+            assert_eq!(refusal, Invalid::new(path, value, allowed).to_string());
         };
         let refuses_text = |text: &str| refuses(text, &format!("{text:?}"), &setting.allowed());
         allows(&listed.value.to_string());

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{ExportError, FilmFile};
+use super::film_file::FilmFile;
+use crate::export::ExportError;
 use snakes_core::save::{Picture, UnfinishedFolder};
 
 /// A folder of numbered pictures that is being written.

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
-use super::ExportError;
+use crate::export::ExportError;
 use snakes_core::check::within;
 use snakes_core::save::{Picture, UnfinishedFile};
 

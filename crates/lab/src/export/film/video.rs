@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
-use super::{ExportError, FilmFile};
+use super::film_file::FilmFile;
+use crate::export::ExportError;
 use crate::run::BackgroundTask;
 use snakes_core::check::Invalid;
 use snakes_core::save::{Picture, UnfinishedFile};

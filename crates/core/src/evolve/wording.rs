@@ -1,6 +1,6 @@
 //! Short descriptions of changed settings, for titles and labels.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::schema::{ListedSetting, SettingKind, SettingValue, list};
 use crate::score::Trial;
 
