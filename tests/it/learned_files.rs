@@ -63,7 +63,7 @@ fn hostile_tables_are_refused_with_field_value_and_range() {
     for (value, part) in [
         ("NaN", "values is NaN"),
         ("inf", "values is inf"),
-        ("1.0e30", "values is 1000000000000000000000000000000"),
+        ("1.0e30", "values is 1e30"),
     ] {
         assert_refused("q-learning", &with_first(value), &[part, "allowed", "rows[0]"]);
     }

@@ -61,7 +61,11 @@ fn a_race_starts_by_key_or_click_and_ends_by_key() {
     studio.wait_for_title("showing a race of 4");
     studio.picture_with(|picture| picture.count(is_red) > 300 && picture.count(is_blue) > 300);
     studio.key("Escape");
+    studio.wait_for_title("showing climber");
     // The race selects its best snake, from any generation.
+    studio.key("n");
+    studio.wait_for_title("showing a race of 4");
+    studio.click_label("Only this one");
     studio.wait_for_title("showing generation ");
     studio.click_champion(0);
     studio.wait_for_title("showing climber");
