@@ -60,11 +60,9 @@ fn hostile_tables_are_refused_with_field_value_and_range() {
         let end = values + table[values..].find(',').expect("a value");
         format!("{}{value}{}", &table[..values], &table[end..])
     };
-    for (value, part) in [
-        ("NaN", "values is NaN"),
-        ("inf", "values is inf"),
-        ("1.0e30", "values is 1e30"),
-    ] {
+    for (value, part) in
+        [("NaN", "values is NaN"), ("inf", "values is inf"), ("1.0e30", "values is 1e30")]
+    {
         assert_refused("q-learning", &with_first(value), &[part, "allowed", "rows[0]"]);
     }
     let longer = format!("{}0.5, {}", &table[..values], &table[values..]);

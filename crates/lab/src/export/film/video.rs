@@ -62,7 +62,7 @@ impl Video {
             Ok(status) => format!("ffmpeg ended early: {status}"),
             Err(_) => error.to_string(),
         });
-        ExportError::unwritable(&self.path)(io::Error::other(said)).into()
+        ExportError::unwritable(&self.path)(io::Error::other(said))
     }
 }
 
@@ -82,14 +82,14 @@ impl FilmFile for Video {
         // If the disk is full when the last bytes are written, some versions of ffmpeg report an error and yet exit with success.
         let failed = self.ffmpeg.last_words();
         if let Some(reason) = failed.or_else(|| (!status.success()).then(|| status.to_string())) {
-            return Err(ExportError::unwritable(&self.path)(io::Error::other(reason)).into());
+            return Err(ExportError::unwritable(&self.path)(io::Error::other(reason)));
         }
         let Self { ffmpeg, file, path } = *self;
         drop(ffmpeg);
         // A film takes the place of an earlier one, so the word of ffmpeg is not enough.
         if file.is_empty() {
             let reason = "ffmpeg reports success, but has written nothing";
-            return Err(ExportError::unwritable(&path)(io::Error::other(reason)).into());
+            return Err(ExportError::unwritable(&path)(io::Error::other(reason)));
         }
         Ok(file.finish()?)
     }

@@ -136,6 +136,10 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
     let show = Command::Stage(StageCommand::ShowGeneration(Some(1)));
     for (kind, first, end_first) in excursions() {
         for (other_kind, second, end_second) in excursions() {
+            if (kind, other_kind) == ("presenting", "presenting") {
+                // The command that presents would end the presentation.
+                continue;
+            }
             let mut app = studio();
             send(&mut app, &show);
             settle(&mut app);
