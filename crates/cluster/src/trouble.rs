@@ -31,7 +31,7 @@ pub const NO_RIGHT: &str = "the server refuses the credentials (--creds FILE)";
 /// Remedy for a full store of the server.
 const MORE_STORE: &str = "make room in its store (snakes machines --purge RUN removes what a stopped run left), or raise \
                           max_file_store (max_mem_store, if its streams are in memory)";
-/// Remedy for a full memory of the server, which only streams that somebody made for memory use.
+/// Remedy for a full memory store of the server. Only streams that were created in memory use this store.
 const MORE_MEMORY: &str = "raise max_mem_store, or remove the streams SNAKES_WORK and SNAKES_RESULTS, which are made again as files";
 /// Remedy for too many connections.
 const MORE_CONNECTIONS: &str = "end other programs that use it, or raise max_connections";

@@ -89,12 +89,16 @@ pub(super) fn known_files<'k, T: OwnKind>(
 ) -> Option<&'k T> {
     let mut clicked = None;
     for file in known.built_in() {
-        let button = ui.selectable_label(selected == Some(file.name()), file.name());
-        if button.on_hover_text(about(file)).clicked() {
+        if file_row(ui, file.name(), selected, about(file)) {
             clicked = Some(file);
         }
     }
     own_files(ui, known, heading, selected, about).or(clicked)
+}
+
+/// Draws the row of a file that can be used. Returns whether it was clicked.
+fn file_row(ui: &mut egui::Ui, name: &str, selected: Option<&str>, about: &str) -> bool {
+    ui.selectable_label(selected == Some(name), name).on_hover_text(about).clicked()
 }
 
 /// Draws the user's own files below a heading, if there are any. Returns the clicked one.
@@ -113,8 +117,7 @@ pub(super) fn own_files<'k, T: OwnKind>(
     for own in known.own() {
         match &own.content {
             Ok(file) => {
-                let button = ui.selectable_label(selected == Some(&own.name), &own.name);
-                if button.on_hover_text(about(file)).clicked() {
+                if file_row(ui, &own.name, selected, about(file)) {
                     clicked = Some(file);
                 }
             }

@@ -337,20 +337,24 @@ impl CurrentRun {
 
     /// Resumes a run that was stopped. The current run can be resumed later.
     pub fn go_on_with(&mut self, folder: &Path) -> Result<(), String> {
-        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
-        self.plan_next = source.plan.clone();
-        self.replace(source);
+        self.replace_by(folder)?;
         self.start()
     }
 
     /// Opens a run that was stopped earlier, paused, instead of the run with which the studio opened.
     pub fn open_stopped(&mut self, folder: &Path) -> Result<(), String> {
-        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
-        self.plan_next = source.plan.clone();
         let number = self.number;
-        self.replace(source);
+        self.replace_by(folder)?;
         self.number = number;
         self.background().map(drop)
+    }
+
+    /// Replaces the current run by the one in a folder, without starting it.
+    fn replace_by(&mut self, folder: &Path) -> Result<(), String> {
+        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
+        self.plan_next = source.plan.clone();
+        self.replace(source);
+        Ok(())
     }
 
     /// Lends the stage and the settings to a lesson, or takes them back. During the lesson, edits of settings do not

@@ -226,4 +226,4 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

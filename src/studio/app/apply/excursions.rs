@@ -46,11 +46,6 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
             let innermost = way.innermost().filter(|_| way.can_leave());
             innermost.map_or(Effect::None, |(innermost, _)| Effect::Leave(innermost))
         }
-        Command::Plan(PlanCommand::DropChange) | Command::Undo | Command::Redo
-            if is_what_if(from) && shown.is_some_and(|mode| !is_what_if(mode)) =>
-        {
-            Effect::Leave(Excursion::WhatIf)
-        }
         Command::Exam(ExamCommand::BackToOwnStairs) => Effect::Leave(Excursion::Exam),
         Command::Body(BodyCommand::Close) => Effect::Leave(Excursion::Body),
         _ if shown.is_none() => Effect::None,

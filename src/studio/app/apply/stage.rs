@@ -30,7 +30,7 @@ pub(crate) struct StageParams<'w, 's> {
     pub(super) lanes: Query<'w, 's, (Entity, &'static Lane)>,
     pub(super) mode: ResMut<'w, StageMode>,
     pub(super) show: MessageWriter<'w, Show>,
-    /// What the present command shows, if anything.
+    /// Request of the present command to the stage, if there is one.
     pub(super) pending: Local<'s, Option<Show>>,
     pub(super) way_back: ResMut<'w, WayBack>,
     commands: Commands<'w, 's>,

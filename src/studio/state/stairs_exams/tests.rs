@@ -7,7 +7,7 @@ use snakes_core::save::shipped_champion;
 use snakes_core::score::Trial;
 
 /// Creates an exam in which no snake lands, without simulating it.
-fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
+pub(crate) fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
     let conditions = suite.conditions(own);
     let end = ExamEnd {
         steps: 2,

@@ -1,4 +1,4 @@
-//! What all files of films have in common.
+//! The interface of all files of films: add frames, then finish.
 
 use crate::export::ExportError;
 use snakes_core::save::Picture;

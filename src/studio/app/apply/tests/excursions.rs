@@ -5,8 +5,9 @@ use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{ExamCommand, StageCommand};
 use crate::studio::stage;
 use crate::studio::state::current_run::{climber, explored_run};
+use crate::studio::state::stairs_exams::tests::made_up;
 use bevy::time::TimeUpdateStrategy;
-use snakes_core::score::{ExamEnd, ExamSuite, StairsGrid};
+use snakes_core::score::ExamSuite;
 use snakes_core::world::Pose;
 use std::time::Duration;
 
@@ -59,18 +60,7 @@ fn studio() -> App {
     app.add_plugins((MinimalPlugins, stage::plugin));
     app.insert_resource(explored_run());
     let champion = climber(0).champion().clone();
-    let own = champion.trial.clone();
-    let conditions = ExamSuite::Stairs.conditions(&own);
-    let end = ExamEnd {
-        steps: 2,
-        way: 0.2,
-        landed_s: None,
-        arrived_s: None,
-        has_landed: false,
-        is_disqualified: false,
-    };
-    let ends = vec![end; conditions.len()];
-    let grid = StairsGrid::of(ExamSuite::Stairs, &own, &conditions, &ends);
+    let grid = made_up(ExamSuite::Stairs, &champion.trial);
     app.world_mut().resource_mut::<StairsExams>().keep(champion, vec![grid]);
     app.update();
     app

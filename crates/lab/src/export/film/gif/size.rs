@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(most, Some(MOST_BYTES));
         assert!(choices.pixels(first) * 0.35 <= ESTIMATED_BYTES as f64, "{first:?}");
         assert!(first.size.0 >= 448 && first.fps >= 12, "{first:?} is needlessly poor");
-        // What was tried is not tried again, and the last choice has no limit.
+        // The choices that were taken do not come again, and the last one has no limit.
         choices.learn(first, 90_000_000);
         let rest: Vec<_> = std::iter::from_fn(|| choices.take()).collect();
         assert_eq!(rest, [(GifChoice { size: (256, 144), fps: 5 }, None)]);
