@@ -39,11 +39,12 @@ impl Invalid {
 /// Digits of the longest whole number, 2⁶⁴ - 1.
 const MOST_DIGITS: usize = 20;
 
-/// Returns the text of a number with a power of ten if the text is longer than any whole number: `1e300` instead of 300 zeros. Other texts
-/// stay as they are.
+/// Returns the text of a number with a power of ten if the text is longer than any whole number: `1e300` instead of 300 zeros. Texts whose
+/// digits would not all be kept, such as 2⁷⁰ in full, stay as they are.
 fn without_zeros(text: String) -> String {
     let number = if text.len() > MOST_DIGITS { text.parse::<f64>().ok() } else { None };
-    number.filter(|number| number.is_finite()).map_or(text, |number| format!("{number:e}"))
+    let same = |number: &f64| number.to_string() == text;
+    number.filter(same).map_or_else(|| text.clone(), |number| format!("{number:e}"))
 }
 
 /// Accepts `value` if it lies in `range`, ends included. NaN lies in no range.
@@ -200,6 +201,8 @@ mod tests {
         assert_eq!(told(-1234.5), "-1234.5");
         assert_eq!(told(f64::NEG_INFINITY), "-inf");
         assert_eq!(within("x", u64::MAX, 0..=1).unwrap_err().value, u64::MAX.to_string());
+        let in_full = "1180591620717411303424";
+        assert_eq!(Invalid::new("threads", in_full, "1 to 1024").value, in_full);
         let text = "\"100000000000000000000000\"";
         assert_eq!(Invalid::new("x", text, "a name").value, text);
     }
