@@ -66,6 +66,13 @@ impl MeshBuilder {
         self.tone = Some(factor);
     }
 
+    /// Multiplies the tone of every vertex so far by a factor of its position.
+    pub fn shade(&mut self, factor: impl Fn(Vector) -> f32) {
+        self.tone.get_or_insert(Vector::ONE);
+        let shaded = self.tones.iter_mut().zip(&self.positions);
+        shaded.for_each(|(tone, at)| *tone *= factor(*at));
+    }
+
     /// Adds a flat rectangle around `centre`. `right` and `up` lead from the centre to the middle of two edges.
     pub fn sheet(&mut self, centre: Vector, right: Vector, up: Vector) {
         let normal = right.cross(up).normalize_or_zero();

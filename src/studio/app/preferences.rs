@@ -5,8 +5,9 @@ use bevy::prelude::*;
 use bevy::window::PrimaryWindow;
 
 use crate::studio::commands::overlay::Overlay;
-use crate::studio::scene::camera::StageCamera;
+use crate::studio::commands::quality::Quality;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::quality::StageQuality;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::files::{Files, RecentFiles};
 use crate::studio::state::lessons::Lessons;
@@ -29,8 +30,6 @@ pub(crate) struct StoredPreferences {
     problem: Option<String>,
     /// Time of the last check for changes, in seconds.
     polled_s: f32,
-    /// Whether anti-aliasing was on before the preferences were applied.
-    was_smooth: Option<bool>,
 }
 
 /// Interval between checks for changed preferences, in seconds.
@@ -53,7 +52,7 @@ impl StoredPreferences {
             }
         };
         let file = file.clone();
-        Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0, was_smooth: None }
+        Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0 }
     }
 
     /// Returns the preferences without their file, so that changes are not stored.
@@ -82,14 +81,8 @@ struct Chosen<'w, 's> {
     files: ResMut<'w, Files>,
     machines: ResMut<'w, MachinesLink>,
     lessons: ResMut<'w, Lessons>,
-    smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
+    quality: ResMut<'w, StageQuality>,
     window: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
-}
-
-impl Chosen<'_, '_> {
-    fn is_smooth(&self) -> Option<bool> {
-        self.smoothing.iter().next().map(|msaa| *msaa != Msaa::Off)
-    }
 }
 
 /// Applies the stored preferences to the window.
@@ -99,14 +92,13 @@ fn restore(
     mut notices: ResMut<Notices>,
 ) {
     notices.problems(remembered.problem.take());
-    remembered.was_smooth = chosen.is_smooth();
     let Preferences {
         ui_scale,
         layout,
         overlays,
         speed,
         loops,
-        smooth_edges,
+        quality,
         recent,
         unfolded,
         finished_lessons,
@@ -129,11 +121,7 @@ fn restore(
     if chosen.playback.loops() != loops {
         chosen.playback.toggle_loop();
     }
-    if let Some(is_smooth) = smooth_edges {
-        for mut msaa in &mut chosen.smoothing {
-            *msaa = if is_smooth { Msaa::Sample4 } else { Msaa::Off };
-        }
-    }
+    chosen.quality.chosen = quality.and_then(|name| Quality::named(&name));
 }
 
 /// Writes changed preferences when they have settled, and when the window closes.
@@ -173,8 +161,6 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         .map(|window| (logical(window.width()), logical(window.height())));
     // In the presenting mode, the window's size and the loop are not the user's choice.
     let presents = chosen.workspace.is_presenting();
-    let is_smooth = chosen.is_smooth();
-    let has_chosen = before.smooth_edges.is_some() || is_smooth != remembered.was_smooth;
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),
@@ -184,7 +170,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         overlays: shown.map(|overlay| overlay.name().to_owned()).collect(),
         speed: chosen.playback.speed(),
         loops: if presents { before.loops } else { chosen.playback.loops() },
-        smooth_edges: is_smooth.filter(|_| has_chosen),
+        quality: chosen.quality.chosen.map(|quality| quality.name().to_owned()),
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
@@ -208,6 +194,7 @@ mod tests {
             .init_resource::<Workspace>()
             .init_resource::<Theme>()
             .init_resource::<Overlays>()
+            .init_resource::<StageQuality>()
             .init_resource::<Playback>()
             .init_resource::<Files>()
             .init_resource::<MachinesLink>()
@@ -233,6 +220,7 @@ mod tests {
             .finished
             .insert("Friction: how much?".to_owned());
         first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
+        first.world_mut().resource_mut::<StageQuality>().chosen = Some(Quality::Beautiful);
         first.world_mut().resource_mut::<Playback>().set_speed(0.5);
         *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
         let recent = RecentFiles::from_texts(&["/saves/mine.ron".to_owned()]);
@@ -245,6 +233,7 @@ mod tests {
         assert!(second.world().resource::<Workspace>().unfolded.contains("Surface"));
         assert_eq!(second.world().resource::<Lessons>().finished.len(), 1);
         assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
+        assert_eq!(second.world().resource::<StageQuality>().chosen, Some(Quality::Beautiful));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);
         assert_eq!(second.world().resource::<MachinesLink>().address(), "nats://desk:4222");

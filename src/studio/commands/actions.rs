@@ -307,7 +307,7 @@ fn camera_rows() -> [ActionRow; 5] {
 fn window_rows() -> [ActionRow; 8] {
     [
         ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
-        ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
+        ("Next picture quality", &["A"], View(ViewCommand::NextQuality)),
         ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
         (
             "Larger panels",

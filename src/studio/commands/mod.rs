@@ -11,6 +11,7 @@ pub mod modal;
 pub mod overlay;
 pub mod panel;
 pub mod pick;
+pub mod quality;
 pub mod screenshot_area;
 pub mod share;
 pub mod turn;
@@ -32,6 +33,7 @@ use modal::Modal;
 use overlay::Overlay;
 use panel::PanelKind;
 use pick::Pick;
+use quality::Quality;
 use screenshot_area::ScreenshotArea;
 use share::ShareCommand;
 use turn::Turn;
@@ -227,8 +229,10 @@ pub(super) enum ViewCommand {
     ResetCamera,
     /// Show or hide an overlay of the scene.
     ToggleOverlay(Overlay),
-    /// Turn anti-aliasing on or off.
-    ToggleSmoothEdges,
+    /// Draw the stage at this quality; `None` for the quality that suits the device.
+    SetQuality(Option<Quality>),
+    /// Select the next quality of the stage's picture.
+    NextQuality,
     /// Switch between the light and the dark theme.
     ToggleTheme,
     /// Save a picture of the stage or of the window.

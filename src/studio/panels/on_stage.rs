@@ -9,6 +9,7 @@ use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand}
 use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -30,7 +31,7 @@ pub(crate) struct OnStage<'w, 's> {
     pub history: Res<'w, UndoHistory>,
     pub following: Res<'w, Following>,
     pub way_back: Res<'w, WayBack>,
-    pub smoothing: Query<'w, 's, &'static Msaa, With<StageCamera>>,
+    pub quality: Res<'w, StageQuality>,
     camera: Query<'w, 's, (&'static Camera, &'static Transform), With<StageCamera>>,
 }
 
@@ -74,9 +75,6 @@ impl OnStage<'_, '_> {
             }
             Command::View(ViewCommand::ToggleOverlay(overlay)) => {
                 Some(self.overlays.shows(*overlay))
-            }
-            Command::View(ViewCommand::ToggleSmoothEdges) => {
-                Some(self.smoothing.iter().any(|msaa| *msaa != Msaa::Off))
             }
             Command::View(ViewCommand::ToggleTheme) => Some(theme == Theme::Dark),
             Command::Stage(StageCommand::ToggleFollowEvolution) => {

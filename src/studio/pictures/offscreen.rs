@@ -28,6 +28,7 @@ use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
 use crate::studio::failure::panic_guard;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::{self, camera};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -103,6 +104,7 @@ impl Offscreen {
         }
         let mut app = App::new();
         app.insert_resource(theme)
+            .insert_resource(StageQuality::for_films())
             .add_plugins(plugins)
             .configure_sets(
                 Update,
@@ -119,8 +121,7 @@ impl Offscreen {
         app.get_sub_app_mut(RenderApp).into_iter().for_each(run_systems_in_order);
         let texture = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(texture);
-        // Pictures are always anti-aliased, because there are only a few of them.
-        let eye = camera::camera_components(Msaa::Sample4, theme.palette());
+        let eye = camera::camera_components(theme.palette());
         // With indirect drawing, the graphics card's threads determine the order of instances, which can affect pixels
         // where surfaces touch. The same scene must always give the same picture.
         app.world_mut().spawn((eye, RenderTarget::Image(target.clone().into()), NoIndirectDrawing));

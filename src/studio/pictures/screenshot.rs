@@ -58,12 +58,12 @@ fn picture_size(stage: Option<UVec2>) -> UVec2 {
 /// Takes a screenshot of the window at once. For one of the stage, spawns a second camera.
 fn take(
     mut requests: MessageReader<ScreenshotArea>,
-    camera: Single<(&Camera, &Transform, &Msaa), With<StageCamera>>,
+    camera: Single<(&Camera, &Transform), With<StageCamera>>,
     mut images: ResMut<Assets<Image>>,
     theme: Res<Theme>,
     mut commands: Commands,
 ) {
-    let (camera, place, msaa) = *camera;
+    let (camera, place) = *camera;
     for area in requests.read() {
         match area {
             ScreenshotArea::Window => {
@@ -75,7 +75,7 @@ fn take(
                 let picture = images.add(Image::new_target_texture(size.x, size.y, format, None));
                 commands.spawn((
                     PendingScreenshot { picture: picture.clone(), frames: FRAMES },
-                    camera_components(*msaa, theme.palette()),
+                    camera_components(theme.palette()),
                     RenderTarget::Image(picture.into()),
                     *place,
                 ));

@@ -14,11 +14,9 @@ use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
 use bevy::pbr::{DistanceFog, FogFalloff};
 use bevy::prelude::*;
 use bevy::render::render_resource::BlendState;
-use bevy::render::renderer::RenderAdapterInfo;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
-use super::quality::Quality;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -39,13 +37,11 @@ pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
     view.looking_at(Vec3::new(0.0, (from_y_m + to_y_m) / 2.0, 1.5))
 }
 
-/// Returns the components that every camera of the scene shares: no tone mapping, and fog that hides the end of the
-/// ground.
-pub(crate) fn camera_components(msaa: Msaa, palette: &Palette) -> impl Bundle {
+/// Returns the components that every camera of the scene shares: fog that hides the end of the ground.
+pub(crate) fn camera_components(palette: &Palette) -> impl Bundle {
     (
         Camera3d::default(),
         Tonemapping::None,
-        msaa,
         DistanceFog {
             color: palette.horizon,
             falloff: FogFalloff::Linear { start: 50.0, end: 190.0 },
@@ -89,14 +85,10 @@ pub(crate) fn plugin(app: &mut App) {
 fn set_up(
     mut commands: Commands,
     mut egui_settings: ResMut<EguiGlobalSettings>,
-    adapter: Res<RenderAdapterInfo>,
     theme: Res<Theme>,
 ) {
     egui_settings.auto_create_primary_context = false;
-    commands.spawn((
-        StageCamera,
-        camera_components(Quality::for_adapter(&adapter).msaa, theme.palette()),
-    ));
+    commands.spawn((StageCamera, camera_components(theme.palette())));
     commands.spawn((
         PrimaryEguiContext,
         Camera2d,

@@ -1,14 +1,14 @@
-//! Fittings of the stairs: a railing, a finish at the last step, and a wall with a door. The door has the size of a
-//! real door, which shows the scale of the scene.
+//! Fittings of the stairs: a railing, a finish at the last step, and a wall with a doorway and
+//! a light behind it, as the goal. The door has the size of a real door, which shows the scale of the scene.
 //!
-//! The fittings have no physics; they are beside and above the snake's way. Each lane has three meshes, which lanes
+//! The fittings have no physics; they are beside and above the snake's way. Each lane has five meshes, which lanes
 //! with the same stairs share.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::cache::SceneCache;
-use super::meshes::{BALL_SIDES, to_mesh};
+use super::meshes::{BALL_SIDES, to_fading_mesh, to_mesh};
 use super::props::themed;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
@@ -37,6 +37,9 @@ const WALL_M: f32 = 3.2;
 const WALL_THICK_M: f32 = 0.25;
 /// Width and height of the door, in metres.
 const DOOR_M: [f32; 2] = [1.1, 2.1];
+/// Distance that the light from the door reaches on the landing, in metres, and its opacity at the door.
+const SHINE_M: f32 = 4.0;
+const SHINE: f32 = 0.32;
 /// Height of painted areas above their surface, in metres.
 const PAINT_M: f32 = 0.006;
 /// Minimum depth of a landing with a finish, in metres.
@@ -48,6 +51,8 @@ struct Fittings {
     wood: Handle<StandardMaterial>,
     wall: Handle<StandardMaterial>,
     white: Handle<StandardMaterial>,
+    lamp: Handle<StandardMaterial>,
+    shine: Handle<StandardMaterial>,
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -56,11 +61,18 @@ pub(crate) fn plugin(app: &mut App) {
 
 impl FromWorld for Fittings {
     fn from_world(world: &mut World) -> Self {
+        let lamp = StandardMaterial { unlit: true, ..default() };
         let dull = StandardMaterial { perceptual_roughness: 0.8, reflectance: 0.2, ..default() };
         Self {
             wood: themed(world, dull.clone(), |palette| palette.wood),
             wall: themed(world, dull.clone(), |palette| palette.wall),
             white: themed(world, dull, |palette| palette.white),
+            lamp: themed(world, lamp.clone(), |palette| palette.lamp),
+            shine: themed(
+                world,
+                StandardMaterial { alpha_mode: AlphaMode::Add, ..lamp },
+                |palette| palette.lamp,
+            ),
         }
     }
 }
@@ -69,7 +81,7 @@ impl FromWorld for Fittings {
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     fittings: Res<Fittings>,
-    mut last: Local<SceneCache<Stairs, [Handle<Mesh>; 3]>>,
+    mut last: Local<SceneCache<Stairs, [Handle<Mesh>; 5]>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
@@ -78,22 +90,24 @@ fn build(
         if stairs.steps == 0 {
             continue;
         }
-        let [wood, wall, cheques] = last.get(stairs, 1, || {
-            [railing(stairs), wall(stairs), cheques(stairs)].map(|solid| meshes.add(to_mesh(solid)))
+        let [wood, wall, cheques, doorway, shine] = last.get(stairs, 1, || {
+            let solids = [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)];
+            let [wood, wall, cheques, doorway] = solids.map(to_mesh);
+            [wood, wall, cheques, doorway, shine(stairs)].map(|mesh| meshes.add(mesh))
         });
         commands.entity(entity).with_children(|parent| {
             parent.spawn((Mesh3d(wood), MeshMaterial3d(fittings.wood.clone())));
             parent.spawn((Mesh3d(wall), MeshMaterial3d(fittings.wall.clone())));
-            parent.spawn((
-                Mesh3d(cheques),
-                MeshMaterial3d(fittings.white.clone()),
-                NotShadowCaster,
-            ));
+            for (mesh, material) in
+                [(cheques, &fittings.white), (doorway, &fittings.lamp), (shine, &fittings.shine)]
+            {
+                parent.spawn((Mesh3d(mesh), MeshMaterial3d(material.clone()), NotShadowCaster));
+            }
         });
     }
 }
 
-/// Builds the door, and the railing on the left, which is behind the snake in the default view.
+/// Builds the railing on the left, which is behind the snake in the default view.
 fn railing(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let x_m = INSIDE_M - stairs.width_m / 2.0;
@@ -128,11 +142,52 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
             solid.ball(on_bar + Vec3::Z * RAIL_M, RAIL_RADIUS_M * 1.4, BALL_SIDES);
         }
     }
-    let [door_width_m, door_height_m] = door_m(stairs);
-    let front_m = end_m - WALL_THICK_M - PAINT_M;
-    let middle = Vec3::new(0.0, front_m, top_m + door_height_m / 2.0);
-    solid.sheet(middle, Vec3::X * door_width_m / 2.0, Vec3::Z * door_height_m / 2.0);
     solid
+}
+
+/// Builds the lit doorway.
+fn doorway(stairs: &Stairs) -> MeshBuilder {
+    let mut solid = MeshBuilder::default();
+    let [width_m, height_m] = door_m(stairs);
+    let front_m = stairs.end_y_m() - WALL_THICK_M - PAINT_M;
+    let middle = Vec3::new(0.0, front_m, stairs.height_m(stairs.steps) + height_m / 2.0);
+    solid.sheet(middle, Vec3::X * width_m / 2.0, Vec3::Z * height_m / 2.0);
+    solid
+}
+
+/// Builds the light that falls out of the door onto the landing and onto the wall around the door.
+fn shine(stairs: &Stairs) -> Mesh {
+    let mut solid = MeshBuilder::default();
+    let [width_m, height_m] = door_m(stairs);
+    let (front_m, top_m) = (stairs.end_y_m() - WALL_THICK_M, stairs.height_m(stairs.steps));
+    let last_m = stairs.step_tread_m(stairs.steps.saturating_sub(1));
+    let reach_m = SHINE_M.min((stairs.landing_m + last_m - WALL_THICK_M) * 0.8).max(0.0);
+    let half_m = stairs.width_m / 2.0;
+    let [on_floor, on_wall] = [top_m + PAINT_M * 1.5, front_m - PAINT_M];
+    solid.patch(8, 6, |column, row| {
+        let (across, along) = (column as f32 / 4.0 - 1.0, 1.0 - row as f32 / 6.0);
+        let x_m = across * (width_m / 2.0 + (half_m - width_m / 2.0) * along);
+        [Vec3::new(x_m, front_m - reach_m * along, on_floor), Vec3::Z]
+    });
+    solid.patch(24, 4, |side, ring| {
+        let (sin, cos) = libm::sincosf(std::f32::consts::PI * (1.0 - side as f32 / 24.0));
+        let far = ring as f32 / 4.0;
+        let x_m = cos * (width_m / 2.0 + (half_m - width_m / 2.0) * far);
+        let z_m = sin * (height_m + (WALL_M - height_m) * far);
+        [Vec3::new(x_m, on_wall, top_m + z_m), Vec3::NEG_Y]
+    });
+    to_fading_mesh(solid, |at| {
+        let out_m = Vec2::new((at.x.abs() - width_m / 2.0).max(0.0), front_m - at.y).length();
+        let is_on_wall = at.y > on_wall - PAINT_M / 2.0 && at.z > on_floor + PAINT_M;
+        let far = if is_on_wall {
+            let above = ((at.z - top_m - height_m) / (WALL_M - height_m)).max(0.0);
+            above.max((at.x.abs() - width_m / 2.0) / (half_m - width_m / 2.0).max(0.01))
+        } else {
+            out_m / reach_m.max(0.01)
+        };
+        let left = (1.0 - far).clamp(0.0, 1.0);
+        SHINE * left * left
+    })
 }
 
 /// Returns the width and height of the door, in metres. The door is narrower on narrow stairs.
@@ -160,7 +215,7 @@ fn wall(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Builds the chequered line on the floor, the squares on both sides of the board above it, and the door's frame and handle.
+/// Builds the chequered line on the floor, the squares on both sides of the board above it, and the door's frame.
 fn cheques(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let top_m = stairs.height_m(stairs.steps);
@@ -189,8 +244,6 @@ fn cheques(stairs: &Stairs) -> MeshBuilder {
     }
     let lintel = Vec3::new(0.0, front_m, top_m + door_height_m + 0.06);
     solid.rounded_box(lintel, Vec3::new(door_width_m + 0.24, 0.08, 0.12), 0.01, 1);
-    let handle = Vec3::new(door_width_m * 0.36, front_m - 0.04, top_m + door_height_m * 0.48);
-    solid.ball(handle, 0.05, BALL_SIDES);
     solid
 }
 
@@ -225,8 +278,8 @@ fn has_finish(stairs: &Stairs) -> bool {
 mod tests {
     use super::*;
 
-    fn parts(stairs: &Stairs) -> [MeshBuilder; 3] {
-        [railing(stairs), wall(stairs), cheques(stairs)]
+    fn parts(stairs: &Stairs) -> [MeshBuilder; 4] {
+        [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)]
     }
 
     #[test]

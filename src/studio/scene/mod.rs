@@ -13,6 +13,7 @@ pub mod meshes;
 mod mipmaps;
 pub mod name_tags;
 pub mod overlays;
+mod plants;
 pub mod props;
 pub mod quality;
 pub mod sky;
@@ -28,16 +29,14 @@ pub mod view_commands;
 pub mod way_back;
 pub mod wireframe;
 
-use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder, DirectionalLightShadowMap};
+use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder};
 use bevy::pbr::DistanceFog;
 use bevy::prelude::*;
-use bevy::render::renderer::RenderAdapterInfo;
 
 use super::schedule::FrameSet;
 use super::ui::theme::Theme;
 
 use props::Props;
-use quality::Quality;
 
 /// Adds the scene of the window: everything that is drawn, the camera and the mouse.
 pub(super) fn plugin(app: &mut App) {
@@ -45,6 +44,7 @@ pub(super) fn plugin(app: &mut App) {
         drawing,
         camera::plugin,
         camera::mouse::plugin,
+        quality::watch_frames,
         wireframe::plugin,
         name_tags::plugin,
         confetti::plugin,
@@ -56,8 +56,10 @@ pub(super) fn drawing(app: &mut App) {
     app.init_resource::<Theme>()
         .init_resource::<Props>()
         .add_plugins((
+            quality::plugin,
             sky::plugin,
             ground::plugin,
+            plants::plugin,
             surface_material::plugin,
             stairs::plugin,
             lane_marks::plugin,
@@ -77,6 +79,9 @@ pub(super) fn drawing(app: &mut App) {
         );
 }
 
+/// Direction to the sun or the moon: behind the viewer's right shoulder in the default view, so that treads and risers have different
+/// brightness.
+const LIGHT_FROM: Vec3 = Vec3::new(9.0, -12.0, 16.0);
 /// Ratio of the shadows' reach to the distance of the point at which the camera looks, so that shadows cover its surroundings.
 const SHADOWS_BEYOND: f32 = 1.7;
 /// Allowed reach of the shadows, in metres from the camera.
@@ -84,9 +89,7 @@ const SHADOWS_END_M: std::ops::RangeInclusive<f32> = 14.0..=150.0;
 /// Ratio between two steps of the shadows' reach. The reach changes in steps, so that shadows do not crawl while the camera moves.
 const SHADOW_STEP: f32 = 1.3;
 
-fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
-    let size = Quality::for_adapter(&adapter).shadow_map_pixels;
-    commands.insert_resource(DirectionalLightShadowMap { size });
+fn set_up(mut commands: Commands) {
     commands.spawn((
         DirectionalLight {
             shadow_maps_enabled: true,
@@ -94,8 +97,7 @@ fn set_up(mut commands: Commands, adapter: Res<RenderAdapterInfo>) {
             shadow_depth_bias: 0.09,
             ..default()
         },
-        // The light comes from behind the viewer's right shoulder, so that treads and risers have different brightness.
-        Transform::from_xyz(9.0, -12.0, 16.0).looking_at(Vec3::ZERO, Vec3::Z),
+        Transform::from_translation(LIGHT_FROM).looking_at(Vec3::ZERO, Vec3::Z),
         shadows_until(*SHADOWS_END_M.end()),
     ));
 }

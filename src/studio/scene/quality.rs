@@ -1,33 +1,167 @@
-//! Quality of rendering, which is lower for software rendering.
+//! Quality of the stage's picture: the effects of each step, and the choice of a step by the device and by the measured time of frames.
 //!
-//! Without a graphics card, the CPU cores that run evolution also compute every sample of every pixel. Anti-aliasing
-//! and sharp shadows are then too expensive.
+//! Without a graphics card, the CPU cores that run evolution also compute every sample of every pixel. Smooth edges and sharp shadows
+//! are then too expensive.
 
+use std::time::Duration;
+
+use bevy::anti_alias::smaa::{Smaa, SmaaPreset};
+use bevy::camera::Hdr;
+use bevy::core_pipeline::prepass::{DepthPrepass, NormalPrepass};
+use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::light::DirectionalLightShadowMap;
+use bevy::pbr::{ContactShadows, ScreenSpaceAmbientOcclusion};
+use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
 use wgpu_types::DeviceType;
 
-/// Quality settings of the renderer.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Quality {
-    /// Number of anti-aliasing samples per pixel.
-    pub msaa: Msaa,
-    /// Side length of the shadow map, in pixels.
-    pub shadow_map_pixels: usize,
+use crate::studio::commands::quality::Quality;
+use crate::studio::schedule::FrameSet;
+
+/// Step of quality of the stage's picture.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct StageQuality {
+    /// Step that the user chose; `None` for the automatic one.
+    pub chosen: Option<Quality>,
+    /// Step that suits the device.
+    automatic: Quality,
+    /// Lowest allowed step.
+    least: Quality,
 }
 
-impl Quality {
-    /// Returns the quality settings for a type of device.
-    pub fn of(device: DeviceType) -> Self {
-        match device {
-            DeviceType::Cpu => Self { msaa: Msaa::Off, shadow_map_pixels: 1024 },
-            _ => Self { msaa: Msaa::Sample4, shadow_map_pixels: 2048 },
-        }
+impl Default for StageQuality {
+    fn default() -> Self {
+        Self { chosen: None, automatic: Quality::Smooth, least: Quality::Fast }
+    }
+}
+
+impl StageQuality {
+    /// Returns the quality for pictures and films without a window, which have at least smooth edges.
+    pub fn for_films() -> Self {
+        Self { least: Quality::Smooth, ..Self::default() }
     }
 
-    /// Returns the quality settings for the renderer's adapter.
-    pub fn for_adapter(adapter: &RenderAdapterInfo) -> Self {
-        Self::of(adapter.0.device_type)
+    /// Returns the step of the stage's picture.
+    pub fn now(&self) -> Quality {
+        self.chosen.unwrap_or(self.automatic).max(self.least)
+    }
+}
+
+/// Components of a camera that only [`Quality::Beautiful`] has.
+type Effects =
+    (Hdr, Smaa, ScreenSpaceAmbientOcclusion, ContactShadows, Bloom, DepthPrepass, NormalPrepass);
+
+/// Duration over which frames are averaged.
+const WATCHED: Duration = Duration::from_secs(2);
+/// Duration of a frame from which the automatic step becomes lower: slower than 30 frames per second, with a margin.
+const TOO_SLOW: Duration = Duration::from_millis(37);
+/// Duration of a frame that is not counted: the window was hidden, or the program was stopped.
+const PAUSE: Duration = Duration::from_millis(500);
+/// Number of averages in a row that are too slow before the automatic step becomes lower. The first frames of a step compile pipelines.
+const TIMES: u32 = 3;
+
+/// Sum of the durations of frames since the last average.
+#[derive(Debug, Default)]
+struct FrameWatch {
+    frames: u32,
+    sum: Duration,
+    slow: u32,
+}
+
+impl FrameWatch {
+    /// Counts a frame, and returns whether frames have been too slow for long.
+    fn is_slow_after(&mut self, frame: Duration) -> bool {
+        if frame > PAUSE {
+            return false;
+        }
+        (self.frames, self.sum) = (self.frames + 1, self.sum + frame);
+        if self.sum < WATCHED {
+            return false;
+        }
+        let is_slow = self.sum > TOO_SLOW * self.frames;
+        *self = Self { slow: if is_slow { self.slow + 1 } else { 0 }, ..Self::default() };
+        self.slow >= TIMES
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<StageQuality>()
+        .add_systems(PreStartup, suit_device)
+        .add_systems(Update, equip_cameras.in_set(FrameSet::Draw));
+}
+
+/// Adds the choice of a lower step for a window whose frames take too long.
+pub(super) fn watch_frames(app: &mut App) {
+    app.add_systems(Update, lower.in_set(FrameSet::Draw).before(equip_cameras));
+}
+
+/// Returns the step that suits a type of device. A small integrated graphics card draws smooth edges at full speed, but not every effect.
+fn for_device(device: DeviceType) -> Quality {
+    match device {
+        DeviceType::Cpu => Quality::Fast,
+        DeviceType::DiscreteGpu => Quality::Beautiful,
+        _ => Quality::Smooth,
+    }
+}
+
+fn suit_device(mut quality: ResMut<StageQuality>, adapter: Res<RenderAdapterInfo>) {
+    quality.automatic = for_device(adapter.0.device_type);
+}
+
+/// Lowers the automatic step while frames take too long.
+fn lower(mut quality: ResMut<StageQuality>, mut watch: Local<FrameWatch>, time: Res<Time<Real>>) {
+    if watch.is_slow_after(time.delta()) && quality.chosen.is_none() {
+        *watch = FrameWatch::default();
+        quality.automatic = match quality.automatic {
+            Quality::Beautiful => Quality::Smooth,
+            Quality::Smooth | Quality::Fast => Quality::Fast,
+        };
+    }
+}
+
+/// Gives new cameras of the scene the effects of the step, and all of them and the light when the step changes.
+fn equip_cameras(
+    quality: Res<StageQuality>,
+    cameras: Query<(Entity, Ref<Camera3d>)>,
+    mut suns: Query<&mut DirectionalLight>,
+    mut equipped: Local<Option<Quality>>,
+    mut commands: Commands,
+) {
+    let now = quality.now();
+    let has_changed = equipped.replace(now) != Some(now);
+    for (camera, scene) in &cameras {
+        if has_changed || scene.is_added() {
+            equip(&mut commands.entity(camera), now);
+        }
+    }
+    if has_changed {
+        suns.iter_mut().for_each(|mut sun| sun.contact_shadows_enabled = now == Quality::Beautiful);
+        let size = if now == Quality::Fast { 1024 } else { 2048 };
+        commands.insert_resource(DirectionalLightShadowMap { size });
+    }
+}
+
+/// Gives a camera the effects of a step.
+fn equip(camera: &mut EntityCommands, quality: Quality) {
+    match quality {
+        Quality::Fast | Quality::Smooth => {
+            let msaa = if quality == Quality::Fast { Msaa::Off } else { Msaa::Sample4 };
+            camera.remove::<Effects>().insert((msaa, Tonemapping::None));
+        }
+        Quality::Beautiful => {
+            let effects: Effects = (
+                Hdr,
+                Smaa { preset: SmaaPreset::High },
+                ScreenSpaceAmbientOcclusion::default(),
+                ContactShadows::default(),
+                Bloom { intensity: 0.08, ..Bloom::NATURAL },
+                DepthPrepass,
+                NormalPrepass,
+            );
+            // Ambient occlusion needs a picture with one sample per pixel.
+            camera.insert((Msaa::Off, Tonemapping::TonyMcMapface, effects));
+        }
     }
 }
 
@@ -36,10 +170,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_software_rendering_lowers_the_quality() {
-        assert_eq!(Quality::of(DeviceType::Cpu).msaa, Msaa::Off);
-        for device in [DeviceType::DiscreteGpu, DeviceType::IntegratedGpu, DeviceType::Other] {
-            assert_eq!(Quality::of(device).msaa, Msaa::Sample4);
+    fn only_software_rendering_starts_without_smooth_edges() {
+        assert_eq!(for_device(DeviceType::Cpu), Quality::Fast);
+        assert_eq!(for_device(DeviceType::DiscreteGpu), Quality::Beautiful);
+        for device in [DeviceType::IntegratedGpu, DeviceType::VirtualGpu, DeviceType::Other] {
+            assert_eq!(for_device(device), Quality::Smooth);
         }
+    }
+
+    #[test]
+    fn frames_that_are_slow_for_long_are_noticed_and_a_pause_is_not() {
+        let slow_after = |ms: u64, frames: usize| {
+            let mut watch = FrameWatch::default();
+            (0..frames).any(|_| watch.is_slow_after(Duration::from_millis(ms)))
+        };
+        assert!(!slow_after(17, 10_000), "60 frames per second");
+        assert!(!slow_after(34, 10_000), "30 frames per second");
+        assert!(slow_after(50, 130) && !slow_after(50, 100), "six seconds at 20 frames per second");
+        assert!(!slow_after(900, 100), "a hidden window");
+    }
+
+    #[test]
+    fn a_chosen_step_replaces_the_automatic_one() {
+        let mut quality = StageQuality::default();
+        assert_eq!(quality.now(), Quality::Smooth);
+        quality.chosen = Some(Quality::Beautiful);
+        assert_eq!(quality.now(), Quality::Beautiful);
     }
 }

@@ -25,6 +25,11 @@ const STRIP_M: f32 = 0.004;
 /// Brightness factor of every other step, so that adjacent treads of the same material can be told apart.
 const OTHER_STEP: f32 = 0.86;
 
+/// Brightness factor in the corner between a tread and the next riser, where less of the sky is seen.
+const CORNER: f32 = 0.6;
+/// Distance from that corner at which the shade ends on the tread, in metres.
+const CORNER_M: f32 = 0.5;
+
 /// Material of the mesh that casts the stairs' shadow.
 #[derive(Resource, Debug)]
 struct Caster(Handle<StandardMaterial>);
@@ -91,12 +96,24 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
         for ends in outline[corner..=corner + faces].windows(2) {
             let [from, to] = [ends[0], ends[1]].map(|[y_m, z_m]| Vec3::new(0.0, y_m, z_m));
             // A tread at ground level is drawn with the strip of ground.
-            if from != to && from.z.max(to.z) > 0.0 {
-                solid.sheet((from + to) / 2.0, Vec3::X * half_m, (to - from) / 2.0);
+            if from == to || from.z.max(to.z) <= 0.0 {
+                continue;
+            }
+            // A deep tread has a line of vertices where the shade of its corner ends.
+            let reach = CORNER_M / from.distance(to);
+            let middle = if reach < 1.0 { to.lerp(from, reach) } else { from };
+            for (from, to) in [(from, middle), (middle, to)] {
+                if from != to {
+                    solid.sheet((from + to) / 2.0, Vec3::X * half_m, (to - from) / 2.0);
+                }
             }
         }
         corner += faces;
     }
+    let inner = inner_corners(&outline);
+    solid.shade(
+        |at| if inner.iter().any(|of| at.yz().distance(*of) < 1.0e-3) { CORNER } else { 1.0 },
+    );
     sides(&mut solid, stairs);
     if let Some([end_m, top_m]) = outline.last().filter(|[_, top_m]| *top_m > 0.0) {
         let back = Vec3::new(0.0, *end_m, top_m / 2.0);
@@ -107,6 +124,13 @@ fn solid(stairs: &Stairs) -> MeshBuilder {
         solid.sheet(bottom, Vec3::NEG_X * half_m, Vec3::Y * (to_m - from_m) / 2.0);
     }
     solid
+}
+
+/// Returns the points of an outline of y and z, in metres, where it turns upward: the corners between a tread and the next riser.
+fn inner_corners(outline: &[[f32; 2]]) -> Vec<Vec2> {
+    let points: Vec<Vec2> = outline.iter().map(|point| Vec2::from(*point)).collect();
+    let turns_up = |of: &&[Vec2]| (of[1] - of[0]).perp_dot(of[2] - of[1]) > 0.0;
+    points.windows(3).filter(turns_up).map(|of| of[1]).collect()
 }
 
 /// Returns the brightness factor of a step for red, green and blue.

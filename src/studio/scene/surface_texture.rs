@@ -13,7 +13,7 @@ use super::surface_look::{SurfaceLook, mix};
 /// Side of the square that a texture covers, in metres.
 pub(crate) const TILE_M: f32 = 4.0;
 /// Side of a texture, in pixels: a power of two.
-const SIDE: usize = 256;
+pub(super) const SIDE: usize = 256;
 /// Number of threads of the weave along a side of the texture.
 const THREADS: usize = 16;
 /// Number of steps of each share in [`Grain`].
@@ -143,13 +143,13 @@ fn slope(x: usize, y: usize, height: impl Fn(usize, usize) -> f32) -> f32 {
 }
 
 /// Interpolates smoothly from 0 at `from` to 1 at `to`.
-fn rise(value: f32, from: f32, to: f32) -> f32 {
+pub(super) fn rise(value: f32, from: f32, to: f32) -> f32 {
     let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
 }
 
 /// Returns smooth noise from 0 to 1 with `cells` cells per side. The noise continues across the edges of the texture.
-fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
+pub(super) fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     let across = |at: usize| {
         let place = at as f32 * cells as f32 / SIDE as f32;
         (place as usize, rise(place - libm::floorf(place), 0.0, 1.0))
@@ -183,7 +183,7 @@ fn between_cells(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
 }
 
 /// Returns a pseudorandom number from 0 to 1 that depends only on its arguments.
-fn random(x: u32, y: u32, seed: u32) -> f32 {
+pub(super) fn random(x: u32, y: u32, seed: u32) -> f32 {
     let mut mixed =
         x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);

@@ -3,9 +3,9 @@
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
-use super::camera::StageCamera;
 use super::camera::rig::CameraRig;
 use super::overlays::Overlays;
+use super::quality::StageQuality;
 use crate::studio::commands::ViewCommand;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
@@ -15,15 +15,15 @@ use crate::studio::ui::theme::Theme;
 
 /// System parameters that make up the state of the view.
 #[derive(SystemParam)]
-pub(crate) struct ViewParams<'w, 's> {
+pub(crate) struct ViewParams<'w> {
     pub rig: ResMut<'w, CameraRig>,
     overlays: ResMut<'w, Overlays>,
     theme: ResMut<'w, Theme>,
     screenshots: MessageWriter<'w, ScreenshotArea>,
-    smoothing: Query<'w, 's, &'static mut Msaa, With<StageCamera>>,
+    quality: ResMut<'w, StageQuality>,
 }
 
-impl ViewParams<'_, '_> {
+impl ViewParams<'_> {
     /// Returns the look of the stage, for an exported film: camera mode, theme and overlays.
     pub fn look(&self) -> ShareLook {
         let shown = |overlay: &Overlay| self.overlays.shows(*overlay);
@@ -48,11 +48,8 @@ impl ViewParams<'_, '_> {
             }
             ViewCommand::ResetCamera => self.rig.take(CameraMode::Follow),
             ViewCommand::ToggleOverlay(overlay) => self.overlays.toggle(*overlay),
-            ViewCommand::ToggleSmoothEdges => {
-                for mut msaa in &mut self.smoothing {
-                    *msaa = if *msaa == Msaa::Off { Msaa::Sample4 } else { Msaa::Off };
-                }
-            }
+            ViewCommand::SetQuality(quality) => self.quality.chosen = *quality,
+            ViewCommand::NextQuality => self.quality.chosen = Some(self.quality.now().next()),
             ViewCommand::ToggleTheme => *self.theme = self.theme.other(),
             ViewCommand::TakePicture(area) => {
                 self.screenshots.write(*area);

@@ -53,7 +53,7 @@ pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
 pub use plan::{is_run, load_plan, parse_plan};
 pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
 pub use preferences::{
-    LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, THEMES, UI_SCALES,
+    LONGEST_ADDRESS, MAX_RECENT, Preferences, PreferencesFile, QUALITIES, THEMES, UI_SCALES,
 };
 pub use preset::{
     DEFAULT_PRESET, Preset, load_preset, parse_preset, settings_in_words, shipped_preset_names,

@@ -45,8 +45,8 @@ pub struct Preferences {
     pub speed: f32,
     /// Whether playback repeats at the end.
     pub loops: bool,
-    /// Whether edges are smoothed. None: the studio decides by the machine.
-    pub smooth_edges: Option<bool>,
+    /// Name of the quality of the picture: see [`QUALITIES`]. None: the studio decides by the machine.
+    pub quality: Option<String>,
     /// Whether the tour was finished or skipped.
     pub tour_is_over: bool,
     /// Paths of the recently opened or imported files, the latest first.
@@ -69,7 +69,7 @@ impl Default for Preferences {
             overlays: Vec::new(),
             speed: 1.0,
             loops: true,
-            smooth_edges: None,
+            quality: None,
             tour_is_over: false,
             recent: Vec::new(),
             unfolded: Vec::new(),
@@ -81,6 +81,8 @@ impl Default for Preferences {
 
 /// Names of the colour themes.
 pub const THEMES: [&str; 2] = ["light", "dark"];
+/// Names of the steps of the picture's quality, the cheapest first.
+pub const QUALITIES: [&str; 3] = ["fast", "smooth", "beautiful"];
 
 impl Preferences {
     /// Checks every field against its range.
@@ -90,6 +92,9 @@ impl Preferences {
     pub fn check(&self) -> Result<(), Invalid> {
         if !THEMES.contains(&self.theme.as_str()) {
             return Err(Invalid::new("theme", quoted(&self.theme), "light, dark"));
+        }
+        if let Some(quality) = self.quality.as_deref().filter(|name| !QUALITIES.contains(name)) {
+            return Err(Invalid::new("quality", quoted(quality), QUALITIES.join(", ")));
         }
         within("ui_scale", self.ui_scale, UI_SCALES[0]..=UI_SCALES[UI_SCALES.len() - 1])?;
         if let Some((width, height)) = self.window_size {
@@ -188,7 +193,7 @@ mod tests {
         let chosen = Preferences {
             ui_scale: 1.5,
             theme: "dark".to_owned(),
-            smooth_edges: Some(true),
+            quality: Some("smooth".to_owned()),
             ..Preferences::default()
         };
         file.store(&chosen).expect("written");

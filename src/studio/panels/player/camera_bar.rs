@@ -5,9 +5,11 @@ use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
+use crate::studio::commands::quality::Quality;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::commands::{Command, ViewCommand, WindowCommand};
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::quality::StageQuality;
 use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::theme::Theme;
 
@@ -16,7 +18,8 @@ pub(crate) fn view_bar(
     ui: &mut egui::Ui,
     camera_mode: CameraMode,
     overlays: &Overlays,
-    [has_smooth_edges, shows_torques]: [bool; 2],
+    quality: &StageQuality,
+    shows_torques: bool,
     theme: Theme,
     commands: &mut Vec<Command>,
 ) {
@@ -48,9 +51,8 @@ pub(crate) fn view_bar(
             let hint = "Torques of each joint over the whole trial, below the player";
             let (words, toggle) = (("Torques over time", hint), WindowCommand::ToggleTorques);
             command_box(ui, shows_torques, words, Command::Window(toggle), commands);
-            let hint = "Smooth edges with four samples per pixel; slow without a graphics card";
-            let (words, toggle) = (("Anti-aliasing", hint), ViewCommand::ToggleSmoothEdges);
-            command_box(ui, has_smooth_edges, words, Command::View(toggle), commands);
+            ui.separator();
+            quality_choice(ui, quality, commands);
         });
         let (name, hint) = match theme {
             Theme::Light => ("Dark", "Switch to the dark theme"),
@@ -63,6 +65,22 @@ pub(crate) fn view_bar(
             commands.push(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)));
         }
     });
+}
+
+/// Draws the choice of the picture's quality.
+fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<Command>) {
+    ui.label("Picture quality (A: next)");
+    let automatic = (None, "automatic", "Suits the device and the time that a frame takes");
+    let steps = Quality::ALL.map(|step| (Some(step), step.name(), step.hint()));
+    for (choice, name, hint) in std::iter::once(automatic).chain(steps) {
+        let name = match choice {
+            None if quality.chosen.is_none() => format!("{name}: {}", quality.now().name()),
+            _ => name.to_owned(),
+        };
+        if ui.radio(quality.chosen == choice, name).on_hover_text(hint).clicked() {
+            commands.push(Command::View(ViewCommand::SetQuality(choice)));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -79,7 +97,15 @@ mod tests {
         ] {
             let mut bar = panel([800.0, 600.0], |ui, commands| {
                 let overlays = Overlays::default();
-                view_bar(ui, CameraMode::Follow, &overlays, [false; 2], Theme::Light, commands);
+                view_bar(
+                    ui,
+                    CameraMode::Follow,
+                    &overlays,
+                    &StageQuality::default(),
+                    false,
+                    Theme::Light,
+                    commands,
+                );
             });
             assert_eq!(clicked(&mut bar, label), [command], "{label}");
         }

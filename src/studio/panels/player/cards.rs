@@ -1,6 +1,5 @@
 //! Cards over the stage: the camera bar, the leaderboard, readings of a limb, and a reminder of the lesson.
 
-use bevy::prelude::Msaa;
 use bevy_egui::egui;
 
 use super::camera_bar::view_bar;
@@ -96,12 +95,12 @@ pub(crate) fn around_stage(
     let bar = card("view", egui::Align2::LEFT_TOP, stage.left_top()).show(context, |ui| {
         let small = egui::Margin::symmetric(theme::GAP as i8 / 2, theme::GAP as i8 / 2);
         frame.inner_margin(small).show(ui, |ui| {
-            let is_smooth = on_stage.smoothing.iter().any(|msaa| *msaa != Msaa::Off);
             view_bar(
                 ui,
                 on_stage.rig.camera_mode(),
                 &on_stage.overlays,
-                [is_smooth, situation.shows_torques],
+                &on_stage.quality,
+                situation.shows_torques,
                 situation.theme,
                 commands,
             );

@@ -64,8 +64,20 @@ pub struct Palette {
     pub horizon: Color,
     /// Colour of the sky at the zenith.
     pub zenith: Color,
+    /// Colour of clouds.
+    pub cloud: Color,
+    /// Colour of the hills behind the haze of the horizon.
+    pub hills: Color,
+    /// Colour of the disc of the sun or the moon. Channels above 1 glow.
+    pub sun_disc: Color,
+    /// Number of stars.
+    pub stars: u32,
     /// Colour of the ground.
     pub ground: Color,
+    /// Colour of leaves and grass.
+    pub leaves: Color,
+    /// Colour of the light from the door at the end of the landing. Channels above 1 glow.
+    pub lamp: Color,
     /// Colour of the grid on the ground.
     pub grid: Color,
     /// Colour of stone: a hard surface with usual friction.
@@ -147,9 +159,15 @@ pub const LIGHT: Palette = Palette {
     ],
     trail: Color::srgb(0.55, 0.20, 0.65),
     pull: Color::srgb(0.80, 0.30, 0.05),
-    horizon: Color::srgb(0.89, 0.93, 0.96),
-    zenith: Color::srgb(0.45, 0.67, 0.91),
-    ground: Color::srgb(0.73, 0.78, 0.78),
+    horizon: Color::srgb(0.97, 0.93, 0.87),
+    zenith: Color::srgb(0.42, 0.66, 0.92),
+    cloud: Color::srgb(1.0, 0.98, 0.95),
+    hills: Color::srgb(0.58, 0.68, 0.72),
+    sun_disc: Color::linear_rgb(2.4, 2.1, 1.5),
+    stars: 0,
+    ground: Color::srgb(0.70, 0.77, 0.63),
+    leaves: Color::srgb(0.40, 0.58, 0.30),
+    lamp: Color::linear_rgb(1.9, 1.25, 0.55),
     grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
     stair: Color::srgb(0.81, 0.80, 0.78),
     ice: Color::srgb(0.72, 0.90, 1.0),
@@ -209,9 +227,15 @@ pub const DARK: Palette = Palette {
     ],
     trail: Color::srgb(0.88, 0.62, 0.98),
     pull: Color::srgb(1.0, 0.72, 0.35),
-    horizon: Color::srgb(0.20, 0.25, 0.34),
-    zenith: Color::srgb(0.05, 0.08, 0.15),
-    ground: Color::srgb(0.22, 0.26, 0.31),
+    horizon: Color::srgb(0.24, 0.27, 0.37),
+    zenith: Color::srgb(0.05, 0.07, 0.15),
+    cloud: Color::srgb(0.24, 0.27, 0.37),
+    hills: Color::srgb(0.10, 0.13, 0.20),
+    sun_disc: Color::linear_rgb(1.2, 1.25, 1.35),
+    stars: 240,
+    ground: Color::srgb(0.20, 0.26, 0.28),
+    leaves: Color::srgb(0.14, 0.28, 0.20),
+    lamp: Color::linear_rgb(1.9, 1.15, 0.45),
     grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
     stair: Color::srgb(0.47, 0.49, 0.53),
     ice: Color::srgb(0.55, 0.73, 0.86),
@@ -240,6 +264,8 @@ pub const DARK: Palette = Palette {
 pub const BELLY_TONE: Vec3 = Vec3::new(0.95, 0.80, 0.55);
 /// Colour of a snake's tongue, as a factor of [`Palette::white`] for red, green and blue.
 pub const TONGUE_TONE: Vec3 = Vec3::new(0.80, 0.09, 0.18);
+/// Colour of a trunk, as a factor of [`Palette::leaves`] for red, green and blue.
+pub const TRUNK_TONE: Vec3 = Vec3::new(1.5, 0.5, 0.9);
 /// Colour of a joint's axis, as a factor of [`Palette::metal`] for red, green and blue.
 pub const AXIS_TONE: Vec3 = Vec3::new(26.0, 20.0, 9.0);
 
