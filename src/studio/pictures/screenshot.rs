@@ -6,6 +6,7 @@ use bevy::image::Image;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
+use bevy::window::PrimaryWindow;
 
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
@@ -14,6 +15,7 @@ use crate::studio::state::new_file::offer_picture;
 use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
+use crate::studio::ui::viewport::StageArea;
 use snakes_core::save::{Picture, store_picture};
 
 /// A second camera, which renders the stage to an image for a screenshot.
@@ -50,34 +52,35 @@ pub(crate) fn plugin(app: &mut App) {
 const LEAST_WIDTH: u32 = 1920;
 
 /// Returns the size of a picture of a stage of this size, both in pixels: the smallest multiple with the minimum width.
-fn picture_size(stage: Option<UVec2>) -> UVec2 {
-    let stage = stage.unwrap_or(UVec2::new(1280, 720)).max(UVec2::ONE);
+fn picture_size(stage: Vec2) -> UVec2 {
+    let stage = stage.max(Vec2::ONE).as_uvec2();
     stage * LEAST_WIDTH.div_ceil(stage.x)
 }
 
 /// Takes a screenshot of the window at once. For one of the stage, spawns a second camera.
 fn take(
     mut requests: MessageReader<ScreenshotArea>,
-    camera: Single<(&Camera, &Transform), With<StageCamera>>,
+    place: Single<&Transform, With<StageCamera>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    stage: Res<StageArea>,
     mut images: ResMut<Assets<Image>>,
     theme: Res<Theme>,
     mut commands: Commands,
 ) {
-    let (camera, place) = *camera;
     for area in requests.read() {
         match area {
             ScreenshotArea::Window => {
                 commands.spawn(Screenshot::primary_window()).observe(keep);
             }
             ScreenshotArea::Stage => {
-                let size = picture_size(camera.physical_viewport_size());
+                let size = picture_size(stage.in_window().size() * window.scale_factor());
                 let format = TextureFormat::Rgba8UnormSrgb;
                 let picture = images.add(Image::new_target_texture(size.x, size.y, format, None));
                 commands.spawn((
                     PendingScreenshot { picture: picture.clone(), frames: FRAMES },
                     camera_components(theme.palette()),
                     RenderTarget::Image(picture.into()),
-                    *place,
+                    **place,
                 ));
             }
         }
@@ -146,7 +149,7 @@ mod tests {
         for (stage, picture) in
             [([895, 503], [2685, 1509]), ([1920, 1080], [1920, 1080]), ([2400, 900], [2400, 900])]
         {
-            assert_eq!(picture_size(Some(stage.into())), UVec2::from(picture));
+            assert_eq!(picture_size(UVec2::from(stage).as_vec2()), UVec2::from(picture));
         }
     }
 }

@@ -6,8 +6,10 @@ pub mod mouse;
 pub mod rig;
 pub mod view;
 
+use std::f32::consts::FRAC_PI_4;
+
 use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{CameraOutputMode, Viewport};
+use bevy::camera::{CameraOutputMode, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::input::gestures::PinchGesture;
 use bevy::input::mouse::{AccumulatedMouseScroll, MouseScrollUnit};
@@ -17,7 +19,9 @@ use bevy::render::render_resource::BlendState;
 use bevy::window::PrimaryWindow;
 use bevy_egui::{EguiGlobalSettings, PrimaryEguiContext};
 
+use super::quality::StageQuality;
 use crate::studio::commands::camera_mode::CameraMode;
+use crate::studio::commands::quality::Quality;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::selection::Selection;
@@ -269,26 +273,103 @@ fn glide(
     }
 }
 
-/// Limits the viewport of the stage's camera to the area beside the panels.
+/// Vertical angle of view of the stage, in radians.
+const FIELD_OF_VIEW_RAD: f32 = FRAC_PI_4;
+
+/// Fits the picture of the stage's camera to the area beside the panels: by a viewport or, if the effects of the picture's quality need
+/// the whole window, by a larger angle of view, whose middle is that of the area.
 fn fit_to_area(
     area: Res<StageArea>,
+    quality: Res<StageQuality>,
     window: Single<&Window, With<PrimaryWindow>>,
-    mut camera: Single<&mut Camera, With<StageCamera>>,
+    camera: Single<(&mut Camera, &mut Projection), With<StageCamera>>,
 ) {
+    let (mut camera, mut projection) = camera.into_inner();
     let scale = window.scale_factor();
     let place = area.in_window();
-    let pixels = |at: Vec2| (at * scale).max(Vec2::ZERO).as_uvec2().min(window.physical_size());
+    let whole = window.physical_size();
+    let pixels = |at: Vec2| (at * scale).max(Vec2::ZERO).as_uvec2().min(whole);
     let (start, end) = (pixels(place.min), pixels(place.max));
     let size = end.saturating_sub(start);
     if size.x == 0 || size.y == 0 {
         return;
     }
-    let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
-    let is_new = camera.viewport.as_ref().is_none_or(|now| {
-        (now.physical_position, now.physical_size)
-            != (viewport.physical_position, viewport.physical_size)
-    });
-    if is_new {
-        camera.viewport = Some(viewport);
+    let fitted = if quality.now() == Quality::Beautiful {
+        Fitted::around(start, size, whole)
+    } else {
+        let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
+        Fitted { viewport: Some(viewport), part: None, angle_rad: FIELD_OF_VIEW_RAD }
+    };
+    fitted.apply(&mut camera, &mut projection);
+}
+
+/// Settings of a camera by which its picture fits the stage.
+struct Fitted {
+    viewport: Option<Viewport>,
+    part: Option<SubCameraView>,
+    angle_rad: f32,
+}
+
+impl Fitted {
+    /// Returns the settings of a camera that draws the whole window, so that the part of this position and size, in pixels, has the
+    /// stage's angle of view.
+    fn around(start: UVec2, size: UVec2, window: UVec2) -> Self {
+        let (whole, size) = (window.as_vec2(), size.as_vec2());
+        let aspect = whole.x / whole.y;
+        // The smallest rectangle around the stage with the window's aspect ratio, which the renderer uses to find what is visible.
+        let width = size.x.max(size.y * aspect).round();
+        let full = Vec2::new(width, (width / aspect).round());
+        let half = libm::tanf(FIELD_OF_VIEW_RAD / 2.0) * full.y / size.y;
+        let middle = start.as_vec2() + size / 2.0;
+        let part =
+            SubCameraView { full_size: full.as_uvec2(), offset: full / 2.0 - middle, size: window };
+        Self { viewport: None, part: Some(part), angle_rad: 2.0 * libm::atanf(half) }
+    }
+
+    /// Changes a camera, unless it has these settings.
+    fn apply(self, camera: &mut Mut<Camera>, projection: &mut Mut<Projection>) {
+        let place =
+            |of: &Option<Viewport>| of.as_ref().map(|of| (of.physical_position, of.physical_size));
+        if place(&camera.viewport) != place(&self.viewport) || camera.sub_camera_view != self.part {
+            (camera.viewport, camera.sub_camera_view) = (self.viewport, self.part);
+        }
+        let is_new =
+            |of: &Projection| matches!(of, Projection::Perspective(of) if of.fov != self.angle_rad);
+        if is_new(projection)
+            && let Projection::Perspective(of) = &mut **projection
+        {
+            of.fov = self.angle_rad;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::CameraProjection;
+
+    #[test]
+    fn a_camera_that_draws_the_whole_window_shows_the_stage_as_one_with_a_viewport() {
+        let (start, size, window) =
+            (UVec2::new(385, 29), UVec2::new(895, 584), UVec2::new(1280, 720));
+        let fitted = Fitted::around(start, size, window);
+        let own = PerspectiveProjection {
+            fov: FIELD_OF_VIEW_RAD,
+            aspect_ratio: size.x as f32 / size.y as f32,
+            ..default()
+        };
+        let whole = PerspectiveProjection { fov: fitted.angle_rad, ..own.clone() };
+        let part = fitted.part.expect("a part");
+        let pixel = |clip: Mat4, at: Vec3, size: UVec2| {
+            let ndc = clip.project_point3(at).truncate();
+            (ndc * Vec2::new(0.5, -0.5) + 0.5) * size.as_vec2()
+        };
+        for at in
+            [Vec3::new(0.0, 0.0, -9.0), Vec3::new(2.0, -1.0, -7.0), Vec3::new(-3.0, 2.0, -20.0)]
+        {
+            let in_stage = pixel(own.get_clip_from_view(), at, size) + start.as_vec2();
+            let in_window = pixel(whole.get_clip_from_view_for_sub(&part), at, window);
+            assert!(in_stage.distance(in_window) < 1.5, "{at}: {in_stage} and {in_window}");
+        }
     }
 }

@@ -2,13 +2,17 @@
 
 use bevy::asset::RenderAssetUsages;
 use bevy::light::NotShadowCaster;
+use bevy::math::Affine2;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
 use super::props::themed;
+use super::surface_texture::meadow;
 
 /// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of the drawn one.
 const GROUND_HALF_M: f32 = 600.0;
+/// Side of the square that the texture of the ground covers, in metres.
+const MEADOW_M: f32 = 9.0;
 /// Half the side of the grid on the ground, in metres.
 const GRID_HALF_M: f32 = 70.0;
 /// Distance between the lines of the grid, in metres: the tread of the report's stairs.
@@ -29,7 +33,14 @@ pub(crate) fn plugin(app: &mut App) {
 
 impl FromWorld for Earth {
     fn from_world(world: &mut World) -> Self {
-        let dull = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.1, ..default() };
+        let texture = world.resource_mut::<Assets<Image>>().add(meadow());
+        let dull = StandardMaterial {
+            perceptual_roughness: 1.0,
+            reflectance: 0.1,
+            base_color_texture: Some(texture),
+            uv_transform: Affine2::from_scale(Vec2::splat(2.0 * GROUND_HALF_M / MEADOW_M)),
+            ..default()
+        };
         // The grid is translucent, so that a line in a shadow is darker than the shadow.
         let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
         Self {
@@ -80,6 +91,7 @@ mod tests {
         let mut app = App::new();
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()
+            .init_resource::<Assets<Image>>()
             .init_resource::<Earth>()
             .add_systems(Startup, set_up);
         app.update();

@@ -74,20 +74,34 @@ impl Grain {
 
     /// Draws the texture with all its mipmaps.
     pub fn draw(self) -> Image {
-        let values = (0..SIDE * SIDE).map(|at| self.at(at % SIDE, at / SIDE));
-        let brightness = Channel { width: SIDE, values: values.collect() };
-        let sampler = ImageSamplerDescriptor {
-            address_mode_u: ImageAddressMode::Repeat,
-            address_mode_v: ImageAddressMode::Repeat,
-            mag_filter: ImageFilterMode::Linear,
-            min_filter: ImageFilterMode::Linear,
-            mipmap_filter: ImageFilterMode::Linear,
-            anisotropy_clamp: 4,
-            ..default()
-        };
-        let pixel = |gray| [gray, gray, gray, u8::MAX];
-        brightness.into_image(SIDE.ilog2() + 1, TextureFormat::Rgba8Unorm, sampler, pixel)
+        tile(|x, y| self.at(x, y))
     }
+}
+
+/// Draws the texture of the meadow around the lanes: clouds of many sizes.
+pub(super) fn meadow() -> Image {
+    tile(|x, y| {
+        let patches = noise(x, y, 5, 81) * 0.5 + noise(x, y, 13, 82) * 0.5;
+        let blades = noise(x, y, 64, 83) * 0.5 + noise(x, y, 100, 84) * 0.5;
+        (0.74 + 0.18 * patches + 0.16 * blades).min(1.0)
+    })
+}
+
+/// Draws a texture that repeats, with all its mipmaps, from the brightness of each pixel.
+fn tile(at: impl Fn(usize, usize) -> f32) -> Image {
+    let values = (0..SIDE * SIDE).map(|pixel| at(pixel % SIDE, pixel / SIDE));
+    let brightness = Channel { width: SIDE, values: values.collect() };
+    let sampler = ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        mag_filter: ImageFilterMode::Linear,
+        min_filter: ImageFilterMode::Linear,
+        mipmap_filter: ImageFilterMode::Linear,
+        anisotropy_clamp: 4,
+        ..default()
+    };
+    let pixel = |gray| [gray, gray, gray, u8::MAX];
+    brightness.into_image(SIDE.ilog2() + 1, TextureFormat::Rgba8Unorm, sampler, pixel)
 }
 
 /// Draws clouded ice with straight, pale cracks of limited length.
