@@ -14,6 +14,7 @@ use bevy::pbr::{ContactShadows, ScreenSpaceAmbientOcclusion};
 use bevy::post_process::bloom::Bloom;
 use bevy::prelude::*;
 use bevy::render::renderer::RenderAdapterInfo;
+use bevy::render::view::ColorGrading;
 use wgpu_types::DeviceType;
 
 use crate::studio::commands::quality::Quality;
@@ -52,6 +53,9 @@ impl StageQuality {
 type Effects =
     (Hdr, Smaa, ScreenSpaceAmbientOcclusion, ContactShadows, Bloom, DepthPrepass, NormalPrepass);
 
+/// Exposure, in stops, and saturation that make up for what tone mapping takes.
+const EXPOSURE_STOPS: f32 = 0.85;
+const SATURATION: f32 = 1.15;
 /// Duration over which frames are averaged.
 const WATCHED: Duration = Duration::from_secs(2);
 /// Duration of a frame from which the automatic step becomes lower: slower than 30 frames per second, with a margin.
@@ -147,7 +151,7 @@ fn equip(camera: &mut EntityCommands, quality: Quality) {
     match quality {
         Quality::Fast | Quality::Smooth => {
             let msaa = if quality == Quality::Fast { Msaa::Off } else { Msaa::Sample4 };
-            camera.remove::<Effects>().insert((msaa, Tonemapping::None));
+            camera.remove::<Effects>().insert((msaa, Tonemapping::None, ColorGrading::default()));
         }
         Quality::Beautiful => {
             let effects: Effects = (
@@ -160,9 +164,16 @@ fn equip(camera: &mut EntityCommands, quality: Quality) {
                 NormalPrepass,
             );
             // Ambient occlusion needs a picture with one sample per pixel.
-            camera.insert((Msaa::Off, Tonemapping::TonyMcMapface, effects));
+            camera.insert((Msaa::Off, Tonemapping::TonyMcMapface, grading(), effects));
         }
     }
+}
+
+/// Returns the grading that gives a tone-mapped picture the brightness and the colours of one without tone mapping.
+fn grading() -> ColorGrading {
+    let mut grading = ColorGrading::default();
+    (grading.global.exposure, grading.global.post_saturation) = (EXPOSURE_STOPS, SATURATION);
+    grading
 }
 
 #[cfg(test)]
