@@ -30,6 +30,8 @@ pub(crate) const FINISH_M: f32 = 4.0;
 const BOARD_M: f32 = 0.5;
 /// Distance of the finish behind the edge of the last step, in metres: behind the strip on the edge.
 const BEHIND_EDGE_M: f32 = 0.2;
+/// Radius of the lamps on the posts of the finish, in metres.
+const LAMP_M: f32 = 0.16;
 /// Depth of the chequered line on the floor, in metres.
 const LINE_M: f32 = 0.5;
 /// Height above the landing of the wall at its end, and thickness of the wall, in metres.
@@ -145,13 +147,22 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Builds the lit doorway.
+/// Builds the lit doorway, and the lamps on the posts of the finish and below its board.
 fn doorway(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [width_m, height_m] = door_m(stairs);
     let front_m = stairs.end_y_m() - WALL_THICK_M - PAINT_M;
     let middle = Vec3::new(0.0, front_m, stairs.height_m(stairs.steps) + height_m / 2.0);
     solid.sheet(middle, Vec3::X * width_m / 2.0, Vec3::Z * height_m / 2.0);
+    if has_finish(stairs) {
+        let below_board =
+            Vec3::new(0.0, finish_y_m(stairs), stairs.height_m(stairs.steps) + FINISH_M);
+        let half = Vec3::X * (stairs.width_m / 2.0 - INSIDE_M);
+        solid.cylinder(below_board - half, below_board + half, LAMP_M / 4.0);
+        for end in [-half, half] {
+            solid.ball(below_board + end + Vec3::Z * (BOARD_M + LAMP_M), LAMP_M, BALL_SIDES);
+        }
+    }
     solid
 }
 
