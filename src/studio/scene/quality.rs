@@ -159,7 +159,7 @@ fn equip(camera: &mut EntityCommands, quality: Quality) {
                 Smaa { preset: SmaaPreset::High },
                 ScreenSpaceAmbientOcclusion::default(),
                 ContactShadows::default(),
-                Bloom { intensity: 0.08, ..Bloom::NATURAL },
+                Bloom { intensity: 0.12, ..Bloom::NATURAL },
                 DepthPrepass,
                 NormalPrepass,
             );

@@ -32,6 +32,8 @@ const DEPTH_M: f32 = 0.12;
 const HEIGHT_M: f32 = 0.06;
 /// Thickness by which a strip stands out of tread and riser, in metres.
 const OUT_M: f32 = 0.012;
+/// Brightness factor of a lit strip: so bright that it glows in a picture with bloom.
+const GLOWING: f32 = 1.7;
 /// Extent of the glow of a lit strip across the tread and down the riser, in metres.
 const GLOW_BACK_M: f32 = 0.55;
 const GLOW_DOWN_M: f32 = 0.3;
@@ -49,7 +51,7 @@ impl FromWorld for Strips {
         let glow = StandardMaterial { alpha_mode: AlphaMode::Blend, ..lit.clone() };
         Self {
             dark: themed(world, dark, |palette| palette.step_edge),
-            lit: themed(world, lit, |palette| palette.step_edge_lit),
+            lit: themed(world, lit, |palette| (palette.step_edge_lit.to_linear() * GLOWING).into()),
             glow: themed(world, glow, |palette| palette.step_edge_lit),
         }
     }
