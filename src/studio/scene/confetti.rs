@@ -7,6 +7,7 @@ use bevy::prelude::*;
 
 use super::landing::{FINISH_M, finish_y_m};
 use super::props::in_scene;
+use super::surface_texture::random;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -101,7 +102,7 @@ fn draw(lane: &Lane, since_s: f32, palette: &Palette, gizmos: &mut Gizmos<Pieces
 
 /// Computes the position of a piece in its lane, in metres, and its direction.
 fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Vec3) {
-    let share = |salt: u32| chance(lane as u32, piece * 8 + salt);
+    let share = |salt: u32| random(lane as u32, piece * 8 + salt, 41);
     let top_m = stairs.height_m(stairs.steps);
     let across_m = (share(0) - 0.5) * stairs.width_m;
     let start = Vec3::new(across_m, finish_y_m(stairs), top_m + FINISH_M);
@@ -115,14 +116,6 @@ fn piece_at(stairs: &Stairs, lane: usize, piece: u32, since_s: f32) -> (Vec3, Ve
     let (sin, cos) = libm::sincosf(share(5) * 6.3 + since_s * (5.0 + share(6) * 6.0));
     let along = Vec3::new(cos * 0.6, sin, cos * 0.8).normalize_or(Vec3::X);
     (at.with_z(at.z.max(top_m + 0.03)), along)
-}
-
-/// Returns a pseudorandom number from 0 to 1 that depends only on its arguments.
-fn chance(lane: u32, salt: u32) -> f32 {
-    let mut mixed = lane.wrapping_mul(0x9E37_79B1) ^ salt.wrapping_mul(0x85EB_CA77) ^ 0x5EED;
-    mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
-    mixed = (mixed ^ (mixed >> 12)).wrapping_mul(0x297A_2D39);
-    (mixed ^ (mixed >> 15)) as f32 / u32::MAX as f32
 }
 
 #[cfg(test)]
