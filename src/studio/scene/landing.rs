@@ -31,7 +31,7 @@ const BOARD_M: f32 = 0.5;
 /// Distance of the finish behind the edge of the last step, in metres: behind the strip on the edge.
 const BEHIND_EDGE_M: f32 = 0.2;
 /// Radius of the lamps on the posts of the finish, in metres.
-const LAMP_M: f32 = 0.16;
+const LAMP_M: f32 = 0.14;
 /// Depth of the chequered line on the floor, in metres.
 const LINE_M: f32 = 0.5;
 /// Height above the landing of the wall at its end, and thickness of the wall, in metres.
