@@ -122,7 +122,7 @@ fn bush(solid: &mut MeshBuilder, at: Vec3, size_m: f32, chance: &dyn Fn(u32) -> 
         let aside = Vec3::new(chance(salt) - 0.5, chance(salt + 1) - 0.5, 0.0) * size_m * 2.2;
         let radius_m = size_m * (0.6 + 0.4 * chance(salt + 2));
         solid.tone(Vec3::splat(0.7 + 0.4 * chance(salt + 3)));
-        solid.ball(at + aside + Vec3::Z * radius_m * 0.55, radius_m, 10);
+        solid.ball(at + aside + Vec3::Z * radius_m * 0.55, radius_m, 8);
     }
 }
 
@@ -139,7 +139,7 @@ fn tree(solid: &mut MeshBuilder, at: Vec3, height_m: f32, chance: &dyn Fn(u32) -
             + Vec3::Z * height_m * (0.62 + 0.42 * share);
         // The crown is darker below, where less light arrives.
         solid.tone(Vec3::splat(0.62 + 0.35 * share + 0.15 * chance(salt + 2)));
-        solid.ball(middle, height_m * (0.28 - 0.09 * share), 12);
+        solid.ball(middle, height_m * (0.28 - 0.09 * share), 10);
     }
 }
 
