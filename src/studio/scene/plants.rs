@@ -156,7 +156,7 @@ mod tests {
         let hides = |at: &Vec3| at.x > area.max.x && at.y < area.max.y && at.z > 0.5;
         assert!(!plants.positions.iter().any(hides));
         assert!(
-            plants.positions.iter().all(|at| at.is_finite()) && plants.positions.len() < 40_000
+            plants.positions.iter().all(|at| at.is_finite()) && plants.positions.len() < 50_000
         );
         assert_eq!(plants.positions, around(area).positions);
     }
