@@ -10,7 +10,7 @@ use super::shown::{ShownChampion, ShownLane};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
-use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::buttons::{CommandButton, command_box, show_or_join};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -241,11 +241,7 @@ impl ChampionRow<'_> {
             ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
         });
         if response.clicked() {
-            let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            commands.push(Command::Stage(match joins {
-                true => StageCommand::Join(pick),
-                false => StageCommand::Show(pick),
-            }));
+            commands.push(show_or_join(ui, pick));
         }
         response.context_menu(|ui| {
             let hint = "The first generation descends from it, in the world where it was found";

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::genome::{BodyChange, Genome};
@@ -126,7 +126,7 @@ fn seen_from_above(body: &BodyPlan) -> Vec<[f64; 4]> {
 }
 
 fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> String {
-    let IndividualId { generation, individual } = structure.place;
+    let name = generation_and_snake(structure.place);
     let fitness = match (structure.fitness, structure.before) {
         (Some(fitness), Some(before)) => {
             format!("fitness {fitness:.2}{unit} ({:+.2})", fitness - before)
@@ -134,11 +134,8 @@ fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> Str
         (Some(fitness), None) => format!("fitness {fitness:.2}{unit}"),
         (None, _) => "disqualified".to_owned(),
     };
-    format!(
-        "Generation {generation}, snake {}\n{}\n{blocks} blocks, {length_m:.1} m long\n{fitness}",
-        individual + 1,
-        structure.change
-    )
+    let change = &structure.change;
+    format!("{name}\n{change}\n{blocks} blocks, {length_m:.1} m long\n{fitness}")
 }
 
 /// Returns the structures in a line of descent, the oldest first, as far as genomes are known.

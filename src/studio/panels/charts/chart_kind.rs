@@ -120,9 +120,7 @@ impl ChartKind {
             Self::Front => "The best trade-offs between distance and energy will appear here.",
             Self::Archive => "The best snake for each kind of behaviour will appear here.",
             Self::Runs => "The curves of this run will appear here after the first generation.",
-            Self::Methods => {
-                "No comparison is open. \"snakes study methods\" creates one, \"snakes --comparison FILE\" opens it."
-            }
+            Self::Methods => "This study has no finished runs.",
         }
     }
 }

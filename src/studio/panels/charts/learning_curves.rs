@@ -1,9 +1,8 @@
 //! Comparison of methods: learning curves, and a table with the results of each arm of a study.
 
-use std::sync::Arc;
-
 use bevy_egui::egui;
 
+use super::chart_kind::ChartKind;
 use super::draw;
 use super::view::ChartView;
 use crate::studio::ui::plot_axes::{axis_name, number};
@@ -16,13 +15,13 @@ use snakes_lab::statistics::Quartiles;
 use snakes_lab::study::{controllers, curves, short_title};
 
 /// Panel of a study: its learning curves for the selected controller, and its table.
-#[derive(Debug)]
-pub(crate) struct CurvesPanel {
+pub(super) struct CurvesPanel {
     study: StudyRuns,
     controllers: Vec<ControllerKind>,
     /// Controller whose learning curves are shown.
     controller: ControllerKind,
-    view: ChartView,
+    /// Learning curves that are shown.
+    pub view: ChartView,
 }
 
 impl CurvesPanel {
@@ -34,15 +33,10 @@ impl CurvesPanel {
         Self { view: view(study, controller), study: study.clone(), controllers, controller }
     }
 
-    /// Returns the figure of the shown learning curves.
-    pub fn figure(&self) -> &Arc<Figure> {
-        &self.view.figure
-    }
-
     /// Draws the panel. The chart of the curves is `height` points high.
     pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
         if self.study.arms.is_empty() {
-            return explain(ui, "This study has no finished runs.");
+            return explain(ui, ChartKind::Methods.empty_text());
         }
         ui.horizontal(|ui| {
             ui.label("Controller");

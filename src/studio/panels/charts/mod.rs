@@ -4,20 +4,18 @@
 mod ancestors;
 mod archive_map;
 mod archive_pictures;
+mod band_kinds;
 mod bands;
-mod blocks;
 mod bodies;
 mod chart_kind;
 mod downsample;
 mod draw;
 mod fitness;
-mod layer_labels;
 mod learning_curves;
 mod legend;
 mod parents;
 mod pareto_front;
 mod runs;
-mod species;
 mod spread;
 mod stairs;
 mod torques;
@@ -32,15 +30,15 @@ use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
 use snakes_lab::plot::Figure;
 
-use blocks::BLOCKS;
+use band_kinds::{BLOCKS, SPECIES};
 use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
-use species::SPECIES;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
 
@@ -140,15 +138,9 @@ impl ChartsPanel {
     }
 
     fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
-        match &mut self.curves {
-            Some(curves) => {
-                header(ui, curves.figure(), (ChartKind::Methods, false), commands);
-                curves.ui(ui, height);
-            }
-            None => {
-                title(ui, "Comparison of methods");
-                explain(ui, ChartKind::Methods.empty_text());
-            }
+        if let Some(curves) = &mut self.curves {
+            header(ui, &curves.view.figure, (ChartKind::Methods, false), commands);
+            curves.ui(ui, height);
         }
     }
 }
@@ -206,8 +198,8 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     match kind {
         ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
-        ChartKind::Species => Some(bands::view(&SPECIES, settings, run.reports())),
-        ChartKind::Blocks => Some(bands::view(&BLOCKS, settings, run.reports())),
+        ChartKind::Species => Some(bands::view(SPECIES, settings, run.reports())),
+        ChartKind::Blocks => Some(bands::view(BLOCKS, settings, run.reports())),
         ChartKind::Bodies => {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
@@ -242,23 +234,16 @@ fn header(
     (kind, is_of_run): (ChartKind, bool),
     commands: &mut Vec<Command>,
 ) {
-    let is_empty = figure.is_empty();
+    let refusal = figure.is_empty().then_some("The chart is still empty");
     title_and(ui, &figure.title, |ui| {
         for (label, hint, format) in [
             ("CSV", "Save the numbers as a table", ChartFormat::Csv),
             ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
         ] {
-            let button = ui.add_enabled(!is_empty, egui::Button::new(label).small());
-            let not_yet = "The chart is still empty";
-            if button.on_hover_text(hint).on_disabled_hover_text(not_yet).clicked() {
-                let figure = Arc::clone(figure);
-                commands.push(Command::Run(RunCommand::ExportChart(ChartExport {
-                    figure,
-                    name: kind.file_name(),
-                    format,
-                    is_of_run,
-                })));
-            }
+            let (figure, name) = (Arc::clone(figure), kind.file_name());
+            let export = ChartExport { figure, name, format, is_of_run };
+            let export = Command::Run(RunCommand::ExportChart(export));
+            CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);
         }
     });
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
 use snakes_core::evolve::Settings;
@@ -39,7 +39,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         let features: Vec<Feature> =
             settings.genome.features(genome).into_iter().map(in_unit_of_panels).collect();
         let at = parent.place;
-        let name = format!("generation {}, snake {}", at.generation, at.individual + 1);
+        let name = generation_and_snake(at);
         let reached = match parent.fitness {
             Some(fitness) => format!("fitness {fitness:.2}{unit}"),
             None => "disqualified".to_owned(),
@@ -50,12 +50,10 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         for (point, feature) in points.iter().zip(&features) {
             let space = if feature.unit.is_empty() { "" } else { " " };
             let words = format!(
-                "{}: {}{space}{}\nGeneration {}, snake {}: {reached}\nChildren in the next generation: {children}",
+                "{}: {}{space}{}\n{name}: {reached}\nChildren in the next generation: {children}",
                 feature.name,
                 number(f64::from(feature.value)),
                 feature.unit,
-                at.generation,
-                at.individual + 1,
             );
             let target = HitShape::Point(*point);
             hits.push(ChartHit::of(target, move || words.clone(), Pick::Individual(at), at));
@@ -68,7 +66,7 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         let share =
             parent.fitness.map_or(0.0, |of| (of - min) / (max - min).max(f32::MIN_POSITIVE));
         let role = Role::Share(share.clamp(0.0, 1.0) * MAX_BRIGHTNESS);
-        series.push(Series::new(&format!("{name}, {reached}"), role, Shape::Line(points)));
+        series.push(Series::new(&format!("{}, {reached}", name.to_lowercase()), role, Shape::Line(points)));
     }
     if names.is_empty() {
         return None;
@@ -116,20 +114,17 @@ fn in_unit_of_panels(mut feature: Feature) -> Feature {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::{RunPlan, StrategyKind};
+    use crate::studio::panels::charts::tests::experiment;
+    use snakes_core::evolve::StrategyKind;
     use snakes_core::genome::ControllerKind;
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     #[test]
     fn every_value_has_a_hover_text_and_replays_its_parent() {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::Ga;
-        settings.evolution.population = 10;
-        settings.genome.controller = ControllerKind::Gait;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
-        let pool = LocalPool::new(1).expect("threads");
-        experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+        let (settings, experiment) = experiment(1, |settings| {
+            settings.evolution.strategy = StrategyKind::Ga;
+            settings.evolution.population = 10;
+            settings.genome.controller = ControllerKind::Gait;
+        });
         let parents = experiment.parents();
         let view = view(&settings, &parents).expect("their genes are known");
         let dimension = settings.genome.dimension(settings.trial.genome_shape());

@@ -1,8 +1,9 @@
 //! Histogram of the fitness in the latest generation. A click on a bar replays its best snake.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use super::fitness::axis_title;
+use super::fitness::fitness_axis;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::{number, step};
@@ -38,7 +39,7 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let max = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
     let ends = bins.iter().flat_map(|bin| [bin.from, bin.to]);
     let top = f64::from(max.max(1)) * 1.06;
-    let x = Axis::around(axis_title(settings.trial.fitness), unit.trim(), ends, 1.0);
+    let x = fitness_axis(settings.trial.fitness, ends);
     let y = Axis::count("Snakes", 0.0..=top);
     let chart = Chart::new(x, y, vec![Series::new("snakes", Role::First, bars)]);
     let hits = bins.iter().map(|bin| {
@@ -93,15 +94,13 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
 
 /// Describes how many snakes were disqualified for each reason.
 fn disqualified(evaluations: &[Evaluation]) -> String {
-    use Disqualification as D;
-    let all =
-        [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::EnergyFromNothing, D::Crashed];
-    let count = |reason: D| evaluations.iter().filter(|of| of.disqualified == Some(reason)).count();
-    let reasons: Vec<String> = (all.into_iter())
-        .filter(|reason| count(*reason) > 0)
-        .map(|reason| format!("{}: {}", count(reason), reason.words()))
-        .collect();
-    let number: usize = all.into_iter().map(count).sum();
+    let mut counts: BTreeMap<Disqualification, usize> = BTreeMap::new();
+    for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
+        *counts.entry(reason).or_default() += 1;
+    }
+    let reasons: Vec<String> =
+        counts.iter().map(|(reason, count)| format!("{count}: {}", reason.words())).collect();
+    let number: usize = counts.values().sum();
     if number == 0 {
         return format!("None of {} were disqualified.", evaluations.len());
     }
