@@ -28,9 +28,8 @@ pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
     let of_elite = |(cell, elite): (u32, &Elite)| {
         let (fitness, kind) = (elite.fitness, kind_in_words(archive, cell));
         let place = elite.id();
-        let words = move || {
-            format!("{kind}Fitness {fitness:.2}{unit}\n{}", generation_and_snake(place))
-        };
+        let words =
+            move || format!("{kind}Fitness {fitness:.2}{unit}\n{}", generation_and_snake(place));
         ChartHit::of(HitShape::Area(area(cell)), words, Pick::Elite(cell), place)
     };
     let of_empty = |cell: u32| {

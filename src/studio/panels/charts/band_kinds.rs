@@ -13,15 +13,15 @@ pub(super) const SPECIES: &Bands = &Bands {
     count: |count| format!("{count} species"),
     rest: "smaller species",
     column: "species",
-        best: "Best network",
-        best_axis: "Links and hidden nodes",
-        best_names: ["links of the best network", "its hidden nodes"],
-        best_columns: ["links of the best network", "hidden nodes of the best network"],
-        best_of: network_size,
-        best_words: |[links, hidden]| {
-            let nodes = if hidden == 1.0 { "node" } else { "nodes" };
-            format!("{links} links\n{hidden} hidden {nodes}")
-        },
+    best: "Best network",
+    best_axis: "Links and hidden nodes",
+    best_names: ["links of the best network", "its hidden nodes"],
+    best_columns: ["links of the best network", "hidden nodes of the best network"],
+    best_of: network_size,
+    best_words: |[links, hidden]| {
+        let nodes = if hidden == 1.0 { "node" } else { "nodes" };
+        format!("{links} links\n{hidden} hidden {nodes}")
+    },
 };
 
 /// Returns the numbers of enabled links and of hidden nodes in the best snake's network.
@@ -44,12 +44,12 @@ pub(super) const BLOCKS: &Bands = &Bands {
     },
     rest: "others",
     column: "blocks",
-        best: "Best body",
-        best_axis: "Blocks, and length in m",
-        best_names: ["blocks of the best body", "its length in m"],
-        best_columns: ["blocks of the best body", "length of the best body (m)"],
-        best_of: body_size,
-        best_words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
+    best: "Best body",
+    best_axis: "Blocks, and length in m",
+    best_names: ["blocks of the best body", "its length in m"],
+    best_columns: ["blocks of the best body", "length of the best body (m)"],
+    best_of: body_size,
+    best_words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
 };
 
 /// Returns the number of blocks of the best snake, and its length in metres.

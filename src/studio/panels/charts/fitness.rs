@@ -144,7 +144,7 @@ mod tests {
         let (first_step, landing) = (("first step".to_owned(), 3.0), ("landing".to_owned(), 21.0));
         let (x, y, marks) = of(0, &[]);
         assert!(*x.end() > 6.0 && *x.end() < 7.0);
-        assert_eq!(marks, [first_step.clone()]);
+        assert_eq!(marks, std::slice::from_ref(&first_step));
         assert!(y.contains(&-7.2) && y.contains(&3.0));
         let (x, y, marks) = of(120, &[-7.0, 12.0, 29.0]);
         assert!(x.contains(&120.0) && y.contains(&29.0));

@@ -66,7 +66,11 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         let share =
             parent.fitness.map_or(0.0, |of| (of - min) / (max - min).max(f32::MIN_POSITIVE));
         let role = Role::Share(share.clamp(0.0, 1.0) * MAX_BRIGHTNESS);
-        series.push(Series::new(&format!("{}, {reached}", name.to_lowercase()), role, Shape::Line(points)));
+        series.push(Series::new(
+            &format!("{}, {reached}", name.to_lowercase()),
+            role,
+            Shape::Line(points),
+        ));
     }
     if names.is_empty() {
         return None;

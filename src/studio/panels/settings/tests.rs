@@ -6,13 +6,14 @@ use bevy_egui::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::values::list_of;
 use super::*;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::testing::{self, Sent, set};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 use snakes_core::evolve::{Settings, fields, with_field, with_fields};
-use snakes_core::schema::{ListedSetting, NumberRange, Parts, Section, SettingKind, list};
+use snakes_core::schema::{
+    ListedSetting, NumberRange, Parts, Section, SettingKind, SettingValue, list,
+};
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -183,7 +184,7 @@ fn the_ranges_in_tooltips_are_those_of_the_settings() {
         let (SettingKind::Number(range) | SettingKind::List(range)) = kind else { continue };
         let (least, most) = (range.least, range.most);
         let is_list = matches!(kind, SettingKind::List(_));
-        let text = |value: f32| if is_list { list_of(&[value]) } else { value.to_string() };
+        let text = |value: f32| if is_list { format!("[{value}]") } else { value.to_string() };
         let below = least - least.abs() * 0.5 - if least == 0.0 { 1.0 } else { 0.0 };
         let above = if range.is_whole { most + 1.0 } else { most * 1.1 + 1.0 };
         for wrong in [below, above] {
@@ -313,7 +314,11 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
         };
         let now = fields(run.next_settings()).into_iter().find(|(field, _)| *field == full);
         let value: f32 = now.expect("there").1.parse().expect("a number");
-        let listed = with_field(run.next_settings(), &full, &list_of(&vec![value; count]));
+        let listed = with_field(
+            run.next_settings(),
+            &full,
+            &SettingValue::List(vec![value; count]).to_string(),
+        );
         assert_eq!(listed.is_ok(), range.parts != Parts::One, "{full}");
     }
 }
