@@ -22,7 +22,7 @@ use columns::{ChampionRowStyle, cells, heads, rows_width};
 use summary::ReportSummary;
 
 /// The champions panel: the list, and its options.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct ChampionsPanel {
     /// Cached summary of the reports. The number of reports and the hash of the latest are its key.
     summary: Option<((usize, u64), ReportSummary)>,

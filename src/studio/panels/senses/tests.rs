@@ -35,7 +35,7 @@ fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
             lane,
             limb,
             is_selected: limb > 0,
-            others: Vec::new(),
+            racers: Vec::new(),
             switched: lane.trial().agent.senses,
         };
         let area = egui::ScrollArea::vertical().auto_shrink(false);

@@ -218,19 +218,17 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ("The current run uses these settings.", palette.text_weak)
     };
     ui.label(egui::RichText::new(text).color(color));
-    let button = egui::Button::new("New run in this world");
-    let button = ui.add_enabled(run.next_run_differs(), button);
     let hint = "Prepares and starts a run with the changed settings; the current run stays saved";
     let refusal = match run.status() {
+        _ if run.next_run_differs() => None,
         RunStatus::Running | RunStatus::Paused => {
-            "The current run uses these settings already: change a setting first"
+            Some("The current run uses these settings already: change a setting first")
         }
-        RunStatus::Ready => "The next run uses these settings: start it in the Watch panel",
-        RunStatus::Finished => "The finished run used these settings: change a setting first",
+        RunStatus::Ready => Some("The next run uses these settings: start it in the Watch panel"),
+        RunStatus::Finished => Some("The finished run used these settings: change a setting first"),
     };
-    if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
-        commands.push(Command::Run(RunCommand::New));
-    }
+    let begin = Command::Run(RunCommand::New);
+    CommandButton::new("New run in this world", hint, begin).unless(refusal).show(ui, commands);
 }
 
 #[cfg(test)]
