@@ -6,7 +6,7 @@ use snakes_core::evolve::StrategyKind;
 use super::*;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, click_at};
 use crate::studio::panels::shown::ShownChampion;
 use crate::studio::panels::testing::{self, Sent, shows};
 use crate::studio::state::current_run::{
@@ -39,7 +39,7 @@ pub(super) fn clicked<'a>(view: &'a ChartView, at: [f64; 2], off: egui::Vec2) ->
     });
     let area = panel.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
     let place = draw::screen_position(area, &view.figure.charts[0], at) + off;
-    click(&mut panel, place);
+    click_at(&mut panel, place);
     panel.hover_at(place + egui::vec2(1.0, 0.0));
     panel.run();
     panel
@@ -74,8 +74,7 @@ fn a_chart_is_selected_by_its_name() {
             (ChartKind::Ancestors, "Ancestors of the best"),
             (ChartKind::Runs, "Comparison of runs"),
         ] {
-            harness.get_by_label(kind.labels().0).click();
-            harness.run();
+            click(harness, kind.labels().0);
             assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
         }
     });
@@ -100,27 +99,21 @@ fn charts_without_data_are_not_offered() {
 
 #[test]
 fn only_a_run_with_species_offers_their_chart() {
-    for (run, has_species) in [(explored_run(), false), (species_run(), true)] {
-        with(&run, ChartKind::Species, 600.0, |harness| {
-            let mut buttons = harness.query_all_by_label("Species");
-            assert_eq!(buttons.next().is_some(), has_species);
-            let mut titles = harness.query_all_by_label("Species by generation");
-            assert_eq!(titles.next().is_some(), has_species);
+    for (run, kind, is_offered) in [
+        (explored_run(), ChartKind::Species, false),
+        (species_run(), ChartKind::Species, true),
+        (explored_run(), ChartKind::Blocks, false),
+        (bodies_run(), ChartKind::Blocks, true),
+    ] {
+        with(&run, kind, 600.0, |harness| {
+            let name = kind.labels().0;
+            let title = format!("{name} by generation");
+            for label in [name, &title] {
+                let mut found = harness.query_all_by_label(label);
+                assert_eq!(found.next().is_some(), is_offered, "{label}");
+            }
         });
     }
-    for (run, has_bodies) in [(explored_run(), false), (bodies_run(), true)] {
-        with(&run, ChartKind::Blocks, 600.0, |harness| {
-            let mut titles = harness.query_all_by_label("Blocks by generation");
-            assert_eq!(titles.next().is_some(), has_bodies);
-        });
-    }
-}
-
-fn click(harness: &mut Sent<'_>, at: egui::Pos2) {
-    harness.drag_at(at);
-    harness.run();
-    harness.drop_at(at);
-    harness.run();
 }
 
 #[test]
@@ -154,8 +147,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
                     }
                     harness.run();
                 }
-                harness.get_by_label("CSV").click();
-                harness.run();
+                click(harness, "CSV");
             });
             let [Command::Run(RunCommand::ExportChart(ChartExport { figure, name, format, .. }))] =
                 &sent[..]

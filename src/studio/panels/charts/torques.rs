@@ -48,10 +48,9 @@ impl TorqueComparison {
     ) -> Result<(), &'static str> {
         // The search is repeated only after a change instead of in every frame.
         let version = run.version();
-        let (of_version, of_selected) = match &self.updated_for {
-            Some((known, staged)) => (*known == version, staged.as_ref() == selected),
-            None => (false, false),
-        };
+        let known = self.updated_for.as_ref();
+        let of_version = known.is_some_and(|(known, _)| *known == version);
+        let of_selected = known.is_some_and(|(_, known)| known.as_ref() == selected);
         if !of_selected {
             let simulated = selected.filter(|staged| staged.recording().is_none());
             self.child = simulated.map(|staged| Subject::staged(staged, run.number()));
@@ -74,12 +73,11 @@ impl TorqueComparison {
     /// Replaces the parent if it is another individual, or is not kept any more.
     fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
         let found = child.and_then(|child| Some((child, parent(run, child)?)));
-        let is_it = |known: &Subject, (name, genome): &(String, Arc<Genome>)| {
-            known.name == *name && known.genome == *genome
-        };
         let is_same = match (&self.parent, &found) {
             (None, None) => true,
-            (Some(known), Some((_, parent))) => is_it(known, parent),
+            (Some(known), Some((_, (name, genome)))) => {
+                known.name == *name && known.genome == *genome
+            }
             _ => false,
         };
         if !is_same {

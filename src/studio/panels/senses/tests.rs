@@ -1,7 +1,7 @@
 //! Tests of the Senses panel with snakes of several controllers.
 
 use super::*;
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows, click};
 use crate::studio::panels::testing::{self, Sent, random_snake, set, shows};
 use egui_kittest::kittest::{NodeT, Queryable};
 use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
@@ -53,9 +53,10 @@ fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
     assert!(shows(&head, "Limb 1 of 5, the head"));
     let gap = if gap_m < 2.0 { format!("Gap: {gap_m:.2} m") } else { "Gap: ≥ 2.00 m".to_owned() };
     assert!(shows(&head, &gap), "{gap}");
-    for label in ["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"] {
-        assert!(shows(&head, label), "{label}");
-    }
+    assert_shows(
+        &head,
+        &["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"],
+    );
     assert!(!shows(&head, "frozen"));
     assert_nothing_is_wider_than(&head, 320.0);
     assert!(shows(&panel_of(4), "Limb 5 of 5, the tail"));
@@ -117,9 +118,7 @@ fn every_network_is_drawn_with_its_nodes() {
 fn reflexes_are_listed_by_sense() {
     let lane = lane_of(ControllerKind::Reflex, &[], |_| ());
     let panel = panel(&lane, 2);
-    for label in ["Joint 2: what each sense adds", "front touch: ", "Target moved: "] {
-        assert!(shows(&panel, label), "{label}");
-    }
+    assert_shows(&panel, &["Joint 2: what each sense adds", "front touch: ", "Target moved: "]);
 }
 
 /// Creates a lane of a snake with 400 rules of equal strength. This share of their conditions' parts is left open.
@@ -160,18 +159,17 @@ fn the_panel_is_as_long_at_the_start_as_later() {
 fn decisions_show_situation_postures_and_rules() {
     let lane = lane_of(ControllerKind::Decisions, &[], |_| ());
     let table = panel(&lane, 0);
-    for label in ["Situation: ", "fold all: 0.00 0 visits", "0.00 0 visits, chosen", "taken before"]
-    {
-        assert!(shows(&table, label), "{label}");
-    }
+    assert_shows(
+        &table,
+        &["Situation: ", "fold all: 0.00 0 visits", "0.00 0 visits, chosen", "taken before"],
+    );
     assert!(!shows(&table, "Rules: "));
     let lane = lane_of_rules(0.2);
     let mut rules = panel(&lane, 0);
     assert!(shows(&rules, "of 400 match"));
     assert!(shows(&rules, "strength 20.00. It matches"));
     assert!(!shows(&rules, "does not match"));
-    rules.get_by_label("Also rules that do not match").click();
-    rules.run();
+    click(&mut rules, "Also rules that do not match");
     assert!(shows(&rules, "does not match this situation"));
     assert_nothing_is_wider_than(&rules, 320.0);
 }

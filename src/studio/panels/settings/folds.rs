@@ -72,10 +72,10 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::settings::tests::click;
     use crate::studio::panels::testing::shows;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use snakes_core::score::Trial;
 
     type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
@@ -103,11 +103,9 @@ mod tests {
         assert!(shows(&panel, "Friction") && shows(&panel, "Softness"));
         assert!(!shows(&panel, "Creep"));
         let fold = "Advanced settings of Surface";
-        panel.get_by_label(fold).click();
-        panel.run();
+        click(&mut panel, fold);
         assert!(shows(&panel, "Creep") && shows(&panel, "Springiness"));
-        panel.get_by_label(fold).click();
-        panel.run();
+        click(&mut panel, fold);
         assert!(!shows(&panel, "Creep"));
         let command =
             |is_open| Command::Window(WindowCommand::Fold { section: "Surface", is_open });

@@ -30,6 +30,50 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
     }
 }
 
+/// Asserts that a panel has labels that contain these texts.
+pub(in crate::studio::panels) fn assert_shows<S>(panel: &Harness<'_, S>, texts: &[&str]) {
+    for text in texts {
+        assert!(testing::shows(panel, text), "{text}");
+    }
+}
+
+/// Asserts that a part of a panel has at least `least` texts, and that no two of them overlap by more than `touch` points.
+pub(in crate::studio::panels) fn assert_no_texts_overlap<S>(
+    panel: &Harness<'_, S>,
+    part: egui::Rect,
+    least: usize,
+    touch: f32,
+) {
+    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if part.contains(text.pos) => {
+            let rect = clipped.shape.visual_bounding_rect().shrink(touch);
+            Some((text.galley.text().to_owned(), rect))
+        }
+        _ => None,
+    });
+    let texts: Vec<_> = texts.collect();
+    assert!(texts.len() >= least, "{texts:?}");
+    for (index, (text, rect)) in texts.iter().enumerate() {
+        for (other, beside) in &texts[index + 1..] {
+            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
+        }
+    }
+}
+
+/// Clicks on the element with this label.
+pub(in crate::studio::panels) fn click<S>(panel: &mut Harness<'_, S>, label: &str) {
+    panel.get_by_label(label).click();
+    panel.run();
+}
+
+/// Clicks at a position, in points.
+pub(in crate::studio::panels) fn click_at<S>(panel: &mut Harness<'_, S>, at: egui::Pos2) {
+    panel.drag_at(at);
+    panel.run();
+    panel.drop_at(at);
+    panel.run();
+}
+
 /// Returns the titles of all sections.
 pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
     every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
