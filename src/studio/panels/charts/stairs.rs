@@ -59,6 +59,9 @@ fn place(node: &StairsNode) -> [f64; 2] {
     [node.born.into(), node.stairs.rise_m.into()]
 }
 
+/// A state of stairs: its name, its role, and whether stairs are in it.
+type NodeState = (&'static str, Role, fn(&StairsNode) -> bool);
+
 /// Returns the stairs of a tree in series by their state: solved or unsolved or, if all are solved, whether they are
 /// still in their queue.
 fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
@@ -72,7 +75,7 @@ fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
         Series::new("descent", Role::Others, Shape::Arrows(descents.collect())),
         Series::new("transfers of snakes", Role::Second, Shape::Arrows(transfers.collect())),
     ];
-    let states: &[(&str, Role, fn(&StairsNode) -> bool)] = match has_unsolved {
+    let states: &[NodeState] = match has_unsolved {
         true => &[
             ("archived unsolved", Role::Others, |of| of.solved.is_none() && of.archived.is_some()),
             ("active", Role::Third, |of| of.solved.is_none() && of.archived.is_none()),
