@@ -260,9 +260,9 @@ fn draw(
     notices.list.iter_mut().for_each(|notice| notice.shown_for += time.delta());
     notices.list.retain(|notice| notice.shown_for < notice.lasts);
     // The stairs rise to the upper right, so the largest free area is above the ground at the lower right.
-    let room = area.messages_room().shrink(theme::GAP * 1.5);
+    let room = area.messages_room.shrink(theme::GAP * 1.5);
     let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
-    area.set_messages(covered);
+    area.messages = covered;
     send.write_batch(taken.unwrap_or_default());
     Ok(())
 }

@@ -277,27 +277,24 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
     let color = palette.role(series.role);
     let borrowed = || PlotPoints::from(drawn.points.as_slice());
     let [along, low, high] = &drawn.area;
+    let line = |color, width| {
+        Line::new(&series.name, borrowed()).color(color).width(width).allow_hover(false)
+    };
+    let dots = |color, radius| {
+        Points::new(&series.name, borrowed()).color(color).radius(radius).allow_hover(false)
+    };
     match &series.shape {
         Shape::Line(points) => {
-            let line = Line::new(&series.name, borrowed()).color(color);
-            plot.line(line.width(2.0).allow_hover(false));
+            plot.line(line(color, 2.0));
             if points.len() <= MAX_MARKED_POINTS {
-                let dots = Points::new(&series.name, borrowed()).color(color);
-                plot.points(dots.radius(3.0).allow_hover(false));
+                plot.points(dots(color, 3.0));
             }
         }
-        Shape::Dashed(_) => {
-            let line = Line::new(&series.name, borrowed()).color(color);
-            let line = line.style(LineStyle::dashed_dense()).width(1.5);
-            plot.line(line.allow_hover(false));
+        Shape::Dashed(_) => plot.line(line(color, 1.5).style(LineStyle::dashed_dense())),
+        Shape::Points(_) if series.role == Role::Others => {
+            plot.points(dots(color.gamma_multiply(0.45), 1.5));
         }
-        Shape::Points(_) => {
-            let is_crowd = series.role == Role::Others;
-            let (radius, color) =
-                if is_crowd { (1.5, color.gamma_multiply(0.45)) } else { (3.5, color) };
-            let dots = Points::new(&series.name, borrowed()).color(color);
-            plot.points(dots.radius(radius).allow_hover(false));
-        }
+        Shape::Points(_) => plot.points(dots(color, 3.5)),
         Shape::Band(_) => {
             let band = FilledArea::new(&series.name, along, low, high);
             plot.add(band.fill_color(palette.band(color)).allow_hover(false));
@@ -306,8 +303,7 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let layer = FilledArea::new(&series.name, along, low, high);
             plot.add(layer.fill_color(color).allow_hover(false));
             // The edge keeps neighbouring layers of similar colours apart.
-            let edge = Line::new(&series.name, borrowed()).color(palette.field);
-            plot.line(edge.width(1.0).allow_hover(false));
+            plot.line(line(palette.field, 1.0));
         }
         Shape::Bars { width, bars } => {
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);

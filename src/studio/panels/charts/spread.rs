@@ -10,7 +10,7 @@ use crate::studio::ui::plot_axes::{number, step};
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::score::Evaluation;
 use snakes_core::world::Disqualification;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, extent};
 use snakes_lab::run::Generation;
 
 /// Minimum and maximum of the desired number of bars.
@@ -67,29 +67,24 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
         .filter(|(_, evaluation)| evaluation.disqualified.is_none())
         .map(|(index, evaluation)| (index, evaluation.fitness))
         .collect();
-    let min = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
-    let max = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
+    let values = healthy.iter().map(|(_, fitness)| f64::from(*fitness));
+    let [min, max] = extent(values).unwrap_or_default();
     let wanted = (healthy.len() as f64).sqrt().clamp(*BAR_COUNTS.start(), *BAR_COUNTS.end());
     // `step` divides its range into about six parts.
-    let width = step((f64::from(max) - f64::from(min)).max(1.0e-3) * 6.0 / wanted);
-    let place = |fitness: f32| libm::floor(f64::from(fitness) / width);
-    let mut bins: Vec<Bin> = Vec::new();
-    let mut sorted = healthy;
-    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
-    for (individual, fitness) in sorted {
-        let from = place(fitness) * width;
-        match bins.last_mut() {
-            Some(bin) if bin.from == from => {
-                bin.count += 1;
-                // Among equally fit snakes, the first counts as the best.
-                if fitness > bin.best.1 {
-                    bin.best = (individual, fitness);
-                }
-            }
-            _ => bins.push(Bin { from, to: from + width, count: 1, best: (individual, fitness) }),
+    let width = step((max - min).max(1.0e-3) * 6.0 / wanted);
+    let mut bins: BTreeMap<i64, Bin> = BTreeMap::new();
+    for (individual, fitness) in healthy {
+        let place = libm::floor(f64::from(fitness) / width);
+        let from = place * width;
+        let new = Bin { from, to: from + width, count: 0, best: (individual, f32::MIN) };
+        let bin = bins.entry(place as i64).or_insert(new);
+        bin.count += 1;
+        // Among equally fit snakes, the first counts as the best.
+        if fitness > bin.best.1 {
+            bin.best = (individual, fitness);
         }
     }
-    bins
+    bins.into_values().collect()
 }
 
 /// Describes how many snakes were disqualified for each reason.

@@ -72,36 +72,38 @@ impl ReadSenses<'_> {
     fn row(&self, ui: &mut egui::Ui, kind: SenseKind, part: usize, color: Color32) {
         let info = kind.info();
         let sensed = self.senses.value(kind, part);
-        let value = info.scale.map_or(sensed, |scale| sensed * scale);
-        let [least, most] = info.range.map(|end| info.scale.map_or(end, |scale| end * scale));
-        let (text, note, value, range) = match kind {
-            SenseKind::Touch => {
-                let text = if value > 0.5 { "yes" } else { "no" };
-                (text.to_owned(), String::new(), value, [least, most])
+        let scale = info.scale.unwrap_or(1.0);
+        let (value, [least, most]) = match (kind, sensed * scale, info.range.map(|end| end * scale))
+        {
+            (SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw, sine, _) => {
+                (libm::asinf(sine.clamp(-1.0, 1.0)).to_degrees(), [-90.0, 90.0])
             }
+            (SenseKind::Bend | SenseKind::Twist, angle_rad, range_rad) => {
+                (angle_rad.to_degrees(), range_rad.map(f32::to_degrees))
+            }
+            (_, value, range) => (value, range),
+        };
+        let (text, note) = match kind {
+            SenseKind::Touch => (if value > 0.5 { "yes" } else { "no" }.to_owned(), String::new()),
             SenseKind::Load | SenseKind::Blocked => {
                 let force_n = self.limb_weight_n * value / (1.0 - value.min(0.999));
                 let note = format!("½ at {:.0} N", self.limb_weight_n);
-                (format!("{} N", decimals(force_n, 0)), note, value, [least, most])
+                (format!("{} N", decimals(force_n, 0)), note)
             }
-            SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw => {
-                let angle_deg = libm::asinf(value.clamp(-1.0, 1.0)).to_degrees();
-                in_degrees(angle_deg, 90.0)
-            }
-            SenseKind::Bend | SenseKind::Twist => in_degrees(value.to_degrees(), most.to_degrees()),
+            SenseKind::Pitch
+            | SenseKind::Roll
+            | SenseKind::Yaw
+            | SenseKind::Bend
+            | SenseKind::Twist => (format!("{}°", decimals(value, 0)), format!("±{most:.0}°")),
             SenseKind::Gap => {
                 let least_gap = if sensed >= 1.0 { "≥ " } else { "" };
-                let text = format!("{least_gap}{} m", decimals(value, 2));
-                (text, format!("0 to {most:.0} m"), value, [least, most])
+                (format!("{least_gap}{} m", decimals(value, 2)), format!("0 to {most:.0} m"))
             }
-            SenseKind::Aside => {
-                let note = format!("±{most:.0} half widths");
-                (decimals(value, 2), note, value, [least, most])
-            }
+            SenseKind::Aside => (decimals(value, 2), format!("±{most:.0} half widths")),
             _ => {
-                let text = format!("{} {}", decimals(value, 2), info.unit);
                 let from = if least < 0.0 { "±" } else { "0 to " };
-                (text, format!("{from}{most:.0} {}", info.unit), value, [least, most])
+                let text = format!("{} {}", decimals(value, 2), info.unit);
+                (text, format!("{from}{most:.0} {}", info.unit))
             }
         };
         let is_frozen = !self.active.has(info.organ);
@@ -113,7 +115,7 @@ impl ReadSenses<'_> {
             name: &name,
             text,
             value,
-            range,
+            range: [least, most],
             note: if is_frozen { "frozen" } else { &note },
             color,
             is_frozen,
@@ -122,12 +124,6 @@ impl ReadSenses<'_> {
         };
         row.ui(ui);
     }
-}
-
-/// Returns the text, the note, the value and the ends of the bar for an angle in a symmetric range.
-fn in_degrees(angle_deg: f32, most_deg: f32) -> (String, String, f32, [f32; 2]) {
-    let text = format!("{}°", decimals(angle_deg, 0));
-    (text, format!("±{most_deg:.0}°"), angle_deg, [-most_deg, most_deg])
 }
 
 fn capitalized(name: &str) -> String {

@@ -162,18 +162,14 @@ fn rules(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     rule_list(ui, "wave rules", listed.len(), |index| entry(listed[index]));
 }
 
-/// Describes a group of joints.
-fn joints_of(group: JointGroup) -> &'static str {
-    match group {
+/// Returns the row of a rule: its condition above, its joints and wave below.
+fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
+    let strength = decimals(rule.strength, 2);
+    let joints = match rule.group {
         JointGroup::Front => "front joints",
         JointGroup::All => "all joints",
         JointGroup::Rear => "rear joints",
-    }
-}
-
-/// Returns the row of a rule: its condition above, its joints and wave below.
-fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
-    let (joints, strength) = (joints_of(rule.group), decimals(rule.strength, 2));
+    };
     let condition = match rule.words() {
         always if always == "always" => "Always".to_owned(),
         words => format!("If {words}"),

@@ -213,7 +213,7 @@ impl<'l> ReadLanes<'l> {
             if self.are_named {
                 ui.label("");
                 for column in table.columns {
-                    table.cell(ui, |ui| {
+                    cell(ui, table.room, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
                         let name = weak(ui, head_of(ui, label));
@@ -258,13 +258,9 @@ impl ReadoutTable<'_, '_> {
             "" => line.hint.to_owned(),
             term => format!("{}.\nIn the terms of the field: {term}", line.hint),
         };
-        let size = egui::vec2(NAME_WIDTH, theme::GAP * 2.25);
-        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_width(NAME_WIDTH);
-            ui.label(weak(ui, line.name)).on_hover_text(hint);
-        });
+        cell(ui, NAME_WIDTH, |ui| drop(ui.label(weak(ui, line.name)).on_hover_text(hint)));
         for column in self.columns {
-            let cell = self.cell(ui, |ui| (line.draw)(column, ui));
+            let cell = cell(ui, self.room, |ui| (line.draw)(column, ui));
             // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
             let id = ui.id().with((line.name, column.lane.number()));
             ui.interact(cell.rect, id, egui::Sense::hover())
@@ -272,18 +268,18 @@ impl ReadoutTable<'_, '_> {
         }
         ui.end_row();
     }
+}
 
-    /// Draws a cell of fixed width, so that nothing moves while the values change.
-    fn cell(&self, ui: &mut egui::Ui, content: impl FnOnce(&mut egui::Ui)) -> egui::Response {
-        let size = egui::vec2(self.room, theme::GAP * 2.25);
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
-            ui.set_width(self.room);
-            ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            content(ui);
-        });
-        shown.response
-    }
+/// Draws a cell of this fixed width, in points, so that nothing moves while the values change.
+fn cell(ui: &mut egui::Ui, width: f32, content: impl FnOnce(&mut egui::Ui)) -> egui::Response {
+    let size = egui::vec2(width, theme::GAP * 2.25);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_width(width);
+        ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
+        content(ui);
+    });
+    shown.response
 }
 
 #[cfg(test)]
