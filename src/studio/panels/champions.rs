@@ -18,7 +18,7 @@ use snakes_core::evolve::Champion;
 use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, LandingTime};
-use columns::{ChampionRowStyle, cells, heads, rows_width};
+use columns::{cells, heads, rows_width};
 use summary::ReportSummary;
 
 /// The champions panel: the list, and its options.
@@ -122,8 +122,7 @@ impl ChampionsPanel {
                 let Some(champion) = &report.champion else {
                     let cells = ["disqualified", "-", "-"].map(str::to_owned);
                     let hint = "All snakes of this generation were disqualified";
-                    columns::row(ui, ChampionRowStyle::default(), &name, &cells)
-                        .on_hover_text(hint);
+                    columns::row(ui, None, None, &name, &cells).on_hover_text(hint);
                     continue;
                 };
                 let individual = champion.origin.individual;
@@ -223,12 +222,8 @@ impl ChampionRow<'_> {
             true => LandingTime::of(champion, climb),
             false => LandingTime::None,
         };
-        let style = ChampionRowStyle {
-            is_shown: shown.is_some(),
-            lane_color: shown.and_then(|shown| shown.color(theme::of(ui))),
-            picture: climb.map(|climb| &climb.picture),
-        };
-        let response = columns::row(ui, style, name, &cells(champion, time));
+        let picture = climb.map(|climb| &climb.picture);
+        let response = columns::row(ui, shown, picture, name, &cells(champion, time));
         let response = response.on_hover_ui(|ui| {
             ui.label(format!("{name}: {}", champion.reached()));
             if let LandingTime::Known(time_s) = time {
