@@ -45,13 +45,13 @@ pub(super) fn clicked<'a>(view: &'a ChartView, at: [f64; 2], off: egui::Vec2) ->
     panel
 }
 
-/// Calls `act` in a panel of this width, in points. Returns its result and the commands that were sent.
-fn with<T>(
+/// Calls `act` in a panel of this width, in points. Returns the commands that were sent.
+fn with(
     run: &CurrentRun,
     kind: ChartKind,
     width: f32,
-    act: impl FnOnce(&mut Sent<'_>) -> T,
-) -> (T, Vec<Command>) {
+    act: impl FnOnce(&mut Sent<'_>),
+) -> Vec<Command> {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let best = run.reports().last().and_then(|report| report.champion.as_ref());
     let selected = best.map(|best| StagedChampion::from_run(best, run.number()));
@@ -60,15 +60,14 @@ fn with<T>(
     });
     // Opening a chart may request the list of runs, which is removed.
     harness.state_mut().clear();
-    let seen = act(&mut harness);
+    act(&mut harness);
     harness.run();
-    let sent = harness.state().clone();
-    (seen, sent)
+    harness.state().clone()
 }
 
 #[test]
 fn a_chart_is_selected_by_its_name() {
-    let ((), sent) = with(&explored_run(), ChartKind::Fitness, 600.0, |harness| {
+    let sent = with(&explored_run(), ChartKind::Fitness, 600.0, |harness| {
         assert!(harness.query_by_label("Fitness by generation").is_some());
         for (kind, title) in [
             (ChartKind::Ancestors, "Ancestors of the best"),
@@ -120,7 +119,7 @@ fn only_a_run_with_species_offers_their_chart() {
 fn before_the_first_generation_every_chart_explains_its_content() {
     let run = prepared_run();
     for kind in offered(&run) {
-        let ((), sent) = with(&run, kind, theme::PANEL_WIDTH, |harness| {
+        let sent = with(&run, kind, theme::PANEL_WIDTH, |harness| {
             let mut says = harness.query_all_by_label_contains("will appear here");
             assert!(says.next().is_some(), "{kind:?}");
             assert!(harness.query_by_label("PNG").is_none(), "{kind:?}: nothing to write");
@@ -139,7 +138,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
             [ChartKind::Blocks, ChartKind::Bodies, ChartKind::Archive].map(|kind| (&bodies, kind)),
         );
         for (run, kind) in charts {
-            let ((), sent) = with(run, kind, width, |harness| {
+            let sent = with(run, kind, width, |harness| {
                 // Another thread computes the torques of waves.
                 for _ in 0..3000 {
                     if harness.query_by_label("CSV").is_some() {
