@@ -107,7 +107,6 @@ impl ChampionsPanel {
                         name: &saved.name,
                         champion: &saved.loaded.champion,
                         climb: self.climbs.of_save(&saved.loaded),
-                        has_time: saved.loaded.is_of_this_engine(),
                         pick: Pick::Opened(index),
                         race: None,
                     };
@@ -132,7 +131,6 @@ impl ChampionsPanel {
                     name: &mark.map_or(name.clone(), |(_, mark)| format!("{name}, {mark}")),
                     champion,
                     climb: self.climbs.of(champion),
-                    has_time: true,
                     pick: Pick::Generation(generation),
                     race: ((view.leaders)(Some(generation)) > 1).then_some(generation),
                 };
@@ -206,8 +204,6 @@ struct ChampionRow<'r> {
     name: &'r str,
     champion: &'r Champion,
     climb: Option<&'r Climb>,
-    /// Whether the champion's time of landing can be known. Another engine version would reach the top at another time.
-    has_time: bool,
     pick: Pick,
     /// Generation of the champion, if its ten best snakes can race.
     race: Option<u32>,
@@ -218,10 +214,7 @@ impl ChampionRow<'_> {
     /// The context menu starts the next run from the champion, or races the ten best snakes of its generation.
     fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Self { shown, name, champion, climb, pick, .. } = *self;
-        let time = match self.has_time {
-            true => LandingTime::of(champion, climb),
-            false => LandingTime::None,
-        };
+        let time = LandingTime::of(champion, climb);
         let picture = climb.map(|climb| &climb.picture);
         let response = columns::row(ui, shown, picture, name, &cells(champion, time));
         let response = response.on_hover_ui(|ui| {

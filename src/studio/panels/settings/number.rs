@@ -55,7 +55,6 @@ impl Sheet {
         shown: &Shown,
         range: &NumberRange,
     ) -> Option<String> {
-        let shown_range = shown.listed.setting.shown_range(range);
         let each = match &shown.listed.value {
             SettingValue::List(each) => Some(each.as_slice()),
             _ => None,
@@ -70,7 +69,7 @@ impl Sheet {
                 if is_given && each.is_none() {
                     let check = |text: &str| shown.check.typed(text);
                     let control = Control::of(shown, name, &check);
-                    return sheet.slider_and_field(ui, &control, shown, &shown_range, width);
+                    return sheet.slider_and_field(ui, &control, shown, range, width);
                 }
                 let part = range.parts.word();
                 let instead = match is_given {
@@ -124,17 +123,9 @@ impl Sheet {
             },
             |sheet, ui, width, name| {
                 let said = Some(format!("{} of {}", setting.label, part.to_lowercase()));
-                let control = Control {
-                    id: &id,
-                    name,
-                    said,
-                    value: &value,
-                    stored: &stored,
-                    hint: &shown.hint,
-                    check: &check,
-                };
-                let range = setting.shown_range(range);
-                sheet.slider_and_field(ui, &control, shown, &range, width)
+                let of_whole = Control::of(shown, name, &check);
+                let control = Control { id: &id, said, value: &value, stored: &stored, ..of_whole };
+                sheet.slider_and_field(ui, &control, shown, range, width)
             },
             |_, _| None,
         );
@@ -152,11 +143,13 @@ impl Sheet {
         range: &NumberRange,
         width: f32,
     ) -> Option<String> {
+        let setting = &shown.listed.setting;
+        let range = setting.shown_range(range);
         let mut slid = None;
         if let Some(ends) = range.slider {
             ui.spacing_mut().slider_width =
                 (width - VALUE_WIDTH - theme::GAP).max(theme::GAP * 4.0);
-            let scale = Scale::of(range, ends, shown.listed.setting.shown_unit());
+            let scale = Scale::of(&range, ends, setting.shown_unit());
             slid = self.slider(ui, control, &scale, range.is_whole);
         } else {
             // The field is aligned with the other fields.

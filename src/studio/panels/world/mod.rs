@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use bevy_egui::egui;
 
+use super::own_files::OwnName;
 use super::settings::Sheet;
 use super::stairs::stairs_choice;
 use super::undo_buttons::undo_buttons;
@@ -22,14 +23,15 @@ use snakes_core::schema::{ListedSetting, Section, SettingKind};
 use snakes_core::score::{AgentSettings, Trial};
 use snakes_core::world::Stairs;
 
-use presets::PresetChoice;
+use presets::preset_choice;
 use surface_readout::{ReadLanes, ReadSurface};
 
 /// The Change panel, with its search text and fields.
 #[derive(Debug, Default)]
 pub(super) struct WorldPanel {
     sheet: Sheet,
-    presets: PresetChoice,
+    /// Field for the name of a preset to save.
+    preset_name: OwnName,
     /// Text for which settings are searched.
     search: String,
 }
@@ -46,7 +48,7 @@ impl WorldPanel {
     ) {
         self.sheet.begin(ui, run);
         title_and(ui, "World", |ui| undo_buttons(ui, history, commands));
-        self.presets.ui(ui, run, commands);
+        preset_choice(ui, &mut self.preset_name, run, commands);
         next_run(ui, run, commands);
         self.search_field(ui);
         if self.search.trim().is_empty() {
