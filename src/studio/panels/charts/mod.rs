@@ -34,7 +34,6 @@ use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
-use snakes_lab::plot::Figure;
 
 use band_kinds::{BLOCKS, SPECIES};
 use chart_kind::ChartKind;
@@ -90,78 +89,47 @@ impl ChartsPanel {
         let height = (ui.available_height() - theme::CHART_CONTROLS_HEIGHT)
             .min(tallest)
             .max(theme::PLOT_HEIGHT);
-        match self.kind {
-            ChartKind::Methods => self.methods(ui, height, commands),
-            ChartKind::Torques => self.torques(ui, run, height, selected, commands),
-            kind => self.run_chart(ui, run, kind, height, shown, commands),
+        let kind = self.kind;
+        let (view, shown) = match kind {
+            ChartKind::Methods => {
+                if let Some(curves) = &mut self.curves {
+                    header(ui, &curves.view, kind, commands);
+                    curves.ui(ui, height);
+                }
+                return;
+            }
+            ChartKind::Torques => {
+                let known = self.torques.update(run, selected);
+                let view = known.and_then(|()| self.torques.view().ok_or(kind.empty_text()));
+                // No individual is highlighted, because the chart shows only the selected snake.
+                (view, &[][..])
+            }
+            _ => {
+                let version = run.version();
+                if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
+                    self.known = Some((kind, version, view_of(kind, run)));
+                }
+                let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
+                let view = view.filter(|view| !view.figure.is_empty());
+                (view.ok_or_else(|| reason(kind, run)), shown)
+            }
+        };
+        match view {
+            Ok(view) => {
+                header(ui, view, kind, commands);
+                draw::draw(ui, kind.labels().0, view, height, shown, commands);
+            }
+            Err(why) => {
+                title(ui, kind.labels().0);
+                explain(ui, why);
+            }
         }
-    }
-
-    /// Draws a chart of the run's results.
-    fn run_chart(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        kind: ChartKind,
-        height: f32,
-        shown: &[ShownLane],
-        commands: &mut Vec<Command>,
-    ) {
-        if kind == ChartKind::Runs && !self.has_listed_runs {
-            self.has_listed_runs = true;
-            commands.push(Command::Run(RunCommand::ListRuns));
-        }
-        let version = run.version();
-        if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
-            self.known = Some((kind, version, view_of(kind, run)));
-        }
-        let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
-        let view = view.filter(|view| !view.figure.is_empty()).ok_or_else(|| reason(kind, run));
-        view_or_reason(ui, kind, view, height, shown, commands);
         if kind == ChartKind::Runs {
+            if !self.has_listed_runs {
+                self.has_listed_runs = true;
+                commands.push(Command::Run(RunCommand::ListRuns));
+            }
             runs::run_list(ui, run, commands);
-        }
-    }
-
-    fn torques(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        height: f32,
-        selected: Option<&StagedChampion>,
-        commands: &mut Vec<Command>,
-    ) {
-        let view = self.torques.update(run, selected);
-        let view = view.and_then(|()| self.torques.view().ok_or(ChartKind::Torques.empty_text()));
-        // No individual is highlighted, because the chart shows only the selected snake.
-        view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
-    }
-
-    fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
-        if let Some(curves) = &mut self.curves {
-            header(ui, &curves.view.figure, (ChartKind::Methods, false), commands);
-            curves.ui(ui, height);
-        }
-    }
-}
-
-/// Draws a chart, or the reason why it is empty.
-fn view_or_reason(
-    ui: &mut egui::Ui,
-    kind: ChartKind,
-    view: Result<&ChartView, &str>,
-    height: f32,
-    shown: &[ShownLane],
-    commands: &mut Vec<Command>,
-) {
-    match view {
-        Ok(view) => {
-            header(ui, &view.figure, (kind, view.is_of_run), commands);
-            draw::draw(ui, kind.labels().0, view, height, shown, commands);
-        }
-        Err(why) => {
-            title(ui, kind.labels().0);
-            explain(ui, why);
         }
     }
 }
@@ -227,13 +195,9 @@ fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
     }
 }
 
-/// Draws the title of a chart and its export buttons. `is_of_run` tells whether the chart is about the current run.
-fn header(
-    ui: &mut egui::Ui,
-    figure: &Arc<Figure>,
-    (kind, is_of_run): (ChartKind, bool),
-    commands: &mut Vec<Command>,
-) {
+/// Draws the title of a chart and its export buttons.
+fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut Vec<Command>) {
+    let ChartView { figure, is_of_run, .. } = view;
     let refusal = figure.is_empty().then_some("The chart is still empty");
     title_and(ui, &figure.title, |ui| {
         for (label, hint, format) in [
@@ -241,7 +205,7 @@ fn header(
             ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
         ] {
             let (figure, name) = (Arc::clone(figure), kind.file_name());
-            let export = ChartExport { figure, name, format, is_of_run };
+            let export = ChartExport { figure, name, format, is_of_run: *is_of_run };
             let export = Command::Run(RunCommand::ExportChart(export));
             CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);
         }

@@ -52,7 +52,18 @@ impl WorldPanel {
         next_run(ui, run, commands);
         self.search_field(ui);
         if self.search.trim().is_empty() {
-            self.sections(ui, run, on_stage, commands);
+            let all = self.sheet.sections("trial.");
+            let (first, others): (Vec<Section>, Vec<Section>) =
+                all.into_iter().partition(|section| FIRST.contains(section));
+            self.sheet.knob(ui, |path| path == GRAVITY);
+            for section in first {
+                self.folded(ui, section, run, on_stage, commands);
+            }
+            if self.sheet.fold(ui, ADVANCED, title_text("Advanced"), ADVANCED) {
+                for section in others {
+                    self.folded(ui, section, run, on_stage, commands);
+                }
+            }
         } else {
             self.search_results(ui);
         }
@@ -85,28 +96,6 @@ impl WorldPanel {
                 self.search.clear();
             }
         });
-    }
-
-    fn sections(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        on_stage: &ReadLanes,
-        commands: &mut Vec<Command>,
-    ) {
-        let all = self.sheet.sections("trial.");
-        let (first, others): (Vec<Section>, Vec<Section>) =
-            all.into_iter().partition(|section| FIRST.contains(section));
-        self.sheet.knob(ui, |path| path == GRAVITY);
-        for section in first {
-            self.folded(ui, section, run, on_stage, commands);
-        }
-        let label = title_text("Advanced");
-        if self.sheet.fold(ui, ADVANCED, label, ADVANCED) {
-            for section in others {
-                self.folded(ui, section, run, on_stage, commands);
-            }
-        }
     }
 
     /// Draws a section that its header unfolds.
