@@ -150,46 +150,36 @@ impl<'l> ReadLanes<'l> {
             .default_open(surface != ReadSurface::Skin);
         let hint = "What the snake on the stage does there at the shown moment";
         folded(ui, header, hint, |ui| {
-            self.table(ui, surface, &|touched| surface.is_meant(has_own_ground, touched));
+            self.table(ui, surface, has_own_ground);
         });
     }
 
-    fn table(
-        &self,
-        ui: &mut egui::Ui,
-        surface: ReadSurface,
-        is_meant: &dyn Fn(TouchedSurface) -> bool,
-    ) {
-        let missing = if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
-            Some("Not available in a recording")
-        } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
-            Some("Not available for a ghost")
-        } else {
-            None
-        };
-        if let Some(missing) = missing {
-            return explain(ui, missing);
+    fn table(&self, ui: &mut egui::Ui, surface: ReadSurface, has_own_ground: bool) {
+        if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
+            return explain(ui, "Not available in a recording");
         }
-        let column = |&lane: &&'l Lane| LaneColumn::of(lane, self.is_playing, is_meant);
-        let columns: Vec<LaneColumn> = self.lanes.iter().map(column).collect();
+        if self.lanes.iter().any(|lane| lane.is_ghost()) {
+            return explain(ui, "Not available for a ghost");
+        }
         let all_room = ui.available_width() - NAME_WIDTH;
         // Columns for which there is no room are drawn below the first ones.
         let most = ((all_room / (LEAST_COLUMN + theme::GAP)) as usize).max(1);
-        let beside = columns.len().div_ceil(columns.len().div_ceil(most));
-        let room = all_room / beside as f32 - theme::GAP;
+        let beside = self.lanes.len().div_ceil(self.lanes.len().div_ceil(most));
+        let width = all_room / beside as f32 - theme::GAP;
+        let is_meant = &|touched| surface.is_meant(has_own_ground, touched);
+        let column = |lane: &&'l Lane| LaneColumn::of(lane, width, self.is_playing, is_meant);
+        let columns: Vec<LaneColumn> = self.lanes.iter().map(column).collect();
         for (index, columns) in columns.chunks(beside).enumerate() {
-            self.grid(ui, (surface, index), columns, room);
+            self.grid(ui, (surface, index), columns);
         }
     }
 
-    /// Draws the readings of several lanes side by side, in columns of this width in points. `index` is the number of the
-    /// table among those of the surface.
+    /// Draws the readings of several lanes side by side. `index` is the number of the table among those of the surface.
     fn grid(
         &self,
         ui: &mut egui::Ui,
         (surface, index): (ReadSurface, usize),
         columns: &[LaneColumn],
-        room: f32,
     ) {
         let gap = theme::GAP;
         // A table with other columns is another one. It would be drawn once with the widths of the one before, so that its
@@ -202,7 +192,7 @@ impl<'l> ReadLanes<'l> {
             if self.are_named {
                 ui.label("");
                 for column in columns {
-                    cell(ui, room, |ui| {
+                    cell(ui, column.width, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
                         let name = weak(ui, head_of(ui, label));
@@ -214,7 +204,7 @@ impl<'l> ReadLanes<'l> {
             }
             let of_snake = usize::from(surface == ReadSurface::Stairs);
             for line in &LINES[..LINES.len() - 1 + of_snake] {
-                line.ui(ui, columns, room);
+                line.ui(ui, columns);
             }
         });
     }
@@ -233,15 +223,15 @@ fn head_of(ui: &egui::Ui, label: &str) -> String {
 }
 
 impl ReadoutLine {
-    /// Draws the line in a table with these columns, each of this width in points.
-    fn ui(&self, ui: &mut egui::Ui, columns: &[LaneColumn], room: f32) {
+    /// Draws the line in a table with these columns.
+    fn ui(&self, ui: &mut egui::Ui, columns: &[LaneColumn]) {
         let hint = match self.term {
             "" => self.hint.to_owned(),
             term => format!("{}.\nIn the terms of the field: {term}", self.hint),
         };
         cell(ui, NAME_WIDTH, |ui| drop(ui.label(weak(ui, self.name)).on_hover_text(hint)));
         for column in columns {
-            let cell = cell(ui, room, |ui| (self.draw)(column, ui));
+            let cell = cell(ui, column.width, |ui| (self.draw)(column, ui));
             // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
             let id = ui.id().with((self.name, column.lane.number()));
             ui.interact(cell.rect, id, egui::Sense::hover()).on_hover_ui(|ui| {

@@ -23,6 +23,8 @@ const SLIDES_FROM: f32 = 0.995;
 /// A column of the table: a lane with its reading on one surface.
 pub(super) struct LaneColumn<'l> {
     pub lane: &'l Lane,
+    /// Width of the column, in points.
+    pub width: f32,
     /// Reading of the surface; `None` if no limb touches it.
     reading: Option<SurfaceReading>,
     is_playing: bool,
@@ -34,11 +36,12 @@ impl<'l> LaneColumn<'l> {
     /// Creates the column of a lane for the surfaces for which `is_meant` holds.
     pub fn of(
         lane: &'l Lane,
+        width: f32,
         is_playing: bool,
         is_meant: &'l dyn Fn(TouchedSurface) -> bool,
     ) -> Self {
         let reading = lane.readings().meter.surface(is_playing, is_meant);
-        Self { lane, reading, is_playing, is_meant }
+        Self { lane, width, reading, is_playing, is_meant }
     }
 
     /// Draws the energy lost so far in contacts and at the stops of the joints.
