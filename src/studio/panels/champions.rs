@@ -62,7 +62,42 @@ impl ChampionsPanel {
     pub fn ui(&mut self, ui: &mut egui::Ui, view: &ChampionsView, commands: &mut Vec<Command>) {
         let summary = self.summary(view.reports);
         self.climbs.poll();
-        ui.horizontal_wrapped(|ui| buttons(ui, view, &summary, commands));
+        let no_generation = Some("Nothing to show yet: finish a generation first")
+            .filter(|_| (view.leaders)(None) <= 1);
+        let one_of = |champions: usize| {
+            Some("Nothing to show yet: finish two generations first").filter(|_| champions <= 1)
+        };
+        ui.horizontal_wrapped(|ui| {
+            for (name, hint, refusal, command) in [
+                (
+                    "Whole generation",
+                    "Show all snakes of the latest generation at once",
+                    no_generation,
+                    StageCommand::ShowGeneration(None),
+                ),
+                (
+                    "Story",
+                    "Play the first, the middle and the latest of the better generations",
+                    one_of(summary.better.len()),
+                    StageCommand::TellStory,
+                ),
+                (
+                    "Race generations",
+                    "Replay champions of several generations side by side",
+                    one_of(summary.champions),
+                    StageCommand::RaceGenerations,
+                ),
+                (
+                    "Race best 10",
+                    "Replay the ten best snakes of the latest generation side by side",
+                    no_generation,
+                    StageCommand::RaceLeaders(None),
+                ),
+            ] {
+                let button = CommandButton::new(name, hint, Command::Stage(command));
+                button.unless(refusal).show(ui, commands);
+            }
+        });
         ui.horizontal_wrapped(|ui| {
             command_box(ui, view.follows, FOLLOW, FOLLOW_COMMAND, commands);
             let name = "Better ones only";
@@ -153,49 +188,6 @@ pub(super) const FOLLOW: (&str, &str) =
     ("Follow evolution", "Show each better generation as soon as it is found");
 /// Command of the check box for following evolution.
 pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
-
-/// Draws the buttons that show several snakes at once.
-fn buttons(
-    ui: &mut egui::Ui,
-    view: &ChampionsView,
-    summary: &ReportSummary,
-    commands: &mut Vec<Command>,
-) {
-    let no_generation = Some("Nothing to show yet: finish a generation first")
-        .filter(|_| (view.leaders)(None) <= 1);
-    let one_of = |champions: usize| {
-        Some("Nothing to show yet: finish two generations first").filter(|_| champions <= 1)
-    };
-    for (name, hint, refusal, command) in [
-        (
-            "Whole generation",
-            "Show all snakes of the latest generation at once",
-            no_generation,
-            StageCommand::ShowGeneration(None),
-        ),
-        (
-            "Story",
-            "Play the first, the middle and the latest of the better generations",
-            one_of(summary.better.len()),
-            StageCommand::TellStory,
-        ),
-        (
-            "Race generations",
-            "Replay champions of several generations side by side",
-            one_of(summary.champions),
-            StageCommand::RaceGenerations,
-        ),
-        (
-            "Race best 10",
-            "Replay the ten best snakes of the latest generation side by side",
-            no_generation,
-            StageCommand::RaceLeaders(None),
-        ),
-    ] {
-        let button = CommandButton::new(name, hint, Command::Stage(command));
-        button.unless(refusal).show(ui, commands);
-    }
-}
 
 /// A row of the champions list.
 struct ChampionRow<'r> {

@@ -103,7 +103,7 @@ impl Profile<'_> {
         self.solids(&painter, scale, palette);
         let ground = egui::Stroke::new(1.0, palette.text_weak);
         painter.hline(area.x_range(), origin.y, ground);
-        self.code_line(ui, &painter, scale, area);
+        self.code_line(&painter, scale, palette);
         self.handles(ui, scale, grab)
     }
 
@@ -134,13 +134,8 @@ impl Profile<'_> {
     }
 
     /// Draws the steepest stairs that building codes allow in a home, as a dashed line over the first edges.
-    fn code_line(
-        &self,
-        ui: &egui::Ui,
-        painter: &egui::Painter,
-        scale: ProfileScale,
-        area: egui::Rect,
-    ) {
+    fn code_line(&self, painter: &egui::Painter, scale: ProfileScale, palette: &theme::Palette) {
+        let area = painter.clip_rect();
         let steepest = BUILDING_CODES.iter().map(BuildingCode::steepest).fold(0.0, f32::max);
         if self.stairs.steps == 0 {
             return;
@@ -149,7 +144,6 @@ impl Profile<'_> {
         let most_z_m = scale.back_m(area.left_top())[1];
         let along_m = (most_z_m - from_m[1]) / steepest;
         let to_m = [from_m[0] + along_m, most_z_m];
-        let palette = theme::of(ui);
         let stroke = egui::Stroke::new(1.5, palette.second);
         let line = [scale.at(from_m), scale.at(to_m)];
         painter.extend(egui::Shape::dashed_line(&line, stroke, 6.0, 4.0));
