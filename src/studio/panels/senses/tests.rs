@@ -99,26 +99,21 @@ fn a_snake_that_follows_only_its_genes_says_so() {
 }
 
 #[test]
-fn every_network_is_drawn_with_its_nodes() {
-    for (kind, node) in [
-        (ControllerKind::Modular, "front step up "),
-        (ControllerKind::Central, "limb 1 gap "),
-        (ControllerKind::Ctrnn, "neuron 1: bend target "),
-        (ControllerKind::Grown, "head step up "),
+fn every_network_is_drawn_with_its_nodes_and_reflexes_are_listed_by_sense() {
+    let reflexes: &[&str] = &["Joint 2: what each sense adds", "front touch: ", "Target moved: "];
+    for (kind, labels) in [
+        (ControllerKind::Modular, &["front step up "][..]),
+        (ControllerKind::Central, &["limb 1 gap "]),
+        (ControllerKind::Ctrnn, &["neuron 1: bend target "]),
+        (ControllerKind::Grown, &["head step up "]),
+        (ControllerKind::Reflex, reflexes),
     ] {
         let lane = lane_of(kind, &[], |_| ());
         let panel = panel(&lane, 2);
-        assert!(shows(&panel, node), "{kind}");
-        assert!(shows(&panel, &format!("Controller: {}", kind.title())));
+        assert_shows(&panel, labels);
+        assert_shows(&panel, &[&format!("Controller: {}", kind.title())]);
         assert_nothing_is_wider_than(&panel, 320.0);
     }
-}
-
-#[test]
-fn reflexes_are_listed_by_sense() {
-    let lane = lane_of(ControllerKind::Reflex, &[], |_| ());
-    let panel = panel(&lane, 2);
-    assert_shows(&panel, &["Joint 2: what each sense adds", "front touch: ", "Target moved: "]);
 }
 
 /// Creates a lane of a snake with 400 rules of equal strength. This share of their conditions' parts is left open.

@@ -11,7 +11,7 @@ use bevy_egui::egui;
 
 use super::changing::Changing;
 use super::validation::Check;
-use super::values::{Values, sections_of};
+use super::values::Values;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::buttons::CommandButton;
@@ -102,8 +102,11 @@ impl Sheet {
 
     /// Returns the sections of those settings of the next run whose full names begin with `prefix`.
     pub fn sections(&self, prefix: &str) -> Vec<Section> {
-        let listed = self.values.listed.iter();
-        sections_of(listed.filter(|listed| listed.path.starts_with(prefix)))
+        let listed = self.values.listed.iter().filter(|listed| listed.path.starts_with(prefix));
+        let mut sections: Vec<Section> = listed.map(|listed| listed.section).collect();
+        // The settings of a section are adjacent.
+        sections.dedup();
+        sections
     }
 
     /// Returns the settings of a section.
@@ -158,7 +161,7 @@ impl Sheet {
         let shown = Shown {
             listed,
             hint: hint(setting, answer),
-            check: Check { settings: &values.settings, listed, all: &values.listed },
+            check: Check { values: &values, listed },
             stored: listed.value.to_string(),
             text: setting.shown_value(&listed.value),
             is_from_next_generation: answer == Some(Ok(())),

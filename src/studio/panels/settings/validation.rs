@@ -1,19 +1,17 @@
 //! Checks and normalises text that is typed for a setting.
 
-use super::values::numbers;
+use super::values::{Values, numbers};
 use snakes_core::check::Invalid;
-use snakes_core::evolve::{Settings, with_field};
+use snakes_core::evolve::with_field;
 use snakes_core::schema::{ListedSetting, SettingKind, SettingValue};
 
 /// A setting that is being typed, with all other settings.
 #[derive(Clone, Copy)]
 pub(super) struct Check<'a> {
-    /// Current settings of the next run.
-    pub settings: &'a Settings,
+    /// All settings of the next run, with their declarations.
+    pub values: &'a Values,
     /// Declaration and present value of the setting.
     pub listed: &'a ListedSetting,
-    /// All settings with their declarations.
-    pub all: &'a [ListedSetting],
 }
 
 impl Check<'_> {
@@ -85,9 +83,9 @@ impl Check<'_> {
     /// # Errors
     /// The text is invalid; the error is a message for the user.
     pub fn whole(&self, text: &str) -> Result<(), String> {
-        let checked = with_field(self.settings, &self.listed.path, text);
+        let checked = with_field(&self.values.settings, &self.listed.path, text);
         let checked = checked.and_then(|settings| settings.check_start());
-        checked.map_err(|invalid| in_words(&invalid, self.all))
+        checked.map_err(|invalid| in_words(&invalid, &self.values.listed))
     }
 }
 
@@ -114,14 +112,14 @@ fn in_words(invalid: &Invalid, all: &[ListedSetting]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::schema::list;
+    use snakes_core::schema::{PerPart, list};
 
     fn typed(field: &str, text: &str) -> Result<String, String> {
-        let mut settings = Settings::default();
-        settings.trial.agent.limb_width_m = snakes_core::schema::PerPart::Each(vec![1.0; 5]);
-        let all = list(&settings);
-        let listed = all.iter().find(|listed| listed.path == field).expect("a setting");
-        Check { settings: &settings, listed, all: &all }.typed(text)
+        let mut values = Values::default();
+        values.settings.trial.agent.limb_width_m = PerPart::Each(vec![1.0; 5]);
+        values.listed = list(&values.settings);
+        let listed = values.listed.iter().find(|listed| listed.path == field);
+        Check { values: &values, listed: listed.expect("a setting") }.typed(text)
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::studio::state::current_run::CurrentRun;
 use snakes_core::evolve::Settings;
-use snakes_core::schema::{Choices, ListedSetting, Section, SettingValue, list};
+use snakes_core::schema::{Choices, ListedSetting, SettingValue, list};
 use snakes_core::score::Trial;
 use snakes_core::world::PhysicsEngine;
 
@@ -73,14 +73,6 @@ pub fn every_setting() -> Vec<ListedSetting> {
     let mut settings = Settings::default();
     settings.trial.ground = Some(settings.trial.surface.clone());
     list(&settings)
-}
-
-/// Returns the sections of these settings in order.
-pub(super) fn sections_of<'a>(listed: impl IntoIterator<Item = &'a ListedSetting>) -> Vec<Section> {
-    let mut sections: Vec<Section> = listed.into_iter().map(|listed| listed.section).collect();
-    // The settings of a section are adjacent.
-    sections.dedup();
-    sections
 }
 
 /// Parses a list: `[1, 2]`.
