@@ -38,7 +38,7 @@ impl CurvesPanel {
     /// Draws the panel. The chart of the curves is `height` points high.
     pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
         if self.study.arms.is_empty() {
-            return explain(ui, ChartKind::Methods.empty_text());
+            return explain(ui, &ChartKind::Methods.empty_text());
         }
         ui.horizontal(|ui| {
             ui.label("Controller");

@@ -100,7 +100,8 @@ impl ChartsPanel {
             }
             ChartKind::Torques => {
                 let known = self.torques.update(run, selected);
-                let view = known.and_then(|()| self.torques.view().ok_or(kind.empty_text()));
+                let view = known.map_err(str::to_owned);
+                let view = view.and_then(|()| self.torques.view().ok_or_else(|| kind.empty_text()));
                 // No individual is highlighted, because the chart shows only the selected snake.
                 (view, &[][..])
             }
@@ -121,7 +122,7 @@ impl ChartsPanel {
             }
             Err(why) => {
                 title(ui, kind.labels().0);
-                explain(ui, why);
+                explain(ui, &why);
             }
         }
         if kind == ChartKind::Runs {
@@ -186,10 +187,10 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
 }
 
 /// Returns the reason why a chart of the run is empty.
-fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
+fn reason(kind: ChartKind, run: &CurrentRun) -> String {
     match kind {
         ChartKind::Front if run.exploration().is_some() => {
-            "No snake has ended ahead of its starting position yet."
+            "No snake has ended ahead of its starting position yet.".to_owned()
         }
         _ => kind.empty_text(),
     }

@@ -72,17 +72,12 @@ impl TorqueComparison {
 
     /// Replaces the parent if it is another individual, or is not kept any more.
     fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
-        let found = child.and_then(|child| Some((child, parent(run, child)?)));
-        let is_same = match (&self.parent, &found) {
-            (None, None) => true,
-            (Some(known), Some((_, (name, genome)))) => {
-                known.name == *name && known.genome == *genome
-            }
-            _ => false,
-        };
+        let found = child.and_then(|child| parent(run, child)).zip(child);
+        let known = self.parent.as_ref().map(|known| (&known.name, &known.genome));
+        let is_same = known == found.as_ref().map(|((name, genome), _)| (name, genome));
         if !is_same {
             self.view = None;
-            self.parent = found.map(|(child, (name, genome))| {
+            self.parent = found.map(|((name, genome), child)| {
                 let trial = &child.champion().trial;
                 Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
             });
