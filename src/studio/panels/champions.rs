@@ -10,7 +10,7 @@ use super::shown::{ShownChampion, ShownLane};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::opening::NamedChampion;
-use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::buttons::{CommandButton, command_box, show_or_join};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -18,11 +18,11 @@ use snakes_core::evolve::Champion;
 use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, LandingTime};
-use columns::{ChampionRowStyle, cells, heads, rows_width};
+use columns::{cells, heads, rows_width};
 use summary::ReportSummary;
 
 /// The champions panel: the list, and its options.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct ChampionsPanel {
     /// Cached summary of the reports. The number of reports and the hash of the latest are its key.
     summary: Option<((usize, u64), ReportSummary)>,
@@ -62,7 +62,42 @@ impl ChampionsPanel {
     pub fn ui(&mut self, ui: &mut egui::Ui, view: &ChampionsView, commands: &mut Vec<Command>) {
         let summary = self.summary(view.reports);
         self.climbs.poll();
-        ui.horizontal_wrapped(|ui| buttons(ui, view, &summary, commands));
+        let no_generation = Some("Nothing to show yet: finish a generation first")
+            .filter(|_| (view.leaders)(None) <= 1);
+        let one_of = |champions: usize| {
+            Some("Nothing to show yet: finish two generations first").filter(|_| champions <= 1)
+        };
+        ui.horizontal_wrapped(|ui| {
+            for (name, hint, refusal, command) in [
+                (
+                    "Whole generation",
+                    "Show all snakes of the latest generation at once",
+                    no_generation,
+                    StageCommand::ShowGeneration(None),
+                ),
+                (
+                    "Story",
+                    "Play the first, the middle and the latest of the better generations",
+                    one_of(summary.better.len()),
+                    StageCommand::TellStory,
+                ),
+                (
+                    "Race generations",
+                    "Replay champions of several generations side by side",
+                    one_of(summary.champions),
+                    StageCommand::RaceGenerations,
+                ),
+                (
+                    "Race best 10",
+                    "Replay the ten best snakes of the latest generation side by side",
+                    no_generation,
+                    StageCommand::RaceLeaders(None),
+                ),
+            ] {
+                let button = CommandButton::new(name, hint, Command::Stage(command));
+                button.unless(refusal).show(ui, commands);
+            }
+        });
         ui.horizontal_wrapped(|ui| {
             command_box(ui, view.follows, FOLLOW, FOLLOW_COMMAND, commands);
             let name = "Better ones only";
@@ -107,7 +142,6 @@ impl ChampionsPanel {
                         name: &saved.name,
                         champion: &saved.loaded.champion,
                         climb: self.climbs.of_save(&saved.loaded),
-                        has_time: saved.loaded.is_of_this_engine(),
                         pick: Pick::Opened(index),
                         race: None,
                     };
@@ -122,8 +156,7 @@ impl ChampionsPanel {
                 let Some(champion) = &report.champion else {
                     let cells = ["disqualified", "-", "-"].map(str::to_owned);
                     let hint = "All snakes of this generation were disqualified";
-                    columns::row(ui, ChampionRowStyle::default(), &name, &cells)
-                        .on_hover_text(hint);
+                    columns::row(ui, None, None, &name, &cells).on_hover_text(hint);
                     continue;
                 };
                 let individual = champion.origin.individual;
@@ -133,7 +166,6 @@ impl ChampionsPanel {
                     name: &mark.map_or(name.clone(), |(_, mark)| format!("{name}, {mark}")),
                     champion,
                     climb: self.climbs.of(champion),
-                    has_time: true,
                     pick: Pick::Generation(generation),
                     race: ((view.leaders)(Some(generation)) > 1).then_some(generation),
                 };
@@ -157,49 +189,6 @@ pub(super) const FOLLOW: (&str, &str) =
 /// Command of the check box for following evolution.
 pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
 
-/// Draws the buttons that show several snakes at once.
-fn buttons(
-    ui: &mut egui::Ui,
-    view: &ChampionsView,
-    summary: &ReportSummary,
-    commands: &mut Vec<Command>,
-) {
-    let no_generation = Some("Nothing to show yet: finish a generation first")
-        .filter(|_| (view.leaders)(None) <= 1);
-    let one_of = |champions: usize| {
-        Some("Nothing to show yet: finish two generations first").filter(|_| champions <= 1)
-    };
-    for (name, hint, refusal, command) in [
-        (
-            "Whole generation",
-            "Show all snakes of the latest generation at once",
-            no_generation,
-            StageCommand::ShowGeneration(None),
-        ),
-        (
-            "Story",
-            "Play the first, the middle and the latest of the better generations",
-            one_of(summary.better.len()),
-            StageCommand::TellStory,
-        ),
-        (
-            "Race generations",
-            "Replay champions of several generations side by side",
-            one_of(summary.champions),
-            StageCommand::RaceGenerations,
-        ),
-        (
-            "Race best 10",
-            "Replay the ten best snakes of the latest generation side by side",
-            no_generation,
-            StageCommand::RaceLeaders(None),
-        ),
-    ] {
-        let button = CommandButton::new(name, hint, Command::Stage(command));
-        button.unless(refusal).show(ui, commands);
-    }
-}
-
 /// A row of the champions list.
 struct ChampionRow<'r> {
     /// Lane of the champion, if the champion is on the stage.
@@ -207,8 +196,6 @@ struct ChampionRow<'r> {
     name: &'r str,
     champion: &'r Champion,
     climb: Option<&'r Climb>,
-    /// Whether the champion's time of landing can be known. Another engine version would reach the top at another time.
-    has_time: bool,
     pick: Pick,
     /// Generation of the champion, if its ten best snakes can race.
     race: Option<u32>,
@@ -219,16 +206,9 @@ impl ChampionRow<'_> {
     /// The context menu starts the next run from the champion, or races the ten best snakes of its generation.
     fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Self { shown, name, champion, climb, pick, .. } = *self;
-        let time = match self.has_time {
-            true => LandingTime::of(champion, climb),
-            false => LandingTime::None,
-        };
-        let style = ChampionRowStyle {
-            is_shown: shown.is_some(),
-            lane_color: shown.and_then(|shown| shown.color(theme::of(ui))),
-            picture: climb.map(|climb| &climb.picture),
-        };
-        let response = columns::row(ui, style, name, &cells(champion, time));
+        let time = LandingTime::of(champion, climb);
+        let picture = climb.map(|climb| &climb.picture);
+        let response = columns::row(ui, shown, picture, name, &cells(champion, time));
         let response = response.on_hover_ui(|ui| {
             ui.label(format!("{name}: {}", champion.reached()));
             if let LandingTime::Known(time_s) = time {
@@ -241,11 +221,7 @@ impl ChampionRow<'_> {
             ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
         });
         if response.clicked() {
-            let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            commands.push(Command::Stage(match joins {
-                true => StageCommand::Join(pick),
-                false => StageCommand::Show(pick),
-            }));
+            commands.push(show_or_join(ui, pick));
         }
         response.context_menu(|ui| {
             let hint = "The first generation descends from it, in the world where it was found";

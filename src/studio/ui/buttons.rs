@@ -6,8 +6,9 @@ use bevy_egui::egui;
 
 use super::check_box::check_box;
 use super::theme;
-use crate::studio::commands::Command;
 use crate::studio::commands::actions::hint_with_key;
+use crate::studio::commands::pick::Pick;
+use crate::studio::commands::{Command, StageCommand};
 
 /// A button that sends a command when it is clicked.
 pub(crate) struct CommandButton<'a> {
@@ -101,10 +102,16 @@ pub(crate) fn accent_button(ui: &egui::Ui, label: &str) -> egui::Button<'static>
     egui::Button::new(text).fill(palette.accent)
 }
 
+/// Returns the command of a click on an individual: it is shown alone or, with Shift or Control, joins the stage.
+pub(crate) fn show_or_join(ui: &egui::Ui, pick: Pick) -> Command {
+    let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
+    Command::Stage(if joins { StageCommand::Join(pick) } else { StageCommand::Show(pick) })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::commands::{PlanCommand, RunCommand, StageCommand};
+    use crate::studio::commands::{PlanCommand, RunCommand};
 
     #[test]
     fn a_hint_names_the_shortcut_of_its_command_in_any_situation() {

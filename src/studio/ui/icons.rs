@@ -114,14 +114,12 @@ pub(crate) fn small_icon_button(
     hint: &str,
 ) -> egui::Response {
     let palette = theme::of(ui);
-    let fill = |is_hovered: bool| is_hovered.then_some(palette.field_hovered);
     let color = match ui.is_enabled() {
         true => palette.text,
         false => palette.text_weak.gamma_multiply(0.5),
     };
-    let response = square_button(ui, SMALL_SIDE, fill, |square| {
-        icon.shapes(middle_of(square, 0.55), Stroke::new(1.6, color))
-    });
+    let fills = [None, Some(palette.field_hovered)];
+    let response = square_button(ui, icon, SMALL_SIDE, (0.55, Stroke::new(1.6, color)), fills);
     let response = named(response, WidgetType::Button, label);
     response.on_hover_text(hint).on_disabled_hover_text(hint)
 }
@@ -129,40 +127,36 @@ pub(crate) fn small_icon_button(
 /// Draws an icon button, highlighted if it is on.
 pub(crate) fn icon_button(ui: &mut egui::Ui, icon: Icon, is_on: bool) -> egui::Response {
     let palette = theme::of(ui);
-    let fill = |is_hovered| match (is_on, is_hovered) {
-        (true, _) => Some(palette.accent_soft),
-        (false, true) => Some(palette.field_hovered),
-        (false, false) => Some(palette.field),
+    let fills = match is_on {
+        true => [palette.accent_soft; 2],
+        false => [palette.field, palette.field_hovered],
     };
-    let response = square_button(ui, SIDE, fill, |square| {
-        icon.shapes(middle_of(square, 0.42), Stroke::new(2.0, palette.text))
-    });
+    let stroke = Stroke::new(2.0, palette.text);
+    let response = square_button(ui, icon, SIDE, (0.42, stroke), fills.map(Some));
     named_selected(response, WidgetType::Button, is_on, icon.label())
 }
 
-/// Draws a square button. `fill` returns its background, given whether the pointer is over it; `shapes` are drawn on the background.
+/// Draws a square button of this side length in points, with an icon whose side is a share of the button's. The fills are the
+/// background, and the background under the pointer.
 fn square_button(
     ui: &mut egui::Ui,
+    icon: Icon,
     side: f32,
-    fill: impl Fn(bool) -> Option<Color32>,
-    shapes: impl FnOnce(Rect) -> Vec<Shape>,
+    (share, stroke): (f32, Stroke),
+    [fill, hovered_fill]: [Option<Color32>; 2],
 ) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(side), egui::Sense::click());
     if ui.is_rect_visible(rect) {
         let corner = ui.visuals().widgets.inactive.corner_radius;
-        if let Some(fill) = fill(response.hovered()) {
+        if let Some(fill) = if response.hovered() { hovered_fill } else { fill } {
             ui.painter().rect_filled(rect, corner, fill);
         }
         if response.has_focus() {
             let stroke = Stroke::new(1.5, theme::of(ui).accent);
             ui.painter().rect_stroke(rect, corner, stroke, egui::StrokeKind::Inside);
         }
-        ui.painter().extend(shapes(rect));
+        let square = Rect::from_center_size(rect.center(), rect.size() * share);
+        ui.painter().extend(icon.shapes(square, stroke));
     }
     response
-}
-
-/// Returns the central square whose side is this share of the given square's side.
-fn middle_of(square: Rect, share: f32) -> Rect {
-    Rect::from_center_size(square.center(), square.size() * share)
 }

@@ -18,7 +18,7 @@ pub(crate) struct Notices {
     is_quiet: bool,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Notice {
     text: String,
     /// Subject of the message; a new message on the same subject replaces it. `None` for no subject.
@@ -46,20 +46,7 @@ const MAX_NOTICES: usize = 4;
 
 impl Notice {
     fn new(text: String) -> Self {
-        Self {
-            text,
-            subject: None,
-            offers: Vec::new(),
-            is_problem: false,
-            is_important: false,
-            lasts: NEWS,
-            shown_for: Duration::ZERO,
-            height: 0.0,
-        }
-    }
-
-    fn is_over(&self) -> bool {
-        self.shown_for >= self.lasts
+        Self { text, lasts: NEWS, ..Self::default() }
     }
 
     /// Draws the message's card, at most this wide in points. Returns the card's height and the commands of a clicked button.
@@ -271,11 +258,11 @@ fn draw(
     mut send: MessageWriter<Command>,
 ) -> Result {
     notices.list.iter_mut().for_each(|notice| notice.shown_for += time.delta());
-    notices.list.retain(|notice| !notice.is_over());
+    notices.list.retain(|notice| notice.shown_for < notice.lasts);
     // The stairs rise to the upper right, so the largest free area is above the ground at the lower right.
-    let room = area.messages_room().shrink(theme::GAP * 1.5);
+    let room = area.messages_room.shrink(theme::GAP * 1.5);
     let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
-    area.set_messages(covered);
+    area.messages = covered;
     send.write_batch(taken.unwrap_or_default());
     Ok(())
 }
@@ -329,8 +316,7 @@ mod tests {
         notices.offer("undo", "Restored".to_owned(), [("Redo", Command::Redo)]);
         let texts: Vec<&str> = notices.list.iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(texts, ["Something else", "Restored"]);
-        notices.list[1].shown_for = NEWS;
-        assert!(!notices.list[1].is_over(), "a button takes time to reach");
+        assert!(notices.list[1].lasts > NEWS, "a button takes time to reach");
     }
 
     #[test]

@@ -74,23 +74,14 @@ impl From<Theme> for egui::Theme {
     }
 }
 
-impl From<egui::Theme> for Theme {
-    fn from(theme: egui::Theme) -> Self {
-        match theme {
-            egui::Theme::Light => Self::Light,
-            egui::Theme::Dark => Self::Dark,
-        }
-    }
-}
-
 /// Returns the palette of the active theme.
 pub fn of(ui: &egui::Ui) -> &'static Palette {
-    Theme::from(egui::Theme::from_dark_mode(ui.visuals().dark_mode)).palette()
+    if ui.visuals().dark_mode { &palette::DARK } else { &palette::LIGHT }
 }
 
 /// Returns the palette of the active theme of a context.
 pub fn of_context(context: &egui::Context) -> &'static Palette {
-    Theme::from(context.theme()).palette()
+    if context.theme() == egui::Theme::Dark { &palette::DARK } else { &palette::LIGHT }
 }
 
 /// Base unit of spacing, in points.

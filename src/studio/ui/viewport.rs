@@ -13,9 +13,9 @@ pub(crate) struct StageArea {
     /// Rectangles of the cards over the stage, in egui points.
     cards: Vec<egui::Rect>,
     /// Rectangle of the messages over the stage, in egui points; `None` without messages.
-    messages: Option<egui::Rect>,
+    pub(super) messages: Option<egui::Rect>,
     /// Area in whose lower right corner messages are drawn, in egui points.
-    messages_room: egui::Rect,
+    pub(super) messages_room: egui::Rect,
     /// egui context, which knows the layers over the stage.
     context: egui::Context,
 }
@@ -79,19 +79,9 @@ impl StageArea {
         self.context.text_edit_focused() || text_prompt::is_open(&self.context)
     }
 
-    /// Returns the area in whose lower right corner messages are drawn, in egui points.
-    pub fn messages_room(&self) -> egui::Rect {
-        self.messages_room
-    }
-
     /// Returns the size of the messages in the last frame, in egui points; zero without messages.
     pub fn messages_size(&self) -> egui::Vec2 {
         self.messages.map_or(egui::Vec2::ZERO, |messages| messages.size())
-    }
-
-    /// Sets the rectangle of the messages, in points.
-    pub fn set_messages(&mut self, rect: Option<egui::Rect>) {
-        self.messages = rect;
     }
 
     /// Returns the rectangles of cards and messages, as fractions of the stage's width and height from its upper left corner.
@@ -146,14 +136,13 @@ mod tests {
         let stage = egui::Rect::from_min_size(egui::pos2(300.0, 40.0), egui::vec2(800.0, 400.0));
         let card = egui::Rect::from_min_size(egui::pos2(300.0, 240.0), egui::vec2(200.0, 200.0));
         area.set(&egui::Context::default(), stage, vec![card], stage);
-        let corner = area.messages_room().max;
-        let messages = egui::Rect::from_min_max(egui::pos2(900.0, 340.0), corner);
-        area.set_messages(Some(messages));
+        let corner = area.messages_room.max;
+        area.messages = Some(egui::Rect::from_min_max(egui::pos2(900.0, 340.0), corner));
         assert_eq!(area.messages_size(), egui::vec2(200.0, 100.0));
         let covers: Vec<Rect> = area.covers().collect();
         assert_eq!(covers, [Rect::new(0.0, 0.5, 0.25, 1.0), Rect::new(0.75, 0.75, 1.0, 1.0)]);
         let above = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(900.0, 30.0));
-        area.set_messages(Some(above));
+        area.messages = Some(above);
         assert_eq!(area.covers().count(), 1, "beside the stage");
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of the body panel.
 
 use super::*;
+use crate::studio::panels::settings::tests::{assert_shows, click, click_at};
 use crate::studio::panels::testing::{climber, panel, random_snake, shows};
 use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::prepared_run;
@@ -38,14 +39,10 @@ fn a_click_selects_a_block_and_its_buttons_change_it() {
     let blocks = harness.get_by_label("Drawing of the blocks").rect();
     // The position of the fourth of five equal blocks, with the head on the right.
     let at = egui::pos2(blocks.left() + blocks.width() * 0.3, blocks.center().y - 20.0);
-    harness.drag_at(at);
-    harness.run();
-    harness.drop_at(at);
-    harness.run();
+    click_at(&mut harness, at);
     assert!(harness.query_by_label("Block 4 of 5").is_some());
     assert!(harness.query_all_by_label("Bend limit").next().is_some());
-    harness.get_by_label("Split").click();
-    harness.run();
+    click(&mut harness, "Split");
     let split = BodyCommand::Change { block: 3, change: BodyChange::Split };
     assert_eq!(harness.state().commands, [Command::Body(split)]);
 }
@@ -72,8 +69,7 @@ fn a11_a_body_that_cannot_be_edited_says_why_before_a_click() {
     harness.get_by_label("Edit this body").hover();
     harness.run_steps(60);
     assert!(shows(&harness, "cannot follow a changed body: only gaits and waves do"));
-    harness.get_by_label("Edit this body").click();
-    harness.run();
+    click(&mut harness, "Edit this body");
     assert_eq!(*harness.state(), []);
 }
 
@@ -81,8 +77,7 @@ fn a11_a_body_that_cannot_be_edited_says_why_before_a_click() {
 fn a_block_becomes_soft_and_rigid_again() {
     let mut harness = editing(theme::PANEL_WIDTH);
     assert!(harness.query_by_label("Young's modulus").is_none());
-    harness.get_by_label("Soft").click();
-    harness.run();
+    click(&mut harness, "Soft");
     let edited = harness.state().editor.edited().expect("editing");
     let value = BlockSize::usual_modulus_pa(&edited.segments[0]);
     let size = BlockSize::Modulus;
@@ -94,8 +89,7 @@ fn a_block_becomes_soft_and_rigid_again() {
     assert_eq!(editor.edited().expect("editing").body.parts_of(0).len(), 3);
     harness.run();
     assert!(harness.query_by_label("Young's modulus").is_some());
-    harness.get_by_label("Soft").click();
-    harness.run();
+    click(&mut harness, "Soft");
     let rigid = BodyCommand::MakeRigid { block: 0 };
     let Edit { editor, commands, .. } = harness.state_mut();
     assert_eq!(*commands, [Command::Body(rigid.clone())]);
@@ -108,14 +102,10 @@ fn a_block_becomes_soft_and_rigid_again() {
 fn budgets_are_in_words_and_nothing_is_undone_before_the_first_change() {
     for width in [300.0, 900.0] {
         let mut harness = editing(width);
-        for text in ["Volume", "Length", "Torque", "the original has"] {
-            assert!(shows(&harness, text), "{text}");
-        }
-        harness.get_by_label("Undo").click();
-        harness.run();
+        assert_shows(&harness, &["Volume", "Length", "Torque", "the original has"]);
+        click(&mut harness, "Undo");
         assert_eq!(harness.state().commands, [], "there is nothing to undo");
-        harness.get_by_label("Adapt the gait").click();
-        harness.run();
+        click(&mut harness, "Adapt the gait");
         assert_eq!(harness.state().commands, [Command::Body(BodyCommand::Tune)]);
     }
 }

@@ -2,7 +2,6 @@
 //! neither, so the climbs are simulated in the background, one champion at a time, and only for visible rows.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
 use snakes_core::evolve::Champion;
 use snakes_core::save::LoadedChampion;
@@ -35,12 +34,6 @@ pub(super) enum LandingTime {
     None,
     /// The time has not been computed yet.
     Pending,
-}
-
-impl fmt::Debug for Climbs {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Climbs").field("known", &self.known).finish_non_exhaustive()
-    }
 }
 
 impl LandingTime {

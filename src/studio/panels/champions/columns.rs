@@ -4,6 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::LayoutJob;
 
 use super::climbs::LandingTime;
+use crate::studio::panels::shown::ShownLane;
 use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::text_rows::weak;
@@ -68,25 +69,16 @@ pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     }
 }
 
-/// Look of a row of the champions list.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct ChampionRowStyle<'r> {
-    /// Whether the row's champion is on the stage.
-    pub is_shown: bool,
-    /// Colour of the champion's lane, if there are several lanes.
-    pub lane_color: Option<egui::Color32>,
-    /// Picture of the champion's climb; `None` until it is known.
-    pub picture: Option<&'r Thumbnail>,
-}
-
-/// Draws a clickable row of full width: the name on the left, the columns on the right.
+/// Draws a clickable row of full width: the picture of the climb, if it is known, and the name on the left, the columns
+/// on the right. `shown` is the lane of the row's champion, if the champion is on the stage.
 pub(super) fn row(
     ui: &mut egui::Ui,
-    ChampionRowStyle { is_shown, lane_color, picture }: ChampionRowStyle<'_>,
+    shown: Option<&ShownLane>,
+    picture: Option<&Thumbnail>,
     name: &str,
     cells: &[String; 3],
 ) -> egui::Response {
-    let width = ui.available_width();
+    let (width, is_shown) = (ui.available_width(), shown.is_some());
     let count = count(width);
     let button = egui::Button::new("")
         .selected(is_shown)
@@ -107,7 +99,7 @@ pub(super) fn row(
         thumbnail(ui.painter(), place, picture, palette);
     }
     at.x += size.x + theme::GAP;
-    if let Some(color) = lane_color {
+    if let Some(color) = shown.and_then(|shown| shown.color(palette)) {
         let radius = theme::LANE_DOT / 2.0;
         ui.painter().circle_filled(at + egui::vec2(radius, 0.0), radius, color);
         at.x += theme::LANE_DOT + theme::GAP / 2.0;
@@ -126,18 +118,14 @@ pub(super) fn row(
 
 /// Returns the rectangles of the columns in a row, from left to right.
 fn places(row: egui::Rect, count: usize) -> Vec<egui::Rect> {
-    let mut right = row.right() - theme::GAP;
-    let mut places: Vec<egui::Rect> = WIDTHS[..count]
-        .iter()
-        .rev()
-        .map(|width| {
-            let place = egui::Rect::from_x_y_ranges(right - width..=right, row.y_range());
-            right -= width;
-            place
-        })
-        .collect();
-    places.reverse();
-    places
+    let widths = &WIDTHS[..count];
+    let mut left = row.right() - theme::GAP - widths.iter().sum::<f32>();
+    let place = |width: &f32| {
+        let place = egui::Rect::from_x_y_ranges(left..=left + width, row.y_range());
+        left += width;
+        place
+    };
+    widths.iter().map(place).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Tests of the champions list and its buttons.
 
 use super::*;
-use crate::studio::panels::testing::{Sent, clicked, report_of, shows};
-use egui_kittest::Harness;
+use crate::studio::panels::settings::tests::assert_no_texts_overlap;
+use crate::studio::panels::testing::{self, Sent, clicked, report_of, shows};
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::StairsCount;
 use snakes_core::save::shipped_champion;
@@ -12,18 +12,11 @@ use snakes_core::score::Fitness;
 /// Creates the panel with these champions. Two snakes can race in each generation.
 fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> Sent<'a> {
     let mut panel = ChampionsPanel::default();
-    let builder = Harness::builder().with_size(egui::vec2(360.0, 400.0));
-    let mut harness = builder.build_ui_state(
-        move |ui, commands: &mut Vec<Command>| {
-            let shown = [ShownLane { champion: ShownChampion::Opening(0), lane: None }];
-            let view =
-                ChampionsView { opening, reports, shown: &shown, leaders: &|_| 2, follows: false };
-            panel.ui(ui, &view, commands);
-        },
-        Vec::new(),
-    );
-    harness.run();
-    harness
+    testing::panel([360.0, 400.0], move |ui, commands| {
+        let shown = &[ShownLane { champion: ShownChampion::Opening(0), lane: None }];
+        let view = ChampionsView { opening, reports, shown, leaders: &|_| 2, follows: false };
+        panel.ui(ui, &view, commands);
+    })
 }
 
 /// Creates the report of a generation whose best snake has this fitness.
@@ -111,17 +104,5 @@ fn a19_texts_of_a_row_do_not_overlap_and_the_highest_stairs_are_not_called_the_b
     let panel = panel(&[], &reports);
     assert!(shows(&panel, "Generation 149, highest, 89.2 %, "));
     let row = panel.get_by_label_contains("Generation 149").rect();
-    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-        egui::Shape::Text(text) if row.contains(text.pos) => {
-            Some((text.galley.text().to_owned(), clipped.shape.visual_bounding_rect()))
-        }
-        _ => None,
-    });
-    let texts: Vec<_> = texts.collect();
-    assert!(texts.len() > 1, "{texts:?}");
-    for (index, (text, rect)) in texts.iter().enumerate() {
-        for (other, beside) in &texts[index + 1..] {
-            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
-        }
-    }
+    assert_no_texts_overlap(&panel, row, 2, 0.0);
 }

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::fitness::axis_title;
-use super::view::{ChartHit, ChartView, HitShape};
+use super::fitness::{fitness_axis, generation_axis};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake, snake_of_generation};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Parents, Settings};
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Chart, Figure, Role, Series, Shape};
 use snakes_lab::run::{Ancestor, Ancestry, FitnessSpread};
 
 /// Maximum number of other snakes that are drawn, because drawing takes time.
@@ -47,22 +47,15 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     }
     let last = ancestry.spreads.last().map_or(1, |spread| spread.generation).max(2);
     let points = series.iter().flat_map(|series| series.shape.points());
-    let aside = f64::from(last - 1) * 0.04;
-    let x = Axis::count("Generation", 1.0 - aside..=f64::from(last) + aside);
-    let title = axis_title(settings.trial.fitness);
-    let y = Axis::around(title, unit.trim(), points.map(|point| point[1]), 1.0);
-    let chart = Chart::new(x, y, series);
+    let y = fitness_axis(settings.trial.fitness, points.map(|point| point[1]));
+    let chart = Chart::new(generation_axis(last.into()), y, series);
     let hit = |ancestor: &Ancestor| {
         let at = ancestor.place;
         let fitness = ancestor.fitness?;
         let parents = ancestor.parents;
         let words = move || {
-            format!(
-                "Generation {}, snake {}\nfitness {fitness:.2}{unit}\n{}",
-                at.generation,
-                at.individual + 1,
-                origin(parents)
-            )
+            let name = generation_and_snake(at);
+            format!("{name}\nfitness {fitness:.2}{unit}\n{}", origin(parents))
         };
         let target = HitShape::Point(place(ancestor)?);
         Some(ChartHit::of(target, words, Pick::Individual(at), at))
@@ -106,13 +99,13 @@ fn others(ancestry: &Ancestry) -> Vec<[f64; 2]> {
 
 /// Describes the origin of a snake.
 fn origin(parents: Parents) -> String {
-    let name = |place: IndividualId| {
-        format!("snake {} of generation {}", place.individual + 1, place.generation)
-    };
     match parents {
         Parents::None => "Created at random".to_owned(),
-        Parents::One(parent) => format!("Child of {}", name(parent)),
-        Parents::Two(first, second) => format!("Child of {}\nand {}", name(first), name(second)),
+        Parents::One(parent) => format!("Child of {}", snake_of_generation(parent)),
+        Parents::Two(first, second) => {
+            let [first, second] = [first, second].map(snake_of_generation);
+            format!("Child of {first}\nand {second}")
+        }
         Parents::Distribution => {
             "Drawn at random around the average that the search had learned".to_owned()
         }
@@ -141,20 +134,15 @@ fn note_on_start(ancestry: &Ancestry) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::{RunPlan, StrategyKind};
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
+    use crate::studio::panels::charts::tests::experiment;
+    use snakes_core::evolve::StrategyKind;
 
     /// Creates the chart after three generations of a strategy. Also returns the generation of the best snake.
     fn shown(strategy: StrategyKind) -> (ChartView, u32) {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = strategy;
-        settings.evolution.population = 8;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
-        let pool = LocalPool::new(1).expect("threads");
-        for _ in 0..3 {
-            experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
-        }
+        let (settings, experiment) = experiment(3, |settings| {
+            settings.evolution.strategy = strategy;
+            settings.evolution.population = 8;
+        });
         let generation = experiment.best().expect("a healthy snake").origin.generation;
         (view(&settings, &experiment.ancestry()), generation)
     }

@@ -1,10 +1,10 @@
 //! Map of the MAP-Elites archive: a cell for each kind of behaviour, coloured by fitness. A click replays the cell's elite.
 
 use super::archive_pictures::ArchivePictures;
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
-use snakes_core::evolve::{Archive, ArchiveAxis, AxisScale, Elite, IndividualId, Settings};
+use snakes_core::evolve::{Archive, ArchiveAxis, AxisScale, Elite, Settings};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, extent, with_unit};
 
 /// Creates the map of an archive, which is empty if the archive has no elites.
@@ -27,14 +27,9 @@ pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
     let cells = Shape::Cells(cells.collect());
     let of_elite = |(cell, elite): (u32, &Elite)| {
         let (fitness, kind) = (elite.fitness, kind_in_words(archive, cell));
-        let Elite { generation, individual, .. } = *elite;
-        let words = move || {
-            format!(
-                "{kind}Fitness {fitness:.2}{unit}\nGeneration {generation}, snake {}",
-                individual + 1
-            )
-        };
-        let place = IndividualId { generation, individual };
+        let place = elite.id();
+        let words =
+            move || format!("{kind}Fitness {fitness:.2}{unit}\n{}", generation_and_snake(place));
         ChartHit::of(HitShape::Area(area(cell)), words, Pick::Elite(cell), place)
     };
     let of_empty = |cell: u32| {
@@ -106,34 +101,18 @@ fn record(archive: &Archive, (cell, elite): (u32, &Elite)) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::studio::commands::{Command, StageCommand};
-    use crate::studio::panels::charts::draw;
+    use crate::studio::panels::charts::tests::clicked;
+    use crate::studio::panels::testing::shows;
     use crate::studio::state::current_run::explored_run;
-    use crate::studio::ui::theme;
     use bevy_egui::egui;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use snakes_core::evolve::Descriptor;
 
     /// Clicks in the middle of a hit target. Returns the commands that were sent, and whether the hover text calls the cell empty.
-    fn clicked(view: &ChartView, hit: &ChartHit) -> (Vec<Command>, bool) {
-        let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
-        let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| draw::draw(ui, "archive", view, 300.0, &[], commands),
-            Vec::new(),
-        );
-        harness.run();
-        let HitShape::Area([left, right, bottom, top]) = hit.target else { panic!("{hit:?}") };
+    fn clicked_in(view: &ChartView, hit: &ChartHit) -> (Vec<Command>, bool) {
+        let HitShape::Area([left, right, bottom, top]) = hit.target else { panic!("an area") };
         let middle = [(left + right) / 2.0, (bottom + top) / 2.0];
-        let map = harness.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
-        let at = draw::screen_position(map, &view.figure.charts[0], middle);
-        harness.drag_at(at);
-        harness.run();
-        harness.drop_at(at);
-        harness.run();
-        harness.hover_at(at + egui::vec2(1.0, 0.0));
-        harness.run();
-        let is_empty = harness.query_by_label_contains("Empty").is_some();
-        (harness.state().clone(), is_empty)
+        let panel = clicked(view, middle, egui::Vec2::ZERO);
+        (panel.state().clone(), shows(&panel, "Empty"))
     }
 
     #[test]
@@ -146,8 +125,8 @@ mod tests {
         assert_eq!(hits.len(), archive.cells() as usize);
         let (cell, elite) = archive.elites().next().expect("an elite");
         let show = Command::Stage(StageCommand::Show(Pick::Elite(cell)));
-        assert_eq!(clicked(&view, &hits[0]), (vec![show], false));
-        assert_eq!(clicked(&view, &hits[hits.len() - 1]), (vec![], true));
+        assert_eq!(clicked_in(&view, &hits[0]), (vec![show], false));
+        assert_eq!(clicked_in(&view, &hits[hits.len() - 1]), (vec![], true));
         let table = view.figure.table();
         assert_eq!(table.len(), 1 + archive.elites().len());
         assert_eq!((&*table[0][4], &table[1][4]), ("fitness (m)", &elite.fitness.to_string()));

@@ -58,9 +58,7 @@ impl ArchivePictures {
         let Some(body) = self.bodies.get(index).filter(|_| rect.width() >= LEAST_WIDTH) else {
             return;
         };
-        let [length_m, height_m] =
-            [body.length_m, body.height_m].map(|size_m| size_m.max(f32::MIN_POSITIVE));
-        let scale = FILLED * (rect.width() / length_m).min(rect.height() / height_m);
+        let scale = FILLED * body.scale(body.length_m, rect.size());
         let ink = theme::palette::text_on(ground);
         let shades = [ink.gamma_multiply(0.9), ink.gamma_multiply(0.5)];
         body.draw(painter, rect.center(), scale, shades);
@@ -69,8 +67,7 @@ impl ArchivePictures {
     /// Draws a large picture of the body in the cell with this index, in red and blue.
     pub fn large(&self, ui: &mut egui::Ui, index: usize) {
         let Some(body) = self.bodies.get(index) else { return };
-        let scale = (LARGE.x / self.longest_m.max(f32::MIN_POSITIVE))
-            .min(LARGE.y / body.height_m.max(f32::MIN_POSITIVE));
+        let scale = body.scale(self.longest_m, LARGE);
         let size = egui::vec2(body.length_m, body.height_m) * scale;
         let (area, _) = ui.allocate_exact_size(size, egui::Sense::hover());
         let palette = theme::of(ui);
@@ -84,6 +81,12 @@ impl SideView {
         let outlines = Outlines::of(body);
         let [_, length_m, height_m] = outlines.size_m();
         Self { length_m, height_m, limbs_m: outlines.seen(2) }
+    }
+
+    /// Returns the points per metre with which a body of this height and of a length in metres fits into a room.
+    fn scale(&self, length_m: f32, room: egui::Vec2) -> f32 {
+        let size_m = egui::vec2(length_m, self.height_m).max(egui::Vec2::splat(f32::MIN_POSITIVE));
+        (room / size_m).min_elem()
     }
 
     /// Draws the limbs alternately in two colours, with the head on the right, where the stairs are.

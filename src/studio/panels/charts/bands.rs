@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::fitness::generations;
+use super::fitness::axis_of_finished;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings, SpeciesCount};
@@ -30,24 +30,18 @@ pub(super) struct Bands {
     pub rest: &'static str,
     /// Heading of the column for the bands in the table.
     pub column: &'static str,
-    /// Two numbers of the best snake, shown in a second chart.
-    pub best: BestNumbers,
-}
-
-/// Texts and values of two numbers of the best snake of each generation.
-pub(super) struct BestNumbers {
-    /// Name of the chart of the two numbers.
-    pub name: &'static str,
-    /// Name of the chart's vertical axis.
-    pub axis: &'static str,
+    /// Name of the second chart, of two numbers of the best snake of each generation.
+    pub best: &'static str,
+    /// Name of the second chart's vertical axis.
+    pub best_axis: &'static str,
     /// Names of the two numbers.
-    pub names: [&'static str; 2],
-    /// Headings of the two columns in the table.
-    pub columns: [&'static str; 2],
+    pub best_names: [&'static str; 2],
+    /// Headings of the columns for the two numbers in the table.
+    pub best_columns: [&'static str; 2],
     /// Returns the two numbers of a generation; `None` without a best snake.
-    pub of: fn(&GenerationReport) -> Option<[f64; 2]>,
+    pub best_of: fn(&GenerationReport) -> Option<[f64; 2]>,
     /// Describes the two numbers, in one line for each.
-    pub words: fn([f64; 2]) -> String,
+    pub best_words: fn([f64; 2]) -> String,
 }
 
 /// Creates the chart of the finished generations. It is empty if no generation has recorded bands.
@@ -67,14 +61,14 @@ pub(super) fn view(
     let drawn: Vec<&GenerationReport> =
         known.iter().skip(skipped).step_by(every).copied().collect();
     let lives = lives(&known);
-    let x = Axis::count("Generation", generations(reports.len()));
+    let x = axis_of_finished(reports.len());
     let most = known.iter().map(|report| report.evaluations).max().unwrap_or(1);
     let y = Axis::count("Snakes", 0.0..=f64::from(most));
     let stack = Chart::new(x.clone(), y, layers(bands, &drawn, &lives)).named(bands.name);
     let unit = settings.trial.fitness.unit();
     let of_report = |report: &&GenerationReport| hits(bands, report, &lives, unit, every as f64);
     let hits = drawn.iter().flat_map(of_report).collect();
-    let (best, points) = best_numbers(&bands.best, &known, x);
+    let (best, points) = best_numbers(bands, &known, x);
     let (now, ever) = (count_in_words(bands, latest), lives.len());
     let note = format!(
         "{} Generation {}: {now}. Recorded since the start: {ever}.",
@@ -83,7 +77,7 @@ pub(super) fn view(
     let best_fitness = with_unit("best fitness", unit);
     let heads = ["generation", bands.column, "snakes", &best_fitness];
     let figure = Figure::of_several(bands.title, vec![stack, best]).with_note(note).with_numbers(
-        heads.into_iter().chain(bands.best.columns),
+        heads.into_iter().chain(bands.best_columns),
         known.iter().flat_map(|report| records(bands, report)),
     );
     ChartView::new(figure, vec![hits, points])
@@ -185,12 +179,12 @@ fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
 
 /// Creates the chart of two numbers of the best snake of each generation.
 fn best_numbers(
-    best: &'static BestNumbers,
+    bands: &'static Bands,
     reports: &[&GenerationReport],
     x: Axis,
 ) -> (Chart, Vec<ChartHit>) {
     let known: Vec<(&GenerationReport, [f64; 2])> =
-        reports.iter().filter_map(|report| Some((*report, (best.of)(report)?))).collect();
+        reports.iter().filter_map(|report| Some((*report, (bands.best_of)(report)?))).collect();
     let along = |index: usize| {
         let point = |(report, numbers): &(&GenerationReport, [f64; 2])| {
             [f64::from(report.generation), numbers[index]]
@@ -201,25 +195,27 @@ fn best_numbers(
     let hit = |(report, numbers): &(&GenerationReport, [f64; 2])| {
         let (generation, numbers) = (report.generation, *numbers);
         let individual = report.champion.as_ref()?.origin.individual;
-        let words =
-            move || format!("{} of generation {generation}\n{}", best.name, (best.words)(numbers));
+        let words = move || {
+            let Bands { best, best_words, .. } = bands;
+            format!("{best} of generation {generation}\n{}", best_words(numbers))
+        };
         let target = HitShape::Column([f64::from(generation), numbers[0]]);
         let place = IndividualId { generation, individual };
         Some(ChartHit::of(target, words, Pick::Generation(generation), place))
     };
     let hits = known.iter().filter_map(hit).collect();
-    let [first, second] = best.names;
+    let [first, second] = bands.best_names;
     let series = vec![
         Series::new(first, Role::First, along(0)),
         Series::new(second, Role::Second, along(1)),
     ];
-    let y = Axis::count(best.axis, -most * 0.06..=most * 1.12);
-    (Chart::new(x, y, series).named(best.name), hits)
+    let y = Axis::count(bands.best_axis, -most * 0.06..=most * 1.12);
+    (Chart::new(x, y, series).named(bands.best), hits)
 }
 
 /// Returns the rows of the table for a generation, one for each band.
 fn records(bands: &Bands, report: &GenerationReport) -> Vec<Vec<String>> {
-    let numbers = (bands.best.of)(report);
+    let numbers = (bands.best_of)(report);
     let [first, second] =
         [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()));
     let generation = report.generation.to_string();
@@ -234,7 +230,7 @@ fn records(bands: &Bands, report: &GenerationReport) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::charts::species::SPECIES;
+    use crate::studio::panels::charts::band_kinds::SPECIES;
     use crate::studio::state::current_run::species_run;
 
     fn count(id: u32, size: u32) -> SpeciesCount {
@@ -251,7 +247,7 @@ mod tests {
             report
         };
         let reports: Vec<GenerationReport> = (first..).zip(generations).map(of).collect();
-        view(&SPECIES, run.settings(), &reports)
+        view(SPECIES, run.settings(), &reports)
     }
 
     /// Returns the points of a species' layer.
@@ -294,7 +290,7 @@ mod tests {
     #[test]
     fn a_generation_of_neat_is_stacked_without_gaps() {
         let run = species_run();
-        let view = view(&SPECIES, run.settings(), run.reports());
+        let view = view(SPECIES, run.settings(), run.reports());
         for report in run.reports() {
             assert!(report.species.len() > 1, "{:?}", report.species);
             let at = f64::from(report.generation) + LEVEL;

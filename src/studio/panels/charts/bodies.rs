@@ -3,12 +3,13 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::genome::{BodyChange, Genome};
 use snakes_core::world::BodyPlan;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, with_unit};
+use snakes_lab::mesh::Outlines;
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, extent, with_unit};
 use snakes_lab::run::{Ancestor, Ancestry, GenerationReport};
 
 /// Maximum number of bodies that are drawn; earlier ones are left out.
@@ -100,33 +101,20 @@ pub(super) fn view(
 /// Returns the limbs of a body from above, with the head at the top: the left, right, lower and upper end of each, in
 /// metres. The middle of the body is at 0 across, and its rear end at 0 along.
 fn seen_from_above(body: &BodyPlan) -> Vec<[f64; 4]> {
-    let length_m = f64::from(body.length_m());
-    if body.is_branching() {
-        // A branching body is drawn as the boxes around its parts.
-        let boxes_m = body.rest_boxes_m();
-        let ends = boxes_m.iter().fold([f32::MAX, f32::MIN], |[least, most], [from, to]| {
-            [least.min(from.x), most.max(to.x)]
+    let outlines = Outlines::of(body);
+    let middle_m = f64::from(outlines.size_m()[0] / 2.0);
+    let limb = |corners: Vec<[f32; 2]>| {
+        let ends = [0, 1].map(|axis| {
+            extent(corners.iter().map(|corner| f64::from(corner[axis]))).unwrap_or_default()
         });
-        let middle_m = (ends[0] + ends[1]) / 2.0;
-        let seen = boxes_m.iter().map(|[least, most]| {
-            let across = [least.x, most.x].map(|x_m| f64::from(x_m - middle_m));
-            let along = [least.y, most.y].map(|y_m| length_m + f64::from(y_m));
-            [across[0], across[1], along[0], along[1]]
-        });
-        return seen.collect();
-    }
-    let mut top_m = length_m;
-    let limb = |index| {
-        let [width_m, limb_m, _] = body.limb_size_m(index).map(f64::from);
-        let upper_m = top_m;
-        top_m -= limb_m;
-        [-width_m / 2.0, width_m / 2.0, top_m, upper_m]
+        let [[rear_m, front_m], [left_m, right_m]] = ends;
+        [left_m - middle_m, right_m - middle_m, rear_m, front_m]
     };
-    (0..body.limbs()).map(limb).collect()
+    outlines.seen(0).into_iter().map(limb).collect()
 }
 
 fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> String {
-    let IndividualId { generation, individual } = structure.place;
+    let name = generation_and_snake(structure.place);
     let fitness = match (structure.fitness, structure.before) {
         (Some(fitness), Some(before)) => {
             format!("fitness {fitness:.2}{unit} ({:+.2})", fitness - before)
@@ -134,11 +122,8 @@ fn words(structure: &Structure, blocks: usize, length_m: f64, unit: &str) -> Str
         (Some(fitness), None) => format!("fitness {fitness:.2}{unit}"),
         (None, _) => "disqualified".to_owned(),
     };
-    format!(
-        "Generation {generation}, snake {}\n{}\n{blocks} blocks, {length_m:.1} m long\n{fitness}",
-        individual + 1,
-        structure.change
-    )
+    let change = &structure.change;
+    format!("{name}\n{change}\n{blocks} blocks, {length_m:.1} m long\n{fitness}")
 }
 
 /// Returns the structures in a line of descent, the oldest first, as far as genomes are known.

@@ -90,39 +90,31 @@ impl ChartKind {
     }
 
     /// Returns the text that is shown while there is no data.
-    pub fn empty_text(self) -> &'static str {
-        match self {
-            Self::Fitness => {
-                "The fitness of each generation will appear here after the first generation."
-            }
+    pub fn empty_text(self) -> String {
+        let first = " after the first generation";
+        let (what, when) = match self {
+            Self::Fitness => ("fitness of each generation", first),
             Self::Spread => {
-                "The distribution of the fitness will appear here when this session finishes a generation."
+                ("distribution of the fitness", " when this session finishes a generation")
             }
-            Self::Species => {
-                "The species of each generation will appear here after the first generation. Runs of earlier versions \
-                 of the program have none in their logs."
-            }
-            Self::Blocks => {
-                "The numbers of blocks of each generation will appear here after the first generation."
-            }
-            Self::Bodies => {
-                "The ancestry of the best body will appear here after the first generation."
-            }
-            Self::Stairs => "The stairs that evolve will appear here after the first generation.",
-            Self::Ancestors => {
-                "The ancestors of the best snake will appear here after the first generation."
-            }
-            Self::Torques => "Computing torques…",
-            Self::Parents => {
-                "The gene values of the parents will appear here when this session finishes a generation. Random \
-                 search and CMA-ES have no parents."
-            }
-            Self::Front => "The best trade-offs between distance and energy will appear here.",
-            Self::Archive => "The best snake for each kind of behaviour will appear here.",
-            Self::Runs => "The curves of this run will appear here after the first generation.",
-            Self::Methods => {
-                "No comparison is open. \"snakes study methods\" creates one, \"snakes --comparison FILE\" opens it."
-            }
-        }
+            Self::Species => (
+                "species of each generation",
+                " after the first generation. Runs of earlier versions of the program have none in their logs",
+            ),
+            Self::Blocks => ("numbers of blocks of each generation", first),
+            Self::Bodies => ("ancestry of the best body", first),
+            Self::Stairs => ("stairs that evolve", first),
+            Self::Ancestors => ("ancestors of the best snake", first),
+            Self::Torques => return "Computing torques…".to_owned(),
+            Self::Parents => (
+                "gene values of the parents",
+                " when this session finishes a generation. Random search and CMA-ES have no parents",
+            ),
+            Self::Front => ("best trade-offs between distance and energy", ""),
+            Self::Archive => ("best snake for each kind of behaviour", ""),
+            Self::Runs => ("curves of this run", first),
+            Self::Methods => return "This study has no finished runs.".to_owned(),
+        };
+        format!("The {what} will appear here{when}.")
     }
 }

@@ -7,33 +7,33 @@ use snakes_lab::plot::{Chart, Shape};
 /// Maximum number of points of a drawn line: about one per pixel of the screen's width.
 pub(super) const MAX_POINTS: usize = 1500;
 
-/// A series of a chart, prepared for drawing.
-#[derive(Debug, Clone)]
-pub(super) enum DrawnSeries {
-    /// Points, connected or not.
-    Points(Vec<PlotPoint>),
-    /// Positions along the horizontal axis of a band, with its lower and upper ends.
-    Band([Vec<f64>; 3]),
-    /// Positions along the horizontal axis of a layer with its lower and upper ends, and the points of its upper edge.
-    Layer([Vec<f64>; 3], Vec<PlotPoint>),
-    /// The series is small, and is drawn directly from its data.
-    AsItIs,
+/// A series of a chart, prepared for drawing. It is empty if the series is small, and drawn directly from its data.
+#[derive(Debug, Clone, Default)]
+pub(super) struct DrawnSeries {
+    /// Points, connected or not; those of the upper edge of a layer.
+    pub points: Vec<PlotPoint>,
+    /// Positions along the horizontal axis of a band or layer, with its lower and upper ends.
+    pub area: [Vec<f64>; 3],
 }
 
 /// Prepares all series of a chart for drawing, in their order.
 pub(super) fn drawn(chart: &Chart) -> Vec<DrawnSeries> {
     let of_shape = |shape: &Shape| match shape {
-        Shape::Line(points) | Shape::Dashed(points) => DrawnSeries::Points(line(points)),
-        Shape::Points(points) => DrawnSeries::Points(points.iter().map(|&at| at.into()).collect()),
-        Shape::Band(ends) => DrawnSeries::Band(band(ends)),
-        // Layers are downsampled together before they are stacked, so that they fit onto each other.
-        Shape::Layer(ends) => {
-            let of = |index: usize| ends.iter().map(|end| end[index]).collect();
-            let upper = ends.iter().map(|&[x, _, high]| [x, high].into());
-            DrawnSeries::Layer([0, 1, 2].map(of), upper.collect())
+        Shape::Line(points) | Shape::Dashed(points) => {
+            DrawnSeries { points: line(points), ..Default::default() }
         }
+        Shape::Points(points) => DrawnSeries {
+            points: points.iter().map(|&at| at.into()).collect(),
+            ..Default::default()
+        },
+        Shape::Band(ends) => DrawnSeries { area: band(ends), ..Default::default() },
+        // Layers are downsampled together before they are stacked, so that they fit onto each other.
+        Shape::Layer(ends) => DrawnSeries {
+            points: ends.iter().map(|&[x, _, high]| [x, high].into()).collect(),
+            area: [0, 1, 2].map(|index| ends.iter().map(|end| end[index]).collect()),
+        },
         Shape::Bars { .. } | Shape::Arrows(_) | Shape::Boxes(_) | Shape::Cells(_) => {
-            DrawnSeries::AsItIs
+            DrawnSeries::default()
         }
     };
     chart.series.iter().map(|series| of_shape(&series.shape)).collect()

@@ -4,15 +4,16 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Stroke};
 use egui_plot::{
     Arrows, Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints,
-    PlotTransform, PlotUi, Points, Polygon,
+    PlotTransform, PlotUi, Points, Polygon, VLine,
 };
 
 use super::downsample::DrawnSeries;
-use super::layer_labels::layer_labels;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::studio::commands::{Command, StageCommand};
+use crate::studio::commands::Command;
 use crate::studio::panels::shown::ShownLane;
+use crate::studio::ui::accessible::named;
+use crate::studio::ui::buttons::show_or_join;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::theme;
 use crate::studio::ui::theme::Palette;
@@ -22,6 +23,8 @@ use snakes_lab::plot::{Chart, Role, Series, Shape, beside_line};
 const CLICK_DISTANCE: f32 = 16.0;
 /// Padding of the plate behind the name of a mark, in egui points.
 const MARK_PADDING: egui::Vec2 = egui::vec2(4.0, 1.0);
+/// Space around the number of a species, in egui points.
+const LAYER_PADDING: f32 = 2.0;
 /// Length of an arrow's head, in egui points.
 const ARROW_TIP: f32 = 7.0;
 /// Maximum number of points on a line that are marked individually.
@@ -49,19 +52,13 @@ pub(super) fn draw(
         (width - theme::GAP * (columns - 1) as f32) / columns as f32,
         if count > 1 { (height / rows as f32).max(theme::MULTIPLE_HEIGHT) } else { height },
     );
-    let indexed: Vec<(usize, &Chart)> = figure.charts.iter().enumerate().collect();
-    for row in indexed.chunks(columns) {
+    for row in (0..count).collect::<Vec<_>>().chunks(columns) {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP;
-            for &(index, chart) in row {
+            for &index in row {
                 ui.vertical(|ui| {
                     ui.set_width(size.x);
-                    let (hits, drawn) = (
-                        view.hits.get(index).map_or(&[][..], Vec::as_slice),
-                        view.drawn.get(index).map_or(&[][..], Vec::as_slice),
-                    );
-                    let part = ChartPart { view, chart, hits, drawn };
-                    part.ui(ui, &format!("{id} {index}"), size.y, shown, commands);
+                    part(ui, (view, index), &format!("{id} {index}"), size.y, shown, commands);
                 });
             }
         });
@@ -71,125 +68,121 @@ pub(super) fn draw(
     }
 }
 
-/// One chart of a figure, for drawing.
-struct ChartPart<'a> {
-    view: &'a ChartView,
-    chart: &'a Chart,
-    hits: &'a [ChartHit],
-    /// Series of the chart, prepared for drawing.
-    drawn: &'a [DrawnSeries],
+/// Draws the chart with this index of a view, this high in points.
+fn part(
+    ui: &mut egui::Ui,
+    (view, index): (&ChartView, usize),
+    id: &str,
+    height: f32,
+    shown: &[ShownLane],
+    commands: &mut Vec<Command>,
+) {
+    let chart = &view.figure.charts[index];
+    let hits = view.hits.get(index).map_or(&[][..], Vec::as_slice);
+    let has_names = !chart.x.names.is_empty();
+    let name = if chart.name.is_empty() { String::new() } else { chart.name.clone() + ": " };
+    let above = y_title(ui, &format!("{name}{}", chart.y.label()));
+    let titles = 2.0 * (above.rect.height() + ui.spacing().item_spacing.y);
+    let left = (height - titles).max(theme::MIN_CHART_HEIGHT);
+    let palette = theme::of(ui);
+    // The hover text is drawn below instead of by the plot.
+    let plot = fixed_plot(id, left, [&chart.x, &chart.y]).label_formatter(|_| None);
+    let plot = plot.show_axes([!has_names, true]).show(ui, |plot| {
+        plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
+        for (place, _) in &chart.x.names {
+            let line = VLine::new("", *place).color(palette.field_hovered);
+            plot.vline(line.width(1.0).allow_hover(false));
+        }
+        let series = chart.series.iter().zip(&view.drawn[index]);
+        series.for_each(|(series, drawn)| add(plot, series, drawn, palette));
+        for mark in &chart.marks {
+            let line = HLine::new(&mark.name, mark.y).color(palette.text_weak);
+            plot.hline(line.allow_hover(false).style(LineStyle::dashed_dense()));
+        }
+    });
+    x_title(ui, &if has_names { chart.x.name.clone() } else { chart.x.label() });
+    let label = match chart.name.as_str() {
+        "" => format!("Chart: {}", view.figure.title),
+        name => format!("Chart: {}, {name}", view.figure.title),
+    };
+    let response = named(plot.response, egui::WidgetType::Other, &label);
+    let painter = ui.painter_at(response.rect);
+    let canvas = ChartCanvas { painter, transform: plot.transform, palette };
+    canvas.cells(view, chart);
+    canvas.mark_labels(chart, &view.drawn[index]);
+    canvas.layer_labels(chart);
+    for shown in shown {
+        let place = shown.champion.place();
+        let Some(hit) = hits.iter().find(|hit| place.is_some() && hit.place == place) else {
+            continue;
+        };
+        match shown.color(palette) {
+            Some(color) => canvas.lane_mark(hit.target, color),
+            None => canvas.ring(hit.target, palette.second),
+        }
+    }
+    let at = response.interact_pointer_pos().or(response.hover_pos());
+    let Some(pointed) = at.and_then(|at| canvas.nearest(hits, at)) else { return };
+    let hit = &hits[pointed];
+    canvas.ring(hit.target, palette.text);
+    if response.clicked()
+        && let Some(pick) = hit.pick
+    {
+        commands.push(show_or_join(ui, pick));
+    }
+    let replay = if hit.pick.is_some() {
+        "\nClick to replay. Shift-click to add it to the stage"
+    } else {
+        ""
+    };
+    response.on_hover_ui_at_pointer(|ui| {
+        // egui gives texts the same width. A tooltip does not become narrower with its content.
+        ui.set_max_width(ui.spacing().tooltip_width);
+        view.pictures.large(ui, pointed);
+        ui.label(hit.words() + replay);
+    });
 }
 
-impl ChartPart<'_> {
-    fn ui(
-        &self,
-        ui: &mut egui::Ui,
-        id: &str,
-        height: f32,
-        shown: &[ShownLane],
-        commands: &mut Vec<Command>,
-    ) {
-        let Self { view, chart, hits, .. } = *self;
-        let has_names = !chart.x.names.is_empty();
-        let name = if chart.name.is_empty() { String::new() } else { chart.name.clone() + ": " };
-        let above = y_title(ui, &format!("{name}{}", chart.y.label()));
-        let titles = 2.0 * (above.rect.height() + ui.spacing().item_spacing.y);
-        let left = (height - titles).max(theme::MIN_CHART_HEIGHT);
-        let palette = theme::of(ui);
-        // The hover text is drawn below instead of by the plot.
-        let plot = fixed_plot(id, left, [&chart.x, &chart.y]).label_formatter(|_| None);
-        let plot = plot.show_axes([!has_names, true]).show(ui, |plot| {
-            plot.set_plot_bounds(bounds(&chart.x.range, &chart.y.range));
-            for (place, _) in &chart.x.names {
-                let upright =
-                    vec![[*place, *chart.y.range.start()], [*place, *chart.y.range.end()]];
-                let line = Line::new("", upright).color(palette.field_hovered);
-                plot.line(line.width(1.0).allow_hover(false));
-            }
-            let series = chart.series.iter().zip(self.drawn);
-            series.for_each(|(series, drawn)| add(plot, series, drawn, palette));
-            for mark in &chart.marks {
-                let line = HLine::new(&mark.name, mark.y).color(palette.text_weak);
-                plot.hline(line.allow_hover(false).style(LineStyle::dashed_dense()));
-            }
-        });
-        x_title(ui, &if has_names { chart.x.name.clone() } else { chart.x.label() });
-        let response = plot.response;
-        let label = match chart.name.as_str() {
-            "" => format!("Chart: {}", view.figure.title),
-            name => format!("Chart: {}, {name}", view.figure.title),
-        };
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::WidgetType::Other, ui.is_enabled(), &label)
-        });
-        let painter = ui.painter_at(response.rect);
-        self.cells(&painter, &plot.transform, palette);
-        self.mark_labels(&painter, &plot.transform, palette);
-        layer_labels(&painter, &plot.transform, chart, palette);
-        for shown in shown {
-            let place = shown.champion.place();
-            let Some(hit) = hits.iter().find(|hit| place.is_some() && hit.place == place) else {
-                continue;
-            };
-            match shown.color(palette) {
-                Some(color) => lane_mark(&painter, &plot.transform, hit.target, color, palette),
-                None => ring(&painter, &plot.transform, hit.target, palette.second),
-            }
-        }
-        let at = response.interact_pointer_pos().or(response.hover_pos());
-        let Some(index) = at.and_then(|at| nearest(hits, &plot.transform, at)) else { return };
-        let hit = &hits[index];
-        ring(&painter, &plot.transform, hit.target, palette.text);
-        if response.clicked()
-            && let Some(pick) = hit.pick
-        {
-            let joins = ui.input(|input| input.modifiers.shift || input.modifiers.command);
-            commands.push(if joins {
-                Command::Stage(StageCommand::Join(pick))
-            } else {
-                Command::Stage(StageCommand::Show(pick))
-            });
-        }
-        let replay = if hit.pick.is_some() {
-            "\nClick to replay. Shift-click to add it to the stage"
-        } else {
-            ""
-        };
-        response.on_hover_ui_at_pointer(|ui| {
-            // egui gives texts the same width. A tooltip does not become narrower with its content.
-            ui.set_max_width(ui.spacing().tooltip_width);
-            view.pictures.large(ui, index);
-            ui.label(hit.words() + replay);
-        });
-    }
+/// Where a chart is painted over its plot.
+struct ChartCanvas<'a> {
+    painter: egui::Painter,
+    transform: PlotTransform,
+    palette: &'a Palette,
+}
 
+impl ChartCanvas<'_> {
     /// Paints cells, and the bodies in them, on a background of empty cells. Polygons of the plot would leave visible
     /// seams between neighbouring cells.
-    fn cells(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
-        for series in &self.chart.series {
+    fn cells(&self, view: &ChartView, chart: &Chart) {
+        let Self { painter, transform, palette } = self;
+        for series in &chart.series {
             let Shape::Cells(cells) = &series.shape else { continue };
             painter.rect_filled(*transform.frame(), 0.0, palette.empty_cell);
             for (index, (area, share, _)) in cells.iter().enumerate() {
-                let area = on_screen(transform, HitShape::Area(*area));
+                let area = self.on_screen(HitShape::Area(*area));
                 // A thin gap separates cells if they are large enough.
                 let area = area.shrink(if area.size().min_elem() > 6.0 { 0.5 } else { 0.0 });
                 let color = palette.role(Role::Share(*share));
                 painter.rect_filled(area, 0.0, color);
-                self.view.pictures.draw(painter, index, area, color);
+                view.pictures.draw(painter, index, area, color);
             }
         }
     }
 
     /// Writes the names of the marks on plates beside their lines, at the places where they cover the least of the series.
-    fn mark_labels(&self, painter: &egui::Painter, transform: &PlotTransform, palette: &Palette) {
-        if self.chart.marks.is_empty() {
+    fn mark_labels(&self, chart: &Chart, drawn: &[DrawnSeries]) {
+        let Self { painter, transform, palette } = self;
+        if chart.marks.is_empty() {
             return;
         }
-        let lines: Vec<Vec<[f32; 2]>> = self.drawn.iter().map(|of| pixels(of, transform)).collect();
+        let line = |of: &DrawnSeries| -> Vec<[f32; 2]> {
+            of.points.iter().map(|point| transform.position_from_point(point).into()).collect()
+        };
+        let lines: Vec<_> = drawn.iter().map(line).collect();
         let frame = transform.frame();
         let area = [frame.left(), frame.top(), frame.right(), frame.bottom()];
         let mut taken = Vec::new();
-        for mark in &self.chart.marks {
+        for mark in &chart.marks {
             let font = egui::FontId::proportional(theme::SMALL_SIZE);
             let text = painter.layout_no_wrap(mark.name.clone(), font, palette.text_weak);
             let size = text.size() + MARK_PADDING * 2.0;
@@ -201,60 +194,116 @@ impl ChartPart<'_> {
             painter.galley(plate.min + MARK_PADDING, text, palette.text_weak);
         }
     }
-}
-
-/// Returns the points of a series on the screen.
-fn pixels(drawn: &DrawnSeries, transform: &PlotTransform) -> Vec<[f32; 2]> {
-    match drawn {
-        DrawnSeries::Points(points) => {
-            points.iter().map(|point| transform.position_from_point(point).into()).collect()
+    /// Returns the rectangle of a hit target on the screen. A point is a rectangle without extent.
+    fn on_screen(&self, target: HitShape) -> egui::Rect {
+        let place = |x: f64, y: f64| self.transform.position_from_point(&PlotPoint::new(x, y));
+        match target {
+            HitShape::Point([x, y]) | HitShape::Column([x, y]) => egui::Rect::from_pos(place(x, y)),
+            HitShape::Area([left, right, bottom, top]) => {
+                egui::Rect::from_two_pos(place(left, bottom), place(right, top))
+            }
         }
-        // Labels may cover areas, which remain visible around the labels' plates.
-        DrawnSeries::Band(_) | DrawnSeries::Layer(..) | DrawnSeries::AsItIs => Vec::new(),
+    }
+
+    /// Returns the index of the hit target under the pointer.
+    fn nearest(&self, hits: &[ChartHit], at: Pos2) -> Option<usize> {
+        let distance = |hit: &ChartHit| {
+            let area = self.on_screen(hit.target);
+            let way = at - area.center();
+            match hit.target {
+                HitShape::Point(_) => (way.length() <= CLICK_DISTANCE).then_some(way.length()),
+                // The small vertical term selects the nearest point of a column.
+                HitShape::Column(_) => {
+                    (way.x.abs() <= CLICK_DISTANCE).then_some(way.x.abs() + way.y.abs() * 1.0e-3)
+                }
+                HitShape::Area(_) => area.contains(at).then_some(0.0),
+            }
+        };
+        let near = hits.iter().enumerate().filter_map(|(index, hit)| Some((index, distance(hit)?)));
+        near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
+    }
+
+    /// Marks an individual that is on the stage beside others by a dot in the colour of its lane.
+    fn lane_mark(&self, target: HitShape, color: Color32) {
+        if matches!(target, HitShape::Area(_)) {
+            self.ring(target, color);
+        }
+        let at = self.on_screen(target).center();
+        // The edge keeps the dot distinct from curves of a similar colour.
+        let edge = Stroke::new(1.5, self.palette.panel);
+        self.painter.circle(at, theme::LANE_DOT / 2.0, color, edge);
+    }
+
+    /// Draws a ring around the hovered target, or around an individual on the stage.
+    fn ring(&self, target: HitShape, color: Color32) {
+        let (area, stroke) = (self.on_screen(target), Stroke::new(2.0, color));
+        match target {
+            HitShape::Point(_) | HitShape::Column(_) => {
+                self.painter.circle_stroke(area.center(), 6.0, stroke);
+            }
+            HitShape::Area(_) => {
+                self.painter.rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
+            }
+        }
+    }
+
+    /// Writes the number of each species where its layer is thickest, if there is room.
+    fn layer_labels(&self, chart: &Chart) {
+        let Self { painter, transform, palette } = self;
+        let mut taken: Vec<egui::Rect> = Vec::new();
+        for series in &chart.series {
+            let Role::Species(number) = series.role else { continue };
+            let Some(([x, y], thickness)) = series.shape.thickest() else { continue };
+            let color = palette.role(series.role);
+            let ink = theme::palette::text_on(color);
+            let font = egui::FontId::proportional(theme::SMALL_SIZE);
+            let text = painter.layout_no_wrap(number.to_string(), font, ink);
+            let at = |y: f64| transform.position_from_point(&PlotPoint::new(x, y));
+            let height = (at(y - thickness / 2.0).y - at(y + thickness / 2.0).y).abs();
+            let area =
+                egui::Rect::from_center_size(at(y), text.size() + egui::Vec2::splat(LAYER_PADDING));
+            let is_covered = taken.iter().any(|other| other.intersects(area));
+            if height < text.size().y || is_covered || !transform.frame().contains_rect(area) {
+                continue;
+            }
+            taken.push(area);
+            painter.galley(area.center() - text.size() / 2.0, text, ink);
+        }
     }
 }
 
 /// Adds a series to a plot. The points are borrowed, because copying many of them in every frame would be slow.
 fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, palette: &Palette) {
     let color = palette.role(series.role);
-    let borrowed = || match drawn {
-        DrawnSeries::Points(points) => PlotPoints::from(points.as_slice()),
-        DrawnSeries::Layer(_, upper) => PlotPoints::from(upper.as_slice()),
-        DrawnSeries::Band(_) | DrawnSeries::AsItIs => PlotPoints::default(),
+    let borrowed = || PlotPoints::from(drawn.points.as_slice());
+    let [along, low, high] = &drawn.area;
+    let line = |color, width| {
+        Line::new(&series.name, borrowed()).color(color).width(width).allow_hover(false)
+    };
+    let dots = |color, radius| {
+        Points::new(&series.name, borrowed()).color(color).radius(radius).allow_hover(false)
     };
     match &series.shape {
         Shape::Line(points) => {
-            let line = Line::new(&series.name, borrowed()).color(color);
-            plot.line(line.width(2.0).allow_hover(false));
+            plot.line(line(color, 2.0));
             if points.len() <= MAX_MARKED_POINTS {
-                let dots = Points::new(&series.name, borrowed()).color(color);
-                plot.points(dots.radius(3.0).allow_hover(false));
+                plot.points(dots(color, 3.0));
             }
         }
-        Shape::Dashed(_) => {
-            let line = Line::new(&series.name, borrowed()).color(color);
-            let line = line.style(LineStyle::dashed_dense()).width(1.5);
-            plot.line(line.allow_hover(false));
+        Shape::Dashed(_) => plot.line(line(color, 1.5).style(LineStyle::dashed_dense())),
+        Shape::Points(_) if series.role == Role::Others => {
+            plot.points(dots(color.gamma_multiply(0.45), 1.5));
         }
-        Shape::Points(_) => {
-            let is_crowd = series.role == Role::Others;
-            let (radius, color) =
-                if is_crowd { (1.5, color.gamma_multiply(0.45)) } else { (3.5, color) };
-            let dots = Points::new(&series.name, borrowed()).color(color);
-            plot.points(dots.radius(radius).allow_hover(false));
-        }
+        Shape::Points(_) => plot.points(dots(color, 3.5)),
         Shape::Band(_) => {
-            let DrawnSeries::Band([along, low, high]) = drawn else { return };
             let band = FilledArea::new(&series.name, along, low, high);
             plot.add(band.fill_color(palette.band(color)).allow_hover(false));
         }
         Shape::Layer(_) => {
-            let DrawnSeries::Layer([along, low, high], _) = drawn else { return };
             let layer = FilledArea::new(&series.name, along, low, high);
             plot.add(layer.fill_color(color).allow_hover(false));
             // The edge keeps neighbouring layers of similar colours apart.
-            let edge = Line::new(&series.name, borrowed()).color(palette.field);
-            plot.line(edge.width(1.0).allow_hover(false));
+            plot.line(line(palette.field, 1.0));
         }
         Shape::Bars { width, bars } => {
             let bar = |&[x, height]: &[f64; 2]| Bar::new(x, height).width(width * 0.94).fill(color);
@@ -280,64 +329,6 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
         }
         // Cells are painted over the plot.
         Shape::Cells(_) => {}
-    }
-}
-
-/// Returns the rectangle of a hit target on the screen. A point is a rectangle without extent.
-fn on_screen(transform: &PlotTransform, target: HitShape) -> egui::Rect {
-    let place = |x: f64, y: f64| transform.position_from_point(&PlotPoint::new(x, y));
-    match target {
-        HitShape::Point([x, y]) | HitShape::Column([x, y]) => egui::Rect::from_pos(place(x, y)),
-        HitShape::Area([left, right, bottom, top]) => {
-            egui::Rect::from_two_pos(place(left, bottom), place(right, top))
-        }
-    }
-}
-
-/// Returns the index of the hit target under the pointer.
-fn nearest(hits: &[ChartHit], transform: &PlotTransform, at: Pos2) -> Option<usize> {
-    let distance = |hit: &ChartHit| {
-        let area = on_screen(transform, hit.target);
-        let way = at - area.center();
-        match hit.target {
-            HitShape::Point(_) => (way.length() <= CLICK_DISTANCE).then_some(way.length()),
-            // The small vertical term selects the nearest point of a column.
-            HitShape::Column(_) => {
-                (way.x.abs() <= CLICK_DISTANCE).then_some(way.x.abs() + way.y.abs() * 1.0e-3)
-            }
-            HitShape::Area(_) => area.contains(at).then_some(0.0),
-        }
-    };
-    let near = hits.iter().enumerate().filter_map(|(index, hit)| Some((index, distance(hit)?)));
-    near.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(index, _)| index)
-}
-
-/// Marks an individual that is on the stage beside others by a dot in the colour of its lane.
-fn lane_mark(
-    painter: &egui::Painter,
-    transform: &PlotTransform,
-    target: HitShape,
-    color: Color32,
-    palette: &Palette,
-) {
-    if matches!(target, HitShape::Area(_)) {
-        ring(painter, transform, target, color);
-    }
-    let at = on_screen(transform, target).center();
-    // The edge keeps the dot distinct from curves of a similar colour.
-    painter.circle(at, theme::LANE_DOT / 2.0, color, Stroke::new(1.5, palette.panel));
-}
-
-/// Draws a ring around the hovered target, or around an individual on the stage.
-fn ring(painter: &egui::Painter, transform: &PlotTransform, target: HitShape, color: Color32) {
-    let (area, stroke) = (on_screen(transform, target), Stroke::new(2.0, color));
-    match target {
-        HitShape::Point(_) | HitShape::Column(_) => {
-            painter.circle_stroke(area.center(), 6.0, stroke);
-        }
-        HitShape::Area(_) => {
-            painter.rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
-        }
     }
 }
 

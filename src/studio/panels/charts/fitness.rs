@@ -1,7 +1,5 @@
 //! Chart of the fitness by generation: best, mean, median and the middle 50 %.
 
-use std::ops::RangeInclusive;
-
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{GenerationRecord, IndividualId, Settings, Statistics};
@@ -41,12 +39,7 @@ pub(super) fn view(settings: &Settings, reports: &[GenerationReport]) -> ChartVi
         let low = statistics.quartiles().map_or(statistics.mean, |(low, _)| low);
         [statistics.best, statistics.mean, statistics.median, low]
     });
-    let frame = ChartBounds::new(settings, reports.len(), ends);
-    let marks = frame.marks.iter().map(|(name, y)| Mark { name: (*name).to_owned(), y: *y });
-    let marks = marks.collect();
-    let x = Axis::count("Generation", frame.x);
-    let y = Axis::new(axis_title(settings.trial.fitness), unit.trim(), frame.y);
-    let chart = Chart { marks, ..Chart::new(x, y, series) };
+    let chart = Chart { series, ..frame(settings, reports.len(), ends) };
     let hits = reports.iter().filter_map(|report| hit(report, unit)).collect();
     ChartView::new(Figure::of("Fitness by generation", chart), vec![hits])
 }
@@ -77,49 +70,51 @@ fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     ))
 }
 
-/// Returns the range of the axis of generations, given the number of finished generations.
-pub(super) fn generations(finished: usize) -> RangeInclusive<f64> {
-    let last = (finished as f64).max(MIN_GENERATIONS);
+/// Returns the axis of generations up to the last one, which is at least the second.
+pub(super) fn generation_axis(last: f64) -> Axis {
     let aside = (last - 1.0) * 0.04;
-    1.0 - aside..=last + aside
+    Axis::count("Generation", 1.0 - aside..=last + aside)
 }
 
-/// Ranges of the axes and marks of the fitness chart.
-#[derive(Debug, Clone, PartialEq)]
-struct ChartBounds {
-    x: RangeInclusive<f64>,
-    y: RangeInclusive<f64>,
-    /// Names of positions on the stairs, and the positions in metres.
-    marks: Vec<(&'static str, f64)>,
+/// Returns the axis of this number of finished generations. It is long enough for a short run.
+pub(super) fn axis_of_finished(generations: usize) -> Axis {
+    generation_axis((generations as f64).max(MIN_GENERATIONS))
 }
 
-impl ChartBounds {
-    fn new(settings: &Settings, finished: usize, values: impl Iterator<Item = f64>) -> Self {
-        let trial = &settings.trial;
-        let [mut min, mut max] = extent(values).unwrap_or([f64::MAX, f64::MIN]);
-        let mut marks = Vec::new();
-        // Only a distance can be compared to positions on the stairs.
-        if trial.fitness.is_along_y() {
-            let first_riser_m = f64::from(trial.stairs.first_riser_y_m);
-            let landing_m = f64::from(trial.stairs.landing_y_m());
-            marks.push(("first step", first_riser_m));
-            min = min.min(f64::from(trial.start_y_m));
-            if max > landing_m - LANDING_SHOWN_BELOW_M && trial.stairs.steps > 0 {
-                marks.push(("landing", landing_m));
-            }
-            max = marks.iter().map(|(_, y_m)| *y_m).fold(max, f64::max);
-        } else if min > max {
-            (min, max) = (0.0, 1.0);
+/// Returns the axis around these values of fitness.
+pub(super) fn fitness_axis(fitness: Fitness, values: impl IntoIterator<Item = f64>) -> Axis {
+    Axis::around(axis_title(fitness), fitness.unit().trim(), values, 1.0)
+}
+
+/// Creates the fitness chart without its series: the axes, and marks at positions on the stairs.
+fn frame(settings: &Settings, finished: usize, values: impl Iterator<Item = f64>) -> Chart {
+    let trial = &settings.trial;
+    let [mut min, mut max] = extent(values).unwrap_or([f64::MAX, f64::MIN]);
+    let mut marks = Vec::new();
+    // Only a distance can be compared to positions on the stairs.
+    if trial.fitness.is_along_y() {
+        let landing_m = f64::from(trial.stairs.landing_y_m());
+        let is_near = max > landing_m - LANDING_SHOWN_BELOW_M && trial.stairs.steps > 0;
+        min = min.min(f64::from(trial.start_y_m));
+        let first_riser_m = f64::from(trial.stairs.first_riser_y_m);
+        let landing = is_near.then_some(("landing", landing_m));
+        for (name, y) in [("first step", first_riser_m)].into_iter().chain(landing) {
+            marks.push(Mark { name: name.to_owned(), y });
+            max = max.max(y);
         }
-        let margin = ((max - min) * 0.06).max(0.5);
-        // Otherwise the line of a best snake at the top of the stairs would coincide with the frame.
-        let headroom = ((max - min) * HEADROOM).max(1.0);
-        Self { x: generations(finished), y: min - margin..=max + headroom, marks }
+    } else if min > max {
+        (min, max) = (0.0, 1.0);
     }
+    let margin = ((max - min) * 0.06).max(0.5);
+    // Otherwise the line of a best snake at the top of the stairs would coincide with the frame.
+    let headroom = ((max - min) * HEADROOM).max(1.0);
+    let unit = trial.fitness.unit().trim();
+    let y = Axis::new(axis_title(trial.fitness), unit, min - margin..=max + headroom);
+    Chart { marks, ..Chart::new(axis_of_finished(finished), y, Vec::new()) }
 }
 
 /// Returns the title of the fitness axis.
-pub(super) fn axis_title(fitness: Fitness) -> &'static str {
+fn axis_title(fitness: Fitness) -> &'static str {
     match fitness {
         Fitness::Centre => "Distance of the middle block",
         Fitness::Climb => "Distance",
@@ -135,36 +130,34 @@ pub(super) fn axis_title(fitness: Fitness) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::RunPlan;
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
+    use crate::studio::panels::testing::report_of;
 
     #[test]
     fn the_axes_cover_all_generations_and_the_landing_once_it_is_near() {
         let settings = Settings::default();
         let of = |finished, values: &[f64]| {
-            ChartBounds::new(&settings, finished, values.iter().copied())
+            let chart = frame(&settings, finished, values.iter().copied());
+            let marks: Vec<(String, f64)> =
+                chart.marks.into_iter().map(|mark| (mark.name, mark.y)).collect();
+            (chart.x.range, chart.y.range, marks)
         };
-        let early = of(0, &[]);
-        assert!(*early.x.end() > 6.0 && *early.x.end() < 7.0);
-        assert_eq!(early.marks, [("first step", 3.0)]);
-        assert!(early.y.contains(&-7.2) && early.y.contains(&3.0));
-        let late = of(120, &[-7.0, 12.0, 29.0]);
-        assert!(late.x.contains(&120.0) && late.y.contains(&29.0));
-        assert_eq!(late.marks, [("first step", 3.0), ("landing", 21.0)]);
-        assert_eq!(of(20, &[10.0]).marks.len(), 1, "far below the landing");
-        let height = late.y.end() - late.y.start();
-        assert!(late.y.end() - 29.0 > height * 0.09, "the best line keeps off the frame: {late:?}");
+        let (first_step, landing) = (("first step".to_owned(), 3.0), ("landing".to_owned(), 21.0));
+        let (x, y, marks) = of(0, &[]);
+        assert!(*x.end() > 6.0 && *x.end() < 7.0);
+        assert_eq!(marks, std::slice::from_ref(&first_step));
+        assert!(y.contains(&-7.2) && y.contains(&3.0));
+        let (x, y, marks) = of(120, &[-7.0, 12.0, 29.0]);
+        assert!(x.contains(&120.0) && y.contains(&29.0));
+        assert_eq!(marks, [first_step, landing]);
+        assert_eq!(of(20, &[10.0]).2.len(), 1, "far below the landing");
+        let height = y.end() - y.start();
+        assert!(y.end() - 29.0 > height * 0.09, "the best line keeps off the frame: {y:?}");
     }
 
     #[test]
     fn a_generation_has_a_full_hover_text_and_replays_its_champion() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 8;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
-        let pool = LocalPool::new(1).expect("threads");
-        let report =
-            experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+        let settings = Settings::default();
+        let report = report_of(1);
         let view = view(&settings, std::slice::from_ref(&report));
         let [hit] = &view.hits[0][..] else { panic!("one generation") };
         assert_eq!(hit.pick, Some(Pick::Generation(1)));

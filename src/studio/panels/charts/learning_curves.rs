@@ -1,28 +1,29 @@
 //! Comparison of methods: learning curves, and a table with the results of each arm of a study.
 
-use std::sync::Arc;
+use std::collections::BTreeSet;
 
 use bevy_egui::egui;
 
+use super::chart_kind::ChartKind;
 use super::draw;
 use super::view::ChartView;
 use crate::studio::ui::plot_axes::{axis_name, number};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::genome::ControllerKind;
-use snakes_core::save::{StudiedArm, StudyRuns};
+use snakes_core::save::StudyRuns;
 use snakes_lab::plot::Figure;
 use snakes_lab::statistics::Quartiles;
 use snakes_lab::study::{controllers, curves, short_title};
 
 /// Panel of a study: its learning curves for the selected controller, and its table.
-#[derive(Debug)]
-pub(crate) struct CurvesPanel {
+pub(super) struct CurvesPanel {
     study: StudyRuns,
     controllers: Vec<ControllerKind>,
     /// Controller whose learning curves are shown.
     controller: ControllerKind,
-    view: ChartView,
+    /// Learning curves that are shown.
+    pub view: ChartView,
 }
 
 impl CurvesPanel {
@@ -34,15 +35,10 @@ impl CurvesPanel {
         Self { view: view(study, controller), study: study.clone(), controllers, controller }
     }
 
-    /// Returns the figure of the shown learning curves.
-    pub fn figure(&self) -> &Arc<Figure> {
-        &self.view.figure
-    }
-
     /// Draws the panel. The chart of the curves is `height` points high.
     pub fn ui(&mut self, ui: &mut egui::Ui, height: f32) {
         if self.study.arms.is_empty() {
-            return explain(ui, "This study has no finished runs.");
+            return explain(ui, &ChartKind::Methods.empty_text());
         }
         ui.horizontal(|ui| {
             ui.label("Controller");
@@ -80,14 +76,15 @@ impl CurvesPanel {
                 let name = egui::RichText::new(short_title(&arm.protocol));
                 ui.label(name.color(palette.strategy(strategy)).strong())
                     .on_hover_text(strategy.words());
-                let landings = values(arm, "first_landing");
-                ui.label(format!("{} of {}", landings.len(), arm.runs.len()));
-                let all = arm.runs.iter().map(|run| run.number("first_landing"));
-                ui.label(match median(all.map(|landing| landing.unwrap_or(f64::INFINITY))) {
+                let values = |name| arm.runs.iter().map(move |run| run.number(name));
+                let landings = values("first_landing");
+                let landed = landings.clone().flatten().count();
+                ui.label(format!("{landed} of {}", arm.runs.len()));
+                ui.label(match median(landings.map(|landing| landing.unwrap_or(f64::INFINITY))) {
                     Some(median) if median.is_finite() => number(median),
                     _ => "never".to_owned(),
                 });
-                let best = median(values(arm, "fitness"));
+                let best = median(values("fitness").flatten());
                 let best = best.map_or(String::new(), |best| format!("{best:.1}"));
                 ui.label(best + arm.protocol.fitness.unit());
                 ui.end_row();
@@ -99,10 +96,8 @@ impl CurvesPanel {
 /// Creates the chart of a controller's learning curves, with a summary of the study.
 fn view(study: &StudyRuns, controller: ControllerKind) -> ChartView {
     let protocols = || study.arms.iter().map(|arm| &arm.protocol);
-    let mut presets: Vec<&str> = protocols().map(|of| of.preset.as_str()).collect();
-    presets.sort_unstable();
-    presets.dedup();
-    let presets = presets.join(", ");
+    let presets: BTreeSet<&str> = protocols().map(|of| of.preset.as_str()).collect();
+    let presets = presets.into_iter().collect::<Vec<_>>().join(", ");
     let budget = protocols().map(|of| of.budget).max().unwrap_or(0);
     let note = format!(
         "Study {}, preset {presets}, {budget} evaluations per run. Lines: median over the seeds.",
@@ -111,11 +106,6 @@ fn view(study: &StudyRuns, controller: ControllerKind) -> ChartView {
     let chart = curves(&study.arms, controller).named("");
     let figure = Figure::of(&format!("Methods, {controller}"), chart).with_note(note);
     ChartView { is_of_run: false, ..ChartView::new(figure, Vec::new()) }
-}
-
-/// Returns a named value of all runs of an arm that have it.
-fn values(arm: &StudiedArm, name: &str) -> Vec<f64> {
-    arm.runs.iter().filter_map(|run| run.number(name)).collect()
 }
 
 fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {

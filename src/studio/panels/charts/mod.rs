@@ -4,20 +4,18 @@
 mod ancestors;
 mod archive_map;
 mod archive_pictures;
+mod band_kinds;
 mod bands;
-mod blocks;
 mod bodies;
 mod chart_kind;
 mod downsample;
 mod draw;
 mod fitness;
-mod layer_labels;
 mod learning_curves;
 mod legend;
 mod parents;
 mod pareto_front;
 mod runs;
-mod species;
 mod spread;
 mod stairs;
 mod torques;
@@ -32,15 +30,14 @@ use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
-use snakes_lab::plot::Figure;
 
-use blocks::BLOCKS;
+use band_kinds::{BLOCKS, SPECIES};
 use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
-use species::SPECIES;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
 
@@ -92,84 +89,48 @@ impl ChartsPanel {
         let height = (ui.available_height() - theme::CHART_CONTROLS_HEIGHT)
             .min(tallest)
             .max(theme::PLOT_HEIGHT);
-        match self.kind {
-            ChartKind::Methods => self.methods(ui, height, commands),
-            ChartKind::Torques => self.torques(ui, run, height, selected, commands),
-            kind => self.run_chart(ui, run, kind, height, shown, commands),
+        let kind = self.kind;
+        let (view, shown) = match kind {
+            ChartKind::Methods => {
+                if let Some(curves) = &mut self.curves {
+                    header(ui, &curves.view, kind, commands);
+                    curves.ui(ui, height);
+                }
+                return;
+            }
+            ChartKind::Torques => {
+                let known = self.torques.update(run, selected);
+                let view = known.map_err(str::to_owned);
+                let view = view.and_then(|()| self.torques.view().ok_or_else(|| kind.empty_text()));
+                // No individual is highlighted, because the chart shows only the selected snake.
+                (view, &[][..])
+            }
+            _ => {
+                let version = run.version();
+                if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
+                    self.known = Some((kind, version, view_of(kind, run)));
+                }
+                let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
+                let view = view.filter(|view| !view.figure.is_empty());
+                (view.ok_or_else(|| reason(kind, run)), shown)
+            }
+        };
+        match view {
+            Ok(view) => {
+                header(ui, view, kind, commands);
+                draw::draw(ui, kind.labels().0, view, height, shown, commands);
+            }
+            Err(why) => {
+                title(ui, kind.labels().0);
+                explain(ui, &why);
+            }
         }
-    }
-
-    /// Draws a chart of the run's results.
-    fn run_chart(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        kind: ChartKind,
-        height: f32,
-        shown: &[ShownLane],
-        commands: &mut Vec<Command>,
-    ) {
-        if kind == ChartKind::Runs && !self.has_listed_runs {
-            self.has_listed_runs = true;
-            commands.push(Command::Run(RunCommand::ListRuns));
-        }
-        let version = run.version();
-        if !matches!(&self.known, Some((of, at, _)) if (*of, *at) == (kind, version)) {
-            self.known = Some((kind, version, view_of(kind, run)));
-        }
-        let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
-        let view = view.filter(|view| !view.figure.is_empty()).ok_or_else(|| reason(kind, run));
-        view_or_reason(ui, kind, view, height, shown, commands);
         if kind == ChartKind::Runs {
+            if !self.has_listed_runs {
+                self.has_listed_runs = true;
+                commands.push(Command::Run(RunCommand::ListRuns));
+            }
             runs::run_list(ui, run, commands);
-        }
-    }
-
-    fn torques(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        height: f32,
-        selected: Option<&StagedChampion>,
-        commands: &mut Vec<Command>,
-    ) {
-        let view = self.torques.update(run, selected);
-        let view = view.and_then(|()| self.torques.view().ok_or(ChartKind::Torques.empty_text()));
-        // No individual is highlighted, because the chart shows only the selected snake.
-        view_or_reason(ui, ChartKind::Torques, view, height, &[], commands);
-    }
-
-    fn methods(&mut self, ui: &mut egui::Ui, height: f32, commands: &mut Vec<Command>) {
-        match &mut self.curves {
-            Some(curves) => {
-                header(ui, curves.figure(), (ChartKind::Methods, false), commands);
-                curves.ui(ui, height);
-            }
-            None => {
-                title(ui, "Comparison of methods");
-                explain(ui, ChartKind::Methods.empty_text());
-            }
-        }
-    }
-}
-
-/// Draws a chart, or the reason why it is empty.
-fn view_or_reason(
-    ui: &mut egui::Ui,
-    kind: ChartKind,
-    view: Result<&ChartView, &str>,
-    height: f32,
-    shown: &[ShownLane],
-    commands: &mut Vec<Command>,
-) {
-    match view {
-        Ok(view) => {
-            header(ui, &view.figure, (kind, view.is_of_run), commands);
-            draw::draw(ui, kind.labels().0, view, height, shown, commands);
-        }
-        Err(why) => {
-            title(ui, kind.labels().0);
-            explain(ui, why);
         }
     }
 }
@@ -206,8 +167,8 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     match kind {
         ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
-        ChartKind::Species => Some(bands::view(&SPECIES, settings, run.reports())),
-        ChartKind::Blocks => Some(bands::view(&BLOCKS, settings, run.reports())),
+        ChartKind::Species => Some(bands::view(SPECIES, settings, run.reports())),
+        ChartKind::Blocks => Some(bands::view(BLOCKS, settings, run.reports())),
         ChartKind::Bodies => {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
@@ -226,39 +187,28 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
 }
 
 /// Returns the reason why a chart of the run is empty.
-fn reason(kind: ChartKind, run: &CurrentRun) -> &'static str {
+fn reason(kind: ChartKind, run: &CurrentRun) -> String {
     match kind {
         ChartKind::Front if run.exploration().is_some() => {
-            "No snake has ended ahead of its starting position yet."
+            "No snake has ended ahead of its starting position yet.".to_owned()
         }
         _ => kind.empty_text(),
     }
 }
 
-/// Draws the title of a chart and its export buttons. `is_of_run` tells whether the chart is about the current run.
-fn header(
-    ui: &mut egui::Ui,
-    figure: &Arc<Figure>,
-    (kind, is_of_run): (ChartKind, bool),
-    commands: &mut Vec<Command>,
-) {
-    let is_empty = figure.is_empty();
+/// Draws the title of a chart and its export buttons.
+fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut Vec<Command>) {
+    let ChartView { figure, is_of_run, .. } = view;
+    let refusal = figure.is_empty().then_some("The chart is still empty");
     title_and(ui, &figure.title, |ui| {
         for (label, hint, format) in [
             ("CSV", "Save the numbers as a table", ChartFormat::Csv),
             ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
         ] {
-            let button = ui.add_enabled(!is_empty, egui::Button::new(label).small());
-            let not_yet = "The chart is still empty";
-            if button.on_hover_text(hint).on_disabled_hover_text(not_yet).clicked() {
-                let figure = Arc::clone(figure);
-                commands.push(Command::Run(RunCommand::ExportChart(ChartExport {
-                    figure,
-                    name: kind.file_name(),
-                    format,
-                    is_of_run,
-                })));
-            }
+            let (figure, name) = (Arc::clone(figure), kind.file_name());
+            let export = ChartExport { figure, name, format, is_of_run: *is_of_run };
+            let export = Command::Run(RunCommand::ExportChart(export));
+            CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);
         }
     });
 }

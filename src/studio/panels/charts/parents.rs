@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
 use snakes_core::evolve::Settings;
@@ -20,58 +20,50 @@ const MAX_BRIGHTNESS: f32 = 0.85;
 /// Creates the chart of the parents, with their numbers of children. Returns `None` if no genes are known.
 pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Option<ChartView> {
     let unit = settings.trial.fitness.unit();
-    let mut known: Vec<_> = parents
-        .iter()
-        .filter_map(|(parent, children)| Some((parent, parent.genome.as_ref()?, *children)))
-        .collect();
+    let known = |(parent, children): &(Arc<Ancestor>, u32)| {
+        let features = settings.genome.features(parent.genome.as_ref()?).into_iter();
+        let features: Vec<Feature> = features.map(in_unit_of_panels).collect();
+        (!features.is_empty()).then(|| (Arc::clone(parent), *children, features))
+    };
+    let mut known: Vec<_> = parents.iter().filter_map(known).collect();
     // The best parents are drawn on top. They are kept if there are too many parents.
     let fitness = |parent: &Ancestor| parent.fitness.unwrap_or(f32::MIN);
-    known.sort_by(|a, b| fitness(a.0).total_cmp(&fitness(b.0)));
+    known.sort_by(|a, b| fitness(&a.0).total_cmp(&fitness(&b.0)));
     let surplus = known.len().saturating_sub(MAX_PARENTS);
-    let known = &known[surplus..];
+    known.drain(..surplus);
     let healthy = || known.iter().filter_map(|(parent, ..)| parent.fitness);
     let (min, max) = (healthy().fold(f32::MAX, f32::min), healthy().fold(f32::MIN, f32::max));
-    let mut names = Vec::new();
+    let name = |feature: &Feature| with_unit(&feature.name, feature.unit);
+    let names: Vec<(f64, String)> =
+        (0..).map(f64::from).zip(known.first()?.2.iter().map(name)).collect();
     let mut series = Vec::new();
     let mut hits = Vec::new();
-    let mut values: Vec<Vec<f32>> = Vec::new();
-    for (parent, genome, children) in known {
-        let features: Vec<Feature> =
-            settings.genome.features(genome).into_iter().map(in_unit_of_panels).collect();
+    for (parent, children, features) in &known {
         let at = parent.place;
-        let name = format!("generation {}, snake {}", at.generation, at.individual + 1);
+        let name = generation_and_snake(at);
         let reached = match parent.fitness {
             Some(fitness) => format!("fitness {fitness:.2}{unit}"),
             None => "disqualified".to_owned(),
         };
         let place = (0..features.len()).map(|index| index as f64);
         let points: Vec<[f64; 2]> =
-            place.zip(&features).map(|(x, feature)| [x, feature.share]).collect();
-        for (point, feature) in points.iter().zip(&features) {
+            place.zip(features).map(|(x, feature)| [x, feature.share]).collect();
+        for (point, feature) in points.iter().zip(features) {
             let space = if feature.unit.is_empty() { "" } else { " " };
             let words = format!(
-                "{}: {}{space}{}\nGeneration {}, snake {}: {reached}\nChildren in the next generation: {children}",
+                "{}: {}{space}{}\n{name}: {reached}\nChildren in the next generation: {children}",
                 feature.name,
                 number(f64::from(feature.value)),
                 feature.unit,
-                at.generation,
-                at.individual + 1,
             );
             let target = HitShape::Point(*point);
             hits.push(ChartHit::of(target, move || words.clone(), Pick::Individual(at), at));
         }
-        values.push(features.iter().map(|feature| feature.value).collect());
-        if names.is_empty() {
-            let name = |feature: &Feature| with_unit(&feature.name, feature.unit);
-            names = (0..).map(f64::from).zip(features.iter().map(name)).collect();
-        }
         let share =
             parent.fitness.map_or(0.0, |of| (of - min) / (max - min).max(f32::MIN_POSITIVE));
         let role = Role::Share(share.clamp(0.0, 1.0) * MAX_BRIGHTNESS);
-        series.push(Series::new(&format!("{name}, {reached}"), role, Shape::Line(points)));
-    }
-    if names.is_empty() {
-        return None;
+        let name = format!("{}, {reached}", name.to_lowercase());
+        series.push(Series::new(&name, role, Shape::Line(points)));
     }
     let last = (names.len() - 1) as f64;
     let aside = (last * 0.03).max(0.3);
@@ -82,8 +74,9 @@ pub(super) fn view(settings: &Settings, parents: &[(Arc<Ancestor>, u32)]) -> Opt
         [x.name.clone()].into_iter().chain(series.iter().map(|of| of.name.clone())).collect();
     let records: Vec<Vec<String>> = (x.names.iter().enumerate())
         .map(|(index, (_, name))| {
+            let value = |feature: &Feature| feature.value.to_string();
             let of_parents =
-                values.iter().map(|of| of.get(index).map_or(String::new(), f32::to_string));
+                known.iter().map(|(.., of)| of.get(index).map_or(String::new(), value));
             [name.clone()].into_iter().chain(of_parents).collect()
         })
         .collect();
@@ -116,20 +109,17 @@ fn in_unit_of_panels(mut feature: Feature) -> Feature {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::evolve::{RunPlan, StrategyKind};
+    use crate::studio::panels::charts::tests::experiment;
+    use snakes_core::evolve::StrategyKind;
     use snakes_core::genome::ControllerKind;
-    use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
     #[test]
     fn every_value_has_a_hover_text_and_replays_its_parent() {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::Ga;
-        settings.evolution.population = 10;
-        settings.genome.controller = ControllerKind::Gait;
-        settings.trial.duration_s = 0.5;
-        let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
-        let pool = LocalPool::new(1).expect("threads");
-        experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+        let (settings, experiment) = experiment(1, |settings| {
+            settings.evolution.strategy = StrategyKind::Ga;
+            settings.evolution.population = 10;
+            settings.genome.controller = ControllerKind::Gait;
+        });
         let parents = experiment.parents();
         let view = view(&settings, &parents).expect("their genes are known");
         let dimension = settings.genome.dimension(settings.trial.genome_shape());

@@ -1,6 +1,6 @@
 //! Chart of the Pareto front of distance and energy. A click replays a member.
 
-use super::view::{ChartHit, ChartView, HitShape};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::number;
 use snakes_core::evolve::{Front, FrontMember, IndividualId, Settings};
@@ -18,14 +18,18 @@ pub(super) fn view(settings: &Settings, front: &Front) -> ChartView {
         Series::new("Pareto front", Role::First, Shape::Points(points.clone())),
     ];
     let hit = |member: &FrontMember| {
-        let FrontMember { generation, individual, .. } = *member;
         let words = hover_text(member, &settings.trial);
+        let at @ IndividualId { generation, individual } = id(member);
         let pick = Pick::Front { generation, individual };
-        let at = IndividualId { generation, individual };
         ChartHit::of(HitShape::Point(place(member)), move || words.clone(), pick, at)
     };
     let figure = Figure::of("Distance and energy", Chart::new(x, y, series));
     ChartView::new(figure, vec![front.members().map(hit).collect()])
+}
+
+/// Returns the place of a member in the run.
+fn id(member: &FrontMember) -> IndividualId {
+    IndividualId { generation: member.generation, individual: member.individual }
 }
 
 /// Returns the chart position of a member: distance in metres and energy in kJ.
@@ -38,11 +42,10 @@ fn place(member: &FrontMember) -> [f64; 2] {
 fn hover_text(member: &FrontMember, trial: &Trial) -> String {
     let [y_m, energy_kj] = place(member);
     format!(
-        "Distance {y_m:.2} m: {}\nEnergy {} kJ\nGeneration {}, snake {}",
+        "Distance {y_m:.2} m: {}\nEnergy {} kJ\n{}",
         trial.result_in_words(&member.genome, &member.evaluation),
         number(energy_kj),
-        member.generation,
-        member.individual + 1
+        generation_and_snake(id(member))
     )
 }
 
@@ -50,29 +53,9 @@ fn hover_text(member: &FrontMember, trial: &Trial) -> String {
 mod tests {
     use super::*;
     use crate::studio::commands::{Command, StageCommand};
-    use crate::studio::panels::charts::draw;
+    use crate::studio::panels::charts::tests::clicked;
     use crate::studio::state::current_run::explored_run;
-    use crate::studio::ui::theme;
     use bevy_egui::egui;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    /// Clicks at a chart position, moved by `off` points. Returns the commands that were sent.
-    fn sent(view: &ChartView, at: [f64; 2], off: egui::Vec2) -> Vec<Command> {
-        let size = egui::vec2(theme::PANEL_WIDTH, 400.0);
-        let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| draw::draw(ui, "front", view, theme::PLOT_HEIGHT + 35.0, &[], commands),
-            Vec::new(),
-        );
-        harness.run();
-        let area = harness.get_by_label("Chart: Distance and energy").rect();
-        let position = draw::screen_position(area, &view.figure.charts[0], at) + off;
-        harness.drag_at(position);
-        harness.run();
-        harness.drop_at(position);
-        harness.run();
-        harness.state().clone()
-    }
 
     #[test]
     fn a_click_near_a_point_replays_it_and_one_far_away_does_not() {
@@ -82,9 +65,9 @@ mod tests {
         let best = front.members().last().expect("a member");
         let FrontMember { generation, individual, .. } = *best;
         let show = Command::Stage(StageCommand::Show(Pick::Front { generation, individual }));
-        assert_eq!(sent(&view, place(best), egui::vec2(3.0, 3.0)), [show]);
+        assert_eq!(*clicked(&view, place(best), egui::vec2(3.0, 3.0)).state(), [show]);
         // There is no member far below the point.
-        assert_eq!(sent(&view, place(best), egui::vec2(0.0, 60.0)), []);
+        assert_eq!(*clicked(&view, place(best), egui::vec2(0.0, 60.0)).state(), []);
         let table = view.figure.table();
         assert_eq!(table.len(), 1 + front.members().len());
         assert_eq!(table[0], ["Final distance (m)", "Pareto front (kJ)"]);

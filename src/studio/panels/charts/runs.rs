@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use bevy_egui::egui;
 
-use super::fitness::axis_title;
+use super::fitness::{fitness_axis, generation_axis};
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{GenerationRecord, RunPlan, Statistics};
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Chart, Figure, Role, Series, Shape};
 
 /// Colours of the other runs, in the order of their selection.
 const ROLES: [Role; MOST_COMPARED] = [Role::Second, Role::Third, Role::Others];
@@ -49,9 +49,8 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     }
     let values =
         curves.iter().flat_map(|of| &of.points).flat_map(|&[_, best, median]| [best, median]);
-    let y = Axis::around(axis_title(fitness), unit.trim(), values, 1.0);
+    let y = fitness_axis(fitness, values);
     let last = curves.iter().flat_map(|of| &of.points).map(|point| point[0]).fold(2.0, f64::max);
-    let aside = (last - 1.0) * 0.04;
     let line = |of: &Curves, value: usize| -> Vec<[f64; 2]> {
         of.points.iter().map(|point| [point[0], point[value]]).collect()
     };
@@ -72,8 +71,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
     };
     let hits = curves.iter().flat_map(|of| of.points.iter().map(move |point| hit(of, point)));
     let hits = hits.collect();
-    let x = Axis::count("Generation", 1.0 - aside..=last + aside);
-    let chart = Chart::new(x, y, series.collect());
+    let chart = Chart::new(generation_axis(last), y, series.collect());
     let note = if rewards_differ {
         "These runs use different rewards, so their fitness cannot be compared."
     } else {

@@ -1,15 +1,16 @@
 //! Histogram of the fitness in the latest generation. A click on a bar replays its best snake.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use super::fitness::axis_title;
+use super::fitness::fitness_axis;
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use crate::studio::ui::plot_axes::{number, step};
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::score::Evaluation;
 use snakes_core::world::Disqualification;
-use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
+use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape, extent};
 use snakes_lab::run::Generation;
 
 /// Minimum and maximum of the desired number of bars.
@@ -38,7 +39,7 @@ pub(super) fn view(settings: &Settings, generation: &Generation) -> ChartView {
     let max = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
     let ends = bins.iter().flat_map(|bin| [bin.from, bin.to]);
     let top = f64::from(max.max(1)) * 1.06;
-    let x = Axis::around(axis_title(settings.trial.fitness), unit.trim(), ends, 1.0);
+    let x = fitness_axis(settings.trial.fitness, ends);
     let y = Axis::count("Snakes", 0.0..=top);
     let chart = Chart::new(x, y, vec![Series::new("snakes", Role::First, bars)]);
     let hits = bins.iter().map(|bin| {
@@ -66,42 +67,35 @@ fn bins(evaluations: &[Evaluation]) -> Vec<Bin> {
         .filter(|(_, evaluation)| evaluation.disqualified.is_none())
         .map(|(index, evaluation)| (index, evaluation.fitness))
         .collect();
-    let min = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MAX, f32::min);
-    let max = healthy.iter().map(|(_, fitness)| *fitness).fold(f32::MIN, f32::max);
+    let values = healthy.iter().map(|(_, fitness)| f64::from(*fitness));
+    let [min, max] = extent(values).unwrap_or_default();
     let wanted = (healthy.len() as f64).sqrt().clamp(*BAR_COUNTS.start(), *BAR_COUNTS.end());
     // `step` divides its range into about six parts.
-    let width = step((f64::from(max) - f64::from(min)).max(1.0e-3) * 6.0 / wanted);
-    let place = |fitness: f32| libm::floor(f64::from(fitness) / width);
-    let mut bins: Vec<Bin> = Vec::new();
-    let mut sorted = healthy;
-    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
-    for (individual, fitness) in sorted {
-        let from = place(fitness) * width;
-        match bins.last_mut() {
-            Some(bin) if bin.from == from => {
-                bin.count += 1;
-                // Among equally fit snakes, the first counts as the best.
-                if fitness > bin.best.1 {
-                    bin.best = (individual, fitness);
-                }
-            }
-            _ => bins.push(Bin { from, to: from + width, count: 1, best: (individual, fitness) }),
+    let width = step((max - min).max(1.0e-3) * 6.0 / wanted);
+    let mut bins: BTreeMap<i64, Bin> = BTreeMap::new();
+    for (individual, fitness) in healthy {
+        let place = libm::floor(f64::from(fitness) / width);
+        let from = place * width;
+        let new = Bin { from, to: from + width, count: 0, best: (individual, f32::MIN) };
+        let bin = bins.entry(place as i64).or_insert(new);
+        bin.count += 1;
+        // Among equally fit snakes, the first counts as the best.
+        if fitness > bin.best.1 {
+            bin.best = (individual, fitness);
         }
     }
-    bins
+    bins.into_values().collect()
 }
 
 /// Describes how many snakes were disqualified for each reason.
 fn disqualified(evaluations: &[Evaluation]) -> String {
-    use Disqualification as D;
-    let all =
-        [D::NotFinite, D::JointBroke, D::TooFast, D::LeftArena, D::EnergyFromNothing, D::Crashed];
-    let count = |reason: D| evaluations.iter().filter(|of| of.disqualified == Some(reason)).count();
-    let reasons: Vec<String> = (all.into_iter())
-        .filter(|reason| count(*reason) > 0)
-        .map(|reason| format!("{}: {}", count(reason), reason.words()))
-        .collect();
-    let number: usize = all.into_iter().map(count).sum();
+    let mut counts: BTreeMap<Disqualification, usize> = BTreeMap::new();
+    for reason in evaluations.iter().filter_map(|evaluation| evaluation.disqualified) {
+        *counts.entry(reason).or_default() += 1;
+    }
+    let reasons: Vec<String> =
+        counts.iter().map(|(reason, count)| format!("{count}: {}", reason.words())).collect();
+    let number: usize = counts.values().sum();
     if number == 0 {
         return format!("None of {} were disqualified.", evaluations.len());
     }

@@ -25,26 +25,26 @@ pub(super) fn view(
     let rises = tree.nodes.iter().map(|node| f64::from(node.stairs.rise_m));
     let y = Axis::around("Mean rise", "m", rises, 0.1);
     let nodes = Chart::new(x.clone(), y, series(tree, has_challenges)).named("Stairs");
-    let progress = by_round(reports, |count| match has_challenges {
-        true => count.challenges,
-        false => count.solved,
-    });
+    let (name, title, series, note, number): (_, _, _, _, fn(&StairsCount) -> u32) =
+        if has_challenges {
+            (
+                "New challenges",
+                "Solved so far (ANNECS)",
+                "new challenges solved",
+                "A new challenge was neither too easy nor too hard for the best snake when it came.",
+                |count| count.challenges,
+            )
+        } else {
+            (
+                "Number of stairs",
+                "Climbed so far",
+                "stairs that a snake has climbed",
+                "Each staircase entered the queue because a snake climbed it.",
+                |count| count.solved,
+            )
+        };
+    let progress = by_round(reports, number);
     let most = progress.last().map_or(1.0, |last| last[1]).max(1.0);
-    let (name, title, series, note) = if has_challenges {
-        (
-            "New challenges",
-            "Solved so far (ANNECS)",
-            "new challenges solved",
-            "A new challenge was neither too easy nor too hard for the best snake when it came.",
-        )
-    } else {
-        (
-            "Number of stairs",
-            "Climbed so far",
-            "stairs that a snake has climbed",
-            "Each staircase entered the queue because a snake climbed it.",
-        )
-    };
     let y = Axis::count(title, 0.0..=most * 1.05);
     let series = vec![Series::new(series, Role::Third, Shape::Line(progress))];
     let challenges = Chart::new(x, y, series).named(name);
@@ -59,6 +59,9 @@ fn place(node: &StairsNode) -> [f64; 2] {
     [node.born.into(), node.stairs.rise_m.into()]
 }
 
+/// A state of stairs: its name, its role, and whether stairs are in it.
+type NodeState = (&'static str, Role, fn(&StairsNode) -> bool);
+
 /// Returns the stairs of a tree in series by their state: solved or unsolved or, if all are solved, whether they are
 /// still in their queue.
 fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
@@ -68,27 +71,25 @@ fn series(tree: &StairsTree, has_unsolved: bool) -> Vec<Series> {
     let transfer = |of: &Transfer| Some([place(node(of.from)?), place(node(of.to)?)]);
     let skipped = tree.transfers.len().saturating_sub(MOST_ARROWS);
     let transfers = tree.transfers.iter().skip(skipped).filter_map(transfer);
-    let points = |wanted: &dyn Fn(&StairsNode) -> bool| {
-        Shape::Points(tree.nodes.iter().filter(|node| wanted(node)).map(place).collect())
-    };
     let mut series = vec![
         Series::new("descent", Role::Others, Shape::Arrows(descents.collect())),
         Series::new("transfers of snakes", Role::Second, Shape::Arrows(transfers.collect())),
     ];
-    let mut state = |name: &str, role: Role, is_in: &dyn Fn(&StairsNode) -> bool| {
-        series.push(Series::new(name, role, points(is_in)));
+    let states: &[NodeState] = match has_unsolved {
+        true => &[
+            ("archived unsolved", Role::Others, |of| of.solved.is_none() && of.archived.is_some()),
+            ("active", Role::Third, |of| of.solved.is_none() && of.archived.is_none()),
+            ("solved", Role::First, |of| of.solved.is_some()),
+        ],
+        false => &[
+            ("removed from the queue", Role::Others, |of| of.archived.is_some()),
+            ("in the queue", Role::First, |of| of.archived.is_none()),
+        ],
     };
-    if has_unsolved {
-        let is_unsolved = |node: &StairsNode| node.solved.is_none();
-        let is_left = |node: &StairsNode| is_unsolved(node) && node.archived.is_some();
-        state("archived unsolved", Role::Others, &is_left);
-        let is_active = |node: &StairsNode| is_unsolved(node) && node.archived.is_none();
-        state("active", Role::Third, &is_active);
-        state("solved", Role::First, &|node| node.solved.is_some());
-    } else {
-        state("removed from the queue", Role::Others, &|node| node.archived.is_some());
-        state("in the queue", Role::First, &|node| node.archived.is_none());
-    }
+    series.extend(states.iter().map(|(name, role, is_in)| {
+        let nodes = tree.nodes.iter().filter(|node| is_in(node));
+        Series::new(name, *role, Shape::Points(nodes.map(place).collect()))
+    }));
     // Empty series would need an entry in the legend.
     series.retain(|series| !series.shape.is_empty());
     series

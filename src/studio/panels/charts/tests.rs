@@ -1,52 +1,79 @@
 //! Tests of the charts panel: select, hover, click, export.
 
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::StrategyKind;
 
 use super::*;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, click_at};
 use crate::studio::panels::shown::ShownChampion;
+use crate::studio::panels::testing::{self, Sent, shows};
 use crate::studio::state::current_run::{
     bodies_run, compared_run, explored_run, prepared_run, species_run,
 };
-use snakes_core::evolve::{IndividualId, Settings};
+use snakes_core::evolve::{IndividualId, RunPlan, Settings};
+use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
-/// Calls `act` in a panel of this width, in points. Returns its result and the commands that were sent.
-fn with<T>(
+/// Runs this number of generations for 0.5 s each. `change` changes the settings, which are also returned.
+pub(super) fn experiment(
+    generations: usize,
+    change: impl FnOnce(&mut Settings),
+) -> (Settings, Experiment) {
+    let mut settings = Settings::default();
+    settings.trial.duration_s = 0.5;
+    change(&mut settings);
+    let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
+    let pool = LocalPool::new(1).expect("threads");
+    for _ in 0..generations {
+        experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+    }
+    (settings, experiment)
+}
+
+/// Draws a chart, and clicks at a chart position, moved by `off` points. The pointer stays beside that place.
+pub(super) fn clicked<'a>(view: &'a ChartView, at: [f64; 2], off: egui::Vec2) -> Sent<'a> {
+    let height = theme::PLOT_HEIGHT + 35.0;
+    let mut panel = testing::panel([theme::PANEL_WIDTH, 500.0], move |ui, commands| {
+        draw::draw(ui, "clicked", view, height, &[], commands);
+    });
+    let area = panel.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
+    let place = draw::screen_position(area, &view.figure.charts[0], at) + off;
+    click_at(&mut panel, place);
+    panel.hover_at(place + egui::vec2(1.0, 0.0));
+    panel.run();
+    panel
+}
+
+/// Calls `act` in a panel of this width, in points. Returns the commands that were sent.
+fn with(
     run: &CurrentRun,
     kind: ChartKind,
     width: f32,
-    act: impl FnOnce(&mut Harness<'_, Vec<Command>>) -> T,
-) -> (T, Vec<Command>) {
+    act: impl FnOnce(&mut Sent<'_>),
+) -> Vec<Command> {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let best = run.reports().last().and_then(|report| report.champion.as_ref());
     let selected = best.map(|best| StagedChampion::from_run(best, run.number()));
-    let mut harness = Harness::builder().with_size(egui::vec2(width, 700.0)).build_ui_state(
-        |ui, commands| panel.ui(ui, run, &[], selected.as_ref(), commands),
-        Vec::new(),
-    );
-    harness.run();
+    let mut harness = testing::panel([width, 700.0], |ui, commands| {
+        panel.ui(ui, run, &[], selected.as_ref(), commands);
+    });
     // Opening a chart may request the list of runs, which is removed.
     harness.state_mut().clear();
-    let seen = act(&mut harness);
+    act(&mut harness);
     harness.run();
-    let sent = harness.state().clone();
-    (seen, sent)
+    harness.state().clone()
 }
 
 #[test]
 fn a_chart_is_selected_by_its_name() {
-    let ((), sent) = with(&explored_run(), ChartKind::Fitness, 600.0, |harness| {
+    let sent = with(&explored_run(), ChartKind::Fitness, 600.0, |harness| {
         assert!(harness.query_by_label("Fitness by generation").is_some());
         for (kind, title) in [
             (ChartKind::Ancestors, "Ancestors of the best"),
             (ChartKind::Runs, "Comparison of runs"),
         ] {
-            harness.get_by_label(kind.labels().0).click();
-            harness.run();
+            click(harness, kind.labels().0);
             assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
         }
     });
@@ -71,34 +98,28 @@ fn charts_without_data_are_not_offered() {
 
 #[test]
 fn only_a_run_with_species_offers_their_chart() {
-    for (run, has_species) in [(explored_run(), false), (species_run(), true)] {
-        with(&run, ChartKind::Species, 600.0, |harness| {
-            let mut buttons = harness.query_all_by_label("Species");
-            assert_eq!(buttons.next().is_some(), has_species);
-            let mut titles = harness.query_all_by_label("Species by generation");
-            assert_eq!(titles.next().is_some(), has_species);
+    for (run, kind, is_offered) in [
+        (explored_run(), ChartKind::Species, false),
+        (species_run(), ChartKind::Species, true),
+        (explored_run(), ChartKind::Blocks, false),
+        (bodies_run(), ChartKind::Blocks, true),
+    ] {
+        with(&run, kind, 600.0, |harness| {
+            let name = kind.labels().0;
+            let title = format!("{name} by generation");
+            for label in [name, &title] {
+                let mut found = harness.query_all_by_label(label);
+                assert_eq!(found.next().is_some(), is_offered, "{label}");
+            }
         });
     }
-    for (run, has_bodies) in [(explored_run(), false), (bodies_run(), true)] {
-        with(&run, ChartKind::Blocks, 600.0, |harness| {
-            let mut titles = harness.query_all_by_label("Blocks by generation");
-            assert_eq!(titles.next().is_some(), has_bodies);
-        });
-    }
-}
-
-fn click(harness: &mut Harness<'_, Vec<Command>>, at: egui::Pos2) {
-    harness.drag_at(at);
-    harness.run();
-    harness.drop_at(at);
-    harness.run();
 }
 
 #[test]
 fn before_the_first_generation_every_chart_explains_its_content() {
     let run = prepared_run();
     for kind in offered(&run) {
-        let ((), sent) = with(&run, kind, theme::PANEL_WIDTH, |harness| {
+        let sent = with(&run, kind, theme::PANEL_WIDTH, |harness| {
             let mut says = harness.query_all_by_label_contains("will appear here");
             assert!(says.next().is_some(), "{kind:?}");
             assert!(harness.query_by_label("PNG").is_none(), "{kind:?}: nothing to write");
@@ -117,7 +138,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
             [ChartKind::Blocks, ChartKind::Bodies, ChartKind::Archive].map(|kind| (&bodies, kind)),
         );
         for (run, kind) in charts {
-            let ((), sent) = with(run, kind, width, |harness| {
+            let sent = with(run, kind, width, |harness| {
                 // Another thread computes the torques of waves.
                 for _ in 0..3000 {
                     if harness.query_by_label("CSV").is_some() {
@@ -125,8 +146,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
                     }
                     harness.run();
                 }
-                harness.get_by_label("CSV").click();
-                harness.run();
+                click(harness, "CSV");
             });
             let [Command::Run(RunCommand::ExportChart(ChartExport { figure, name, format, .. }))] =
                 &sent[..]
@@ -144,21 +164,15 @@ fn a_click_replays_a_generation_a_bar_an_ancestor_or_a_parent() {
     let run = explored_run();
     for kind in [ChartKind::Fitness, ChartKind::Spread, ChartKind::Ancestors, ChartKind::Parents] {
         let view = view_of(kind, &run).expect("explored");
-        let chart = &view.figure.charts[0];
         let hit = view.hits[0].last().expect("a snake").clone();
         let at = match hit.target {
             view::HitShape::Point(point) | view::HitShape::Column(point) => point,
             view::HitShape::Area([left, right, ..]) => [(left + right) / 2.0, 0.5],
         };
-        let (words, sent) = with(&run, kind, 600.0, |harness| {
-            let area = harness.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
-            let place = draw::screen_position(area, chart, at);
-            click(harness, place);
-            harness.hover_at(place + egui::vec2(0.5, 0.5));
-            harness.run();
-            let first = hit.words().lines().next().expect("words").to_owned();
-            harness.query_all_by_label_contains(&first).next().is_some()
-        });
+        let panel = clicked(&view, at, egui::Vec2::ZERO);
+        let first = hit.words().lines().next().expect("words").to_owned();
+        let words = shows(&panel, &first);
+        let sent = panel.state().clone();
         assert_eq!(
             sent,
             [Command::Stage(StageCommand::Show(hit.pick.expect("a snake")))],
@@ -197,7 +211,7 @@ fn a_clicked_snake_is_found_with_the_fitness_of_its_hover_text() {
     for kind in [ChartKind::Spread, ChartKind::Ancestors, ChartKind::Parents] {
         let view = view_of(kind, &run).expect("explored");
         for hit in view.hits[0].iter().take(12) {
-            let Some(Pick::Individual(place)) = hit.pick else { panic!("{hit:?}") };
+            let Some(Pick::Individual(place)) = hit.pick else { panic!("{}", hit.words()) };
             let champion = run.individual(place).expect("remembered");
             let fitness = format!("{:.2} m", champion.evaluation.fitness);
             assert!(hit.words().contains(&fitness), "{kind:?}: {fitness} in {}", hit.words());
@@ -226,12 +240,7 @@ fn ten_thousand_generations_are_downsampled_on_screen_but_not_in_the_table() {
     let reports = long_reports(10_000);
     let view = fitness::view(&Settings::default(), &reports);
     assert_eq!(view.figure.table().len(), 10_001);
-    let points = view.drawn[0].iter().map(|drawn| match drawn {
-        downsample::DrawnSeries::Points(points) => points.len(),
-        downsample::DrawnSeries::Band([along, ..]) => along.len(),
-        downsample::DrawnSeries::Layer([along, ..], _) => along.len(),
-        downsample::DrawnSeries::AsItIs => 0,
-    });
+    let points = view.drawn[0].iter().map(|drawn| drawn.points.len().max(drawn.area[0].len()));
     assert!(points.max().expect("series") <= downsample::MAX_POINTS + 2);
 }
 
@@ -240,11 +249,9 @@ fn a_long_name_in_a_legend_wraps() {
     let mut view = fitness::view(&Settings::default(), &long_reports(3));
     let figure = Arc::make_mut(&mut view.figure);
     figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
-    let mut harness = Harness::builder().with_size(egui::vec2(300.0, 700.0)).build_ui_state(
-        |ui, commands| draw::draw(ui, "long", &view, 400.0, &[], commands),
-        Vec::new(),
-    );
-    harness.run();
+    let harness = testing::panel([300.0, 700.0], |ui, commands| {
+        draw::draw(ui, "long", &view, 400.0, &[], commands);
+    });
     assert_nothing_is_wider_than(&harness, 300.0);
 }
 
@@ -295,11 +302,9 @@ fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
     let view = view_of(ChartKind::Fitness, &run).expect("explored");
     for lane in [Some(3), None] {
         let shown = [ShownLane { champion, lane }];
-        let mut harness = Harness::builder().with_size(egui::vec2(500.0, 500.0)).build_ui_state(
-            |ui, commands| draw::draw(ui, "lanes", &view, 300.0, &shown, commands),
-            Vec::new(),
-        );
-        harness.run();
+        let harness = testing::panel([500.0, 500.0], |ui, commands| {
+            draw::draw(ui, "lanes", &view, 300.0, &shown, commands);
+        });
         let color = theme::of_context(&harness.ctx).lane_color(3);
         let is_dot = |shape: &egui::Shape| match shape {
             egui::Shape::Circle(circle) => {

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape, Version};
+use super::view::{ChartHit, ChartView, HitShape, Version, snake_of_generation};
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
 use snakes_core::evolve::IndividualId;
@@ -15,12 +15,8 @@ use snakes_lab::run::Lookahead;
 /// Maximum number of points on a line that can be distinguished.
 const MAX_POINTS: usize = 600;
 
-/// Torques about both axes of a joint, as points of time in seconds and torque in N·m.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct TorqueLines {
-    bend: Vec<[f64; 2]>,
-    twist: Vec<[f64; 2]>,
-}
+/// Torques of a joint, about the bend axis and about the twist axis: points of time in seconds and torque in N·m.
+type TorqueLines = [Vec<[f64; 2]>; 2];
 
 /// A snake whose torques are shown or being computed.
 struct Subject {
@@ -52,10 +48,9 @@ impl TorqueComparison {
     ) -> Result<(), &'static str> {
         // The search is repeated only after a change instead of in every frame.
         let version = run.version();
-        let (of_version, of_selected) = match &self.updated_for {
-            Some((known, staged)) => (*known == version, staged.as_ref() == selected),
-            None => (false, false),
-        };
+        let known = self.updated_for.as_ref();
+        let of_version = known.is_some_and(|(known, _)| *known == version);
+        let of_selected = known.is_some_and(|(_, known)| known.as_ref() == selected);
         if !of_selected {
             let simulated = selected.filter(|staged| staged.recording().is_none());
             self.child = simulated.map(|staged| Subject::staged(staged, run.number()));
@@ -77,18 +72,12 @@ impl TorqueComparison {
 
     /// Replaces the parent if it is another individual, or is not kept any more.
     fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
-        let found = child.and_then(|child| Some((child, parent(run, child)?)));
-        let is_it = |known: &Subject, (name, genome): &(String, Arc<Genome>)| {
-            known.name == *name && known.genome == *genome
-        };
-        let is_same = match (&self.parent, &found) {
-            (None, None) => true,
-            (Some(known), Some((_, parent))) => is_it(known, parent),
-            _ => false,
-        };
+        let found = child.and_then(|child| parent(run, child)).zip(child);
+        let known = self.parent.as_ref().map(|known| (&known.name, &known.genome));
+        let is_same = known == found.as_ref().map(|((name, genome), _)| (name, genome));
         if !is_same {
             self.view = None;
-            self.parent = found.map(|(child, (name, genome))| {
+            self.parent = found.map(|((name, genome), child)| {
                 let trial = &child.champion().trial;
                 Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
             });
@@ -107,40 +96,35 @@ impl TorqueComparison {
     }
 }
 
-/// Returns the place of a snake in the current run; `None` if it is from elsewhere.
-fn place_in(run: &CurrentRun, staged: &StagedChampion) -> Option<IndividualId> {
-    let origin = &staged.champion().origin;
-    let place = IndividualId { generation: origin.generation, individual: origin.individual };
-    (staged.source() == ChampionSource::Run(run.number())).then_some(place)
-}
-
 /// Returns the name and the genome of the nearest ancestor with different genes. An elite that survives unchanged is
 /// recorded as its own parent.
 fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)> {
-    let mut place = place_in(run, of)?;
+    let mut place = place_of(of);
+    if of.source() != ChampionSource::Run(run.number()) {
+        return None;
+    }
     loop {
         // Parents are from earlier generations, so the loop ends.
         place = run.parents_of(place)?.ids().next()?;
         let genome = run.genome_of(place)?;
         if *genome != of.champion().genome {
             let own_world = if of.is_changed() { ", in its own world" } else { "" };
-            let name = name_of(place.generation, place.individual);
-            return Some((format!("{name}{own_world}"), genome));
+            return Some((format!("{}{own_world}", snake_of_generation(place)), genome));
         }
     }
 }
 
-/// Returns the name of a snake of a run.
-fn name_of(generation: u32, individual: u32) -> String {
-    format!("snake {} of generation {generation}", individual + 1)
+/// Returns the place of a snake in the run that found it.
+fn place_of(staged: &StagedChampion) -> IndividualId {
+    let origin = &staged.champion().origin;
+    IndividualId { generation: origin.generation, individual: origin.individual }
 }
 
 impl Subject {
     /// Creates the subject for a snake on the stage, in the world in which it is shown. `run` is the number of the current run.
     fn staged(staged: &StagedChampion, run: u32) -> Self {
-        let origin = &staged.champion().origin;
         let name = match staged.source() {
-            ChampionSource::Run(_) => name_of(origin.generation, origin.individual),
+            ChampionSource::Run(_) => snake_of_generation(place_of(staged)),
             _ => staged.name().to_owned(),
         };
         let beginning = staged.beginning_in_words().map_or(String::new(), |of| format!(", {of}"));
@@ -149,7 +133,7 @@ impl Subject {
             false => name,
         };
         let genome = Arc::new(staged.champion().genome.clone());
-        let is_of_run = matches!(staged.source(), ChampionSource::Run(of) if of == run);
+        let is_of_run = staged.source() == ChampionSource::Run(run);
         Self { is_of_run, ..Self::new(name, genome, staged.trial(), |_| staged.rollout()) }
     }
 
@@ -192,9 +176,7 @@ fn command_torques(commands: &JointCommands, duration_s: f64) -> Vec<TorqueLines
         };
         points.iter().zip(next).flat_map(ends).collect()
     };
-    let of_joint =
-        |[bend, twist]: &[Vec<(f64, f64)>; 2]| TorqueLines { bend: held(bend), twist: held(twist) };
-    commands.joints.iter().map(of_joint).collect()
+    commands.joints.iter().map(|axes| axes.each_ref().map(|points| held(points))).collect()
 }
 
 /// Returns the torques that acted in a rollout.
@@ -207,9 +189,9 @@ fn history_torques(history: &KeyframeHistory, trial: &Trial) -> Vec<TorqueLines>
     for (index, torques) in history.torques().enumerate().step_by(every) {
         joints.resize(torques.len().max(joints.len()), TorqueLines::default());
         let time_s = index as f64 * sample_s;
-        for (lines, torque) in joints.iter_mut().zip(torques) {
-            lines.bend.push([time_s, f64::from(torque.bend_nm)]);
-            lines.twist.push([time_s, f64::from(torque.twist_nm)]);
+        for ([bend, twist], torque) in joints.iter_mut().zip(torques) {
+            bend.push([time_s, f64::from(torque.bend_nm)]);
+            twist.push([time_s, f64::from(torque.twist_nm)]);
         }
     }
     joints
@@ -220,19 +202,19 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
     let trial = &child.trial;
     let lines = |subject: &Subject| subject.lines.clone().unwrap_or_default();
     let (of_child, of_parent) = (lines(child), parent.map(lines).unwrap_or_default());
-    let all = of_child.iter().chain(&of_parent).flat_map(|of| of.bend.iter().chain(&of.twist));
+    let all = of_child.iter().chain(&of_parent).flatten().flatten();
     // All charts have the same range, so that joints can be compared.
     let y = Axis::around("Torque", "N·m", all.map(|point| point[1]).chain([-1.0, 1.0]), 2.0);
+    let series = |names: [&str; 2], lines: &TorqueLines, shape: fn(Vec<[f64; 2]>) -> Shape| {
+        let roles = [Role::Bend, Role::Twist];
+        [0, 1].map(|axis| Series::new(names[axis], roles[axis], shape(lines[axis].clone())))
+    };
     let chart = |(index, lines): (usize, &TorqueLines)| {
-        let mut series = Vec::new();
-        if let Some(before) = of_parent.get(index).filter(|of| !of.bend.is_empty()) {
-            let (bend, twist) = (before.bend.clone(), before.twist.clone());
-            series.push(Series::new("parent's bend", Role::Bend, Shape::Dashed(bend)));
-            series.push(Series::new("parent's twist", Role::Twist, Shape::Dashed(twist)));
-        }
-        let (bend, twist) = (lines.bend.clone(), lines.twist.clone());
-        series.push(Series::new("bend", Role::Bend, Shape::Line(bend)));
-        series.push(Series::new("twist", Role::Twist, Shape::Line(twist)));
+        let before = of_parent.get(index).filter(|[bend, _]| !bend.is_empty());
+        let before =
+            before.map(|of| series(["parent's bend", "parent's twist"], of, Shape::Dashed));
+        let now = series(["bend", "twist"], lines, Shape::Line);
+        let series = before.into_iter().flatten().chain(now).collect();
         let x = Axis::new("Time", "s", 0.0..=f64::from(trial.duration_s));
         Chart::new(x, y.clone(), series).named(&format!("Joint {}", index + 1))
     };
@@ -251,10 +233,10 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
 }
 
 /// Returns the hover targets of a joint's torques over time.
-fn hits(child: &TorqueLines, parent: Option<&TorqueLines>) -> Vec<ChartHit> {
-    let moments = child.bend.iter().zip(&child.twist).enumerate();
+fn hits([bend, twist]: &TorqueLines, parent: Option<&TorqueLines>) -> Vec<ChartHit> {
+    let moments = bend.iter().zip(twist).enumerate();
     let hit = |(index, (bend, twist)): (usize, (&[f64; 2], &[f64; 2]))| {
-        let before = parent.and_then(|of| of.bend.get(index).zip(of.twist.get(index)));
+        let before = parent.and_then(|[bend, twist]| bend.get(index).zip(twist.get(index)));
         // The parent's torques are left out if its rollout was sampled at other times.
         let before = before.filter(|(before, _)| before[0] == bend[0]);
         let before = before.map(|(bend, twist)| [bend[1], twist[1]]);

@@ -1,6 +1,5 @@
 //! A chart prepared for drawing: its data and its hit targets.
 
-use std::fmt;
 use std::sync::Arc;
 
 use super::archive_pictures::ArchivePictures;
@@ -10,7 +9,7 @@ use snakes_core::evolve::IndividualId;
 use snakes_lab::plot::Figure;
 
 /// A chart or figure that is computed once and cached until its data changes.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(super) struct ChartView {
     /// Data of the figure, which is also exported.
     pub figure: Arc<Figure>,
@@ -34,25 +33,16 @@ impl ChartView {
 }
 
 /// A part of a chart that has a hover text.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub(super) struct ChartHit {
     /// Position and shape of the hit target.
     pub target: HitShape,
-    words: HoverText,
+    /// Computes the hover text on demand, because a chart may have ten thousand hit targets.
+    words: Arc<dyn Fn() -> String + Send + Sync>,
     /// Individual that a click on the hit target replays, if any.
     pub pick: Option<Pick>,
     /// Place of the individual, if it belongs to the current run.
     pub place: Option<IndividualId>,
-}
-
-/// A hover text that is computed on demand, because a chart may have ten thousand hit targets.
-#[derive(Clone)]
-struct HoverText(Arc<dyn Fn() -> String + Send + Sync>);
-
-impl fmt::Debug for HoverText {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        fmt::Debug::fmt(&(self.0)(), f)
-    }
 }
 
 /// Position and shape of a hit target, in chart coordinates.
@@ -69,7 +59,7 @@ pub(super) enum HitShape {
 impl ChartHit {
     /// Creates a hit target with a hover text.
     pub fn new(target: HitShape, words: impl Fn() -> String + Send + Sync + 'static) -> Self {
-        Self { target, words: HoverText(Arc::new(words)), pick: None, place: None }
+        Self { target, words: Arc::new(words), pick: None, place: None }
     }
 
     /// Creates a hit target with a hover text. A click on it replays an individual.
@@ -84,9 +74,19 @@ impl ChartHit {
 
     /// Returns the hover text.
     pub fn words(&self) -> String {
-        (self.words.0)()
+        (self.words)()
     }
 }
 
 /// Version of the data from which a view was computed.
 pub(super) type Version = (u32, u64, usize, u64);
+
+/// Names an individual of a run: "Generation 3, snake 12".
+pub(super) fn generation_and_snake(of: IndividualId) -> String {
+    format!("Generation {}, snake {}", of.generation, of.individual + 1)
+}
+
+/// Names an individual of a run within a sentence: "snake 12 of generation 3".
+pub(super) fn snake_of_generation(of: IndividualId) -> String {
+    format!("snake {} of generation {}", of.individual + 1, of.generation)
+}

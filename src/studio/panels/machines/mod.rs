@@ -28,17 +28,6 @@ pub(super) struct MachinesPanel {
     problem: Option<String>,
 }
 
-/// Computers that take part in this window's run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct RunPart {
-    /// Whether a run is in progress.
-    is_under_way: bool,
-    /// Whether other computers take part in the evaluation of the generation in progress.
-    is_shared: bool,
-    /// Number of threads of this computer that evaluate.
-    threads: usize,
-}
-
 /// Command that starts a NATS server.
 const SERVER: &str = "nats-server -js";
 
@@ -57,16 +46,10 @@ impl MachinesPanel {
             "Other computers can evaluate snakes of your run, too. No result depends on it.",
         );
         self.address(ui, link, commands);
-        let part = RunPart {
-            is_under_way: run.is_under_way(),
-            is_shared: run.is_shared_by_now(),
-            threads: run.threads(),
-        };
-        let copied = &mut |what: &str| commands.push(Command::Notify(format!("{what} copied.")));
         match link.state() {
             LinkState::Off => {
                 state(ui, theme::of(ui).text_weak, "Not connected");
-                first_steps(ui, copied);
+                first_steps(ui, commands);
             }
             LinkState::Connecting(reason) => {
                 ui.horizontal(|ui| {
@@ -78,9 +61,9 @@ impl MachinesPanel {
             LinkState::Failed(reason) => {
                 state(ui, theme::of(ui).problem, "Not connected");
                 problem(ui, reason);
-                first_steps(ui, copied);
+                first_steps(ui, commands);
             }
-            LinkState::Connected(known) => connected(ui, link, known, part, copied),
+            LinkState::Connected(known) => connected(ui, link, known, run, commands),
         }
     }
 
@@ -150,12 +133,12 @@ fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
 }
 
 /// Draws instructions for the first connection.
-fn first_steps(ui: &mut egui::Ui, copied: &mut dyn FnMut(&str)) {
+fn first_steps(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
     title(ui, "How to begin");
     ui.label(
         "1. Start a NATS server on one computer. The command comes with the package nats-server.",
     );
-    command_line(ui, SERVER, copied);
+    command_line(ui, SERVER, commands);
     ui.label("2. Type that computer's address above, and choose Connect. On this computer it is nats://127.0.0.1:4222.");
     ui.label(
         "3. Start workers on other computers. The command appears here once you are connected.",
@@ -172,8 +155,8 @@ fn connected(
     ui: &mut egui::Ui,
     link: &MachinesLink,
     known: &KnownServer,
-    part: RunPart,
-    copied: &mut dyn FnMut(&str),
+    run: &CurrentRun,
+    commands: &mut Vec<Command>,
 ) {
     let palette = theme::of(ui);
     match (&known.problem, &known.machines) {
@@ -188,7 +171,7 @@ fn connected(
         }
     }
     let used = known.machines.as_ref().map_or(0, |machines| used(machines, &known.proof).count());
-    explain(ui, &part.in_words(used));
+    explain(ui, &evaluating_computers(run, used));
     if let Some(machines) = &known.machines {
         let (heading, other) = match machines.workers.is_empty() {
             true => ("No worker is there yet", "a second computer"),
@@ -199,31 +182,29 @@ fn connected(
         }
         title(ui, heading);
         explain(ui, &format!("Type this on {other}, where this program is installed:"));
-        worker_command(ui, link.address(), copied);
-        queues(ui, link.address(), known, machines, copied);
+        worker_command(ui, link.address(), commands);
+        queues(ui, link.address(), known, machines, commands);
     }
 }
 
-impl RunPart {
-    /// Describes which computers evaluate the run.
-    fn in_words(self, workers: usize) -> String {
-        let threads = format!("{} of this computer", in_threads(self.threads as u32));
-        match (self.is_under_way, self.is_shared) {
-            (false, _) => format!("Workers and {threads} compute your next run."),
-            (true, _) if workers == 0 => {
-                format!("As long as no worker is there, your run has only {threads}.")
-            }
-            (true, false) => {
-                format!("Workers join your run with its next generation, beside {threads}.")
-            }
-            (true, true) => format!("The workers and {threads} compute your run."),
+/// Describes which computers evaluate the run. `workers` is the number of the workers that are used.
+fn evaluating_computers(run: &CurrentRun, workers: usize) -> String {
+    let threads = format!("{} of this computer", in_threads(run.threads() as u32));
+    match (run.is_under_way(), run.is_shared_by_now()) {
+        (false, _) => format!("Workers and {threads} compute your next run."),
+        (true, _) if workers == 0 => {
+            format!("As long as no worker is there, your run has only {threads}.")
         }
+        (true, false) => {
+            format!("Workers join your run with its next generation, beside {threads}.")
+        }
+        (true, true) => format!("The workers and {threads} compute your run."),
     }
 }
 
 /// Draws the command that starts a worker on another computer.
-fn worker_command(ui: &mut egui::Ui, address: &str, copied: &mut dyn FnMut(&str)) {
-    command_line(ui, &format!("snakes worker --nats {address}"), copied);
+fn worker_command(ui: &mut egui::Ui, address: &str, commands: &mut Vec<Command>) {
+    command_line(ui, &format!("snakes worker --nats {address}"), commands);
     let is_own =
         |part: &str| ["//127.", "//localhost", "//[::1]"].iter().any(|own| part.contains(own));
     if address.split(',').all(is_own) {

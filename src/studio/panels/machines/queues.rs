@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::rows::{command_line, entry};
+use crate::studio::commands::Command;
 use crate::studio::state::machines::KnownServer;
 use crate::studio::ui::text_rows::{explain, problem, title, weak};
 use snakes_cluster::Machines;
@@ -15,13 +16,12 @@ pub(super) fn queues(
     address: &str,
     known: &KnownServer,
     machines: &Machines,
-    copied: &mut dyn FnMut(&str),
+    commands: &mut Vec<Command>,
 ) {
     title(ui, "Runs on the server");
     let names: BTreeSet<&String> = machines.runs.keys().chain(machines.queues.keys()).collect();
-    let is_own = |name: &&&String| known.own_run.as_ref() == Some(**name);
-    let (own, others): (Vec<&String>, Vec<&String>) =
-        names.iter().copied().partition(|name| is_own(&name));
+    let is_own = |name: &&String| known.own_run.as_ref() == Some(*name);
+    let (own, others): (Vec<&String>, Vec<&String>) = names.iter().copied().partition(is_own);
     if names.is_empty() {
         explain(ui, "None.");
     }
@@ -29,7 +29,7 @@ pub(super) fn queues(
         queue(ui, name, own.contains(name), machines);
         if !machines.runs.contains_key(*name) {
             explain(ui, "No program waits for it any more. This removes what is left of it:");
-            command_line(ui, &format!("snakes machines --nats {address} --purge {name}"), copied);
+            command_line(ui, &format!("snakes machines --nats {address} --purge {name}"), commands);
         }
     }
 }

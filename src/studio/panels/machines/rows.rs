@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use crate::studio::commands::Command;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::at_right;
 use crate::studio::ui::theme;
@@ -34,7 +35,7 @@ pub(super) fn entry(
 }
 
 /// Draws a command to type, with a button that copies it.
-pub(super) fn command_line(ui: &mut egui::Ui, command: &str, copied: &mut dyn FnMut(&str)) {
+pub(super) fn command_line(ui: &mut egui::Ui, command: &str, commands: &mut Vec<Command>) {
     let frame = egui::Frame::new()
         .fill(theme::of(ui).field)
         .corner_radius(4)
@@ -51,7 +52,7 @@ pub(super) fn command_line(ui: &mut egui::Ui, command: &str, copied: &mut dyn Fn
                 let name = format!("Copy: {command}");
                 if named(response, egui::WidgetType::Button, &name).clicked() {
                     ui.ctx().copy_text(command.to_owned());
-                    copied("Command");
+                    commands.push(Command::Notify("Command copied.".to_owned()));
                 }
             });
         });

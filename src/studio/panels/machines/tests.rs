@@ -1,7 +1,8 @@
 //! Tests of the machines panel in each state of the connection.
 
 use super::*;
-use crate::studio::panels::testing::{press, shows};
+use crate::studio::panels::settings::tests::{assert_shows, click};
+use crate::studio::panels::testing::{press, shows, type_into};
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -80,18 +81,11 @@ fn connected_to(machines: Option<Machines>, problem: Option<&str>) -> MachinesLi
 #[test]
 fn without_a_connection_it_explains_the_first_steps_and_connects() {
     let mut panel = narrow(MachinesLink::default());
-    for part in ["Not connected", "1. Start a NATS server", SERVER, "3. Start workers"] {
-        assert!(shows(&panel, part), "{part}");
-    }
-    panel.get_by_label("Connect").click();
-    panel.run();
+    assert_shows(&panel, &["Not connected", "1. Start a NATS server", SERVER, "3. Start workers"]);
+    click(&mut panel, "Connect");
     assert_eq!(panel.state().1, [], "there is no address yet");
-    panel.get_by_label("Server").click();
-    panel.run();
-    panel.get_by_label("Server").type_text("192.168.1.5:4222");
-    panel.run();
-    panel.get_by_label("Connect").click();
-    panel.run();
+    type_into(&mut panel, "Server", "192.168.1.5:4222");
+    click(&mut panel, "Connect");
     let connect = MachinesCommand::Connect(URL.to_owned());
     assert_eq!(panel.state().1, [Command::Machines(connect)]);
 }
@@ -99,8 +93,7 @@ fn without_a_connection_it_explains_the_first_steps_and_connects() {
 #[test]
 fn the_last_address_is_offered_and_enter_connects() {
     let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Off));
-    panel.get_by_label("Server").click();
-    panel.run();
+    click(&mut panel, "Server");
     press(&mut panel, egui::Key::Enter);
     let connect = MachinesCommand::Connect(URL.to_owned());
     assert_eq!(panel.state().1, [Command::Machines(connect)]);
@@ -109,15 +102,11 @@ fn the_last_address_is_offered_and_enter_connects() {
 #[test]
 fn an_address_with_a_password_is_refused_and_the_password_is_in_no_message() {
     let mut panel = narrow(MachinesLink::default());
-    panel.get_by_label("Server").click();
-    panel.run();
-    panel.get_by_label("Server").type_text("nats://ann:secret@a");
-    panel.run();
-    panel.get_by_label("Connect").click();
-    panel.run();
+    type_into(&mut panel, "Server", "nats://ann:secret@a");
+    click(&mut panel, "Connect");
     assert_eq!(panel.state().1, []);
     assert!(shows(&panel, "without user name and password"));
-    assert!(panel.query_all_by_label_contains("secret").next().is_none());
+    assert!(!shows(&panel, "secret"));
 }
 
 #[test]
@@ -133,9 +122,7 @@ fn connecting_can_be_cancelled() {
 fn f3_a_server_without_room_for_the_window_is_named_while_it_waits() {
     let problem = "nats://a: cannot connect: the server says: maximum connections exceeded";
     let panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting(Some(problem.to_owned()))));
-    for part in ["Connecting to nats://192.168.1.5:4222", problem, "Cancel"] {
-        assert!(shows(&panel, part), "{part}");
-    }
+    assert_shows(&panel, &["Connecting to nats://192.168.1.5:4222", problem, "Cancel"]);
 }
 
 #[test]
@@ -149,9 +136,7 @@ fn f3_what_a_run_and_a_worker_wait_for_is_shown_beside_them() {
     machines.runs.insert("own-1".to_owned(), notice);
     for width in [theme::PANEL_WIDTH, 900.0] {
         let panel = panel(connected_to(Some(machines.clone()), None), width);
-        for part in [run, of_worker] {
-            assert!(shows(&panel, part), "{part} in {width}");
-        }
+        assert_shows(&panel, &[run, of_worker]);
     }
 }
 
@@ -159,20 +144,18 @@ fn f3_what_a_run_and_a_worker_wait_for_is_shown_beside_them() {
 fn an_error_is_shown_with_the_first_steps() {
     let problem = "nats://a: cannot connect: connection refused";
     let panel = narrow(MachinesLink::of_test(URL, LinkState::Failed(problem.to_owned())));
-    for part in ["Not connected", problem, "1. Start a NATS server", "Connect"] {
-        assert!(shows(&panel, part), "{part}");
-    }
+    assert_shows(&panel, &["Not connected", problem, "1. Start a NATS server", "Connect"]);
 }
 
 #[test]
 fn without_workers_it_shows_the_command_to_type_and_copies_it() {
     let mut panel = narrow(connected_to(Some(Machines::default()), None));
     let command = format!("snakes worker --nats {URL}");
-    for part in ["Connected: no workers", "No worker is there yet", &command, "Disconnect"] {
-        assert!(shows(&panel, part), "{part}");
-    }
-    panel.get_by_label(&format!("Copy: {command}")).click();
-    panel.run();
+    assert_shows(
+        &panel,
+        &["Connected: no workers", "No worker is there yet", &command, "Disconnect"],
+    );
+    click(&mut panel, &format!("Copy: {command}"));
     assert_eq!(panel.state().1, [Command::Notify("Command copied.".to_owned())]);
     assert!(!shows(&panel, "works on this computer only"));
 }
@@ -195,20 +178,21 @@ fn workers_and_queues_are_listed_and_one_with_another_proof_is_marked() {
     machines.queues.insert("left-2".to_owned(), RunQueue { batches: 5, results: 0 });
     for width in [theme::PANEL_WIDTH, 900.0] {
         let panel = panel(connected_to(Some(machines.clone()), None), width);
-        for part in [
-            "Connected: 1 worker, 2 threads, 6.2 per second",
-            "desk-1",
-            "345",
-            "fedcba9876543210",
-            "Not used: it computes other bits",
-            "this window",
-            "40 evaluations pending, 3 batches and 2 results waiting",
-            "Set aside, because their results were wrong: liar-1",
-            "left-2",
-            "--purge left-2",
-        ] {
-            assert!(shows(&panel, part), "{part} in {width}");
-        }
+        assert_shows(
+            &panel,
+            &[
+                "Connected: 1 worker, 2 threads, 6.2 per second",
+                "desk-1",
+                "345",
+                "fedcba9876543210",
+                "Not used: it computes other bits",
+                "this window",
+                "40 evaluations pending, 3 batches and 2 results waiting",
+                "Set aside, because their results were wrong: liar-1",
+                "left-2",
+                "--purge left-2",
+            ],
+        );
     }
 }
 
@@ -217,7 +201,5 @@ fn a_request_that_failed_is_shown_above_what_was_known() {
     let mut machines = Machines::default();
     machines.workers.extend([worker("desk-1", PROOF)]);
     let panel = narrow(connected_to(Some(machines), Some("the list of queues failed: timed out")));
-    for part in ["A request to the server failed; asking again", "timed out", "desk-1"] {
-        assert!(shows(&panel, part), "{part}");
-    }
+    assert_shows(&panel, &["A request to the server failed; asking again", "timed out", "desk-1"]);
 }

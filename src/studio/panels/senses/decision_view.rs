@@ -132,17 +132,11 @@ fn entry(rule: &ActiveRule, decision: &DecisionActivity) -> RuleRow {
         holds: rule.matches,
         decides: rule.decides,
         state: match (rule.matches, rule.decides) {
-            (_, true) => state_of_deciding(decision),
+            (_, true) if decision.joint.is_some() => "It matches, and its bend was chosen",
+            (_, true) => "It matches, and its posture was chosen",
             (true, false) => "It matches",
             (false, false) => "It does not match this situation",
         },
-    }
-}
-
-fn state_of_deciding(decision: &DecisionActivity) -> &'static str {
-    match decision.joint {
-        Some(_) => "It matches, and its bend was chosen",
-        None => "It matches, and its posture was chosen",
     }
 }
 

@@ -12,9 +12,9 @@ use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{cancellable_progress, explain, folded, title_text};
 use crate::studio::ui::theme;
-use snakes_core::score::{ExamSuite, StairsGrid};
+use snakes_core::score::StairsGrid;
 
-use stairs_map::{MapPlace, StairsMap, legend};
+use stairs_map::{StairsMap, legend};
 
 /// Draws the section about the exam of a lane's snake.
 pub(super) fn exam(
@@ -78,11 +78,9 @@ fn results(
     commands: &mut Vec<Command>,
 ) {
     let Some(first) = grids.first() else { return };
-    let places = MapPlace::side_by_side(ui, grids);
-    for (grid, place) in grids.iter().zip(places) {
-        let map = StairsMap { grid, title: title_of(grid, grids.len()), staged, place };
+    for map in StairsMap::side_by_side(ui, grids, staged) {
         if let Some(cell) = map.ui(ui) {
-            commands.push(Command::Exam(ExamCommand::Watch { suite: grid.suite, cell }));
+            commands.push(Command::Exam(ExamCommand::Watch { suite: map.grid.suite, cell }));
         }
     }
     legend(ui, first, &staged.champion().trial);
@@ -90,15 +88,6 @@ fn results(
         own_stairs_button(ui, staged, commands);
     } else {
         explain(ui, "Click a cell to watch the snake on those stairs.");
-    }
-}
-
-/// Returns a short title of a grid.
-fn title_of(grid: &StairsGrid, grids: usize) -> &'static str {
-    match grid.suite {
-        ExamSuite::Lesion => "Without senses",
-        _ if grids > 1 => "With senses",
-        _ => "On other stairs",
     }
 }
 

@@ -45,8 +45,8 @@ pub(super) struct SensesView<'l> {
     limb: usize,
     /// Whether a limb is selected.
     is_selected: bool,
-    /// Lanes among which the user can choose; empty if there is only one.
-    others: Vec<&'l Lane>,
+    /// Lanes among which the user can choose.
+    racers: Vec<&'l Lane>,
     /// Senses that the switches show. In a what-if they are those of the current copy.
     switched: ActiveSenses,
 }
@@ -61,12 +61,11 @@ impl<'l> SensesView<'l> {
         };
         let selection = &on_stage.selection;
         let limb = selection.limb.filter(|_| selection.lane == lane.number());
-        let racers: Vec<&Lane> = lanes.iter().copied().filter(|lane| !lane.is_ghost()).collect();
         Some(Self {
             lane,
             limb: limb.unwrap_or(0).min(lane.body().limbs().saturating_sub(1)),
             is_selected: limb.is_some(),
-            others: if racers.len() > 1 { racers } else { Vec::new() },
+            racers: lanes.iter().copied().filter(|lane| !lane.is_ghost()).collect(),
             switched: switched.trial().agent.senses,
         })
     }
@@ -168,11 +167,11 @@ fn unsensing(kind: ControllerKind) -> &'static str {
 
 /// Draws the buttons that select the lane.
 fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
-    if view.others.is_empty() {
+    if view.racers.len() < 2 {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        for lane in &view.others {
+        for lane in &view.racers {
             lane_dot(ui, lane.number(), theme::LANE_DOT);
             let is_shown = lane.number() == view.lane.number();
             let name = egui::Button::selectable(is_shown, lane.staged().label()).truncate();

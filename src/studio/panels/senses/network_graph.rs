@@ -7,7 +7,6 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{explain, weak};
 use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
 use snakes_core::control::{NetworkActivity, NetworkLink, NetworkNode, NodeColumn};
 
 /// Height of an input with a name, in points.
@@ -28,12 +27,11 @@ const STRONGEST: f32 = 3.0;
 
 /// Draws the graph of a network.
 pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
-    let palette = theme::of(ui);
     let whose = network.joint.map_or_else(String::new, |joint| format!("Joint {}. ", joint + 1));
     let text = "Lines are weights, wider for larger ones; nodes show activity. Point at a node to see its links.";
     let senses = if names_inputs(network) { "" } else { " At the left are all its senses." };
     explain(ui, &format!("{whose}{text}{senses}"));
-    legend(ui, palette);
+    legend(ui);
     let places = Places::of(ui, network);
     let mut hovered = None;
     for (index, node) in network.nodes.iter().enumerate() {
@@ -46,14 +44,15 @@ pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
         }
         response.on_hover_ui(|ui| strongest(ui, network, index, &said));
     }
-    links(ui, palette, network, &places, hovered);
+    links(ui, network, &places, hovered);
     for (index, node) in network.nodes.iter().enumerate() {
-        draw_node(ui, palette, node, index, &places);
+        draw_node(ui, node, index, &places);
     }
 }
 
 /// Draws the meaning of the colours.
-fn legend(ui: &mut egui::Ui, palette: &Palette) {
+fn legend(ui: &mut egui::Ui) {
+    let palette = theme::of(ui);
     ui.horizontal(|ui| {
         for (color, text) in [(palette.torque_plus, "positive"), (palette.torque_minus, "negative")]
         {
@@ -134,13 +133,8 @@ impl Places {
 }
 
 /// Draws the links, the strongest on top. If a node is hovered, the links of other nodes are faded.
-fn links(
-    ui: &egui::Ui,
-    palette: &Palette,
-    network: &NetworkActivity,
-    places: &Places,
-    hovered: Option<usize>,
-) {
+fn links(ui: &egui::Ui, network: &NetworkActivity, places: &Places, hovered: Option<usize>) {
+    let palette = theme::of(ui);
     let most = network.links.iter().map(|link| link.weight.abs()).fold(0.0, f32::max);
     let mut links: Vec<_> = network.links.iter().collect();
     links.sort_by(|a, b| a.weight.abs().total_cmp(&b.weight.abs()));
@@ -173,7 +167,8 @@ fn links(
     }
 }
 
-fn draw_node(ui: &egui::Ui, palette: &Palette, node: &NetworkNode, index: usize, places: &Places) {
+fn draw_node(ui: &egui::Ui, node: &NetworkNode, index: usize, places: &Places) {
+    let palette = theme::of(ui);
     let (at, radius) = (places.at[index], places.radius_of(node.column));
     let full = if node.level < 0.0 { palette.torque_minus } else { palette.torque_plus };
     let fill = palette.panel.lerp_to_gamma(full, node.level.abs());

@@ -8,7 +8,7 @@ use super::value_bar::ValueBar;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::text_rows::{title, weak};
 use crate::studio::ui::theme;
-use snakes_core::control::{ActiveSenses, Perception, SenseKind};
+use snakes_core::control::SenseKind;
 use snakes_core::score::Rollout;
 
 /// Senses of the snake as a whole.
@@ -31,11 +31,6 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
     let palette = theme::of(ui);
     let senses = rollout.perception();
     let limbs = senses.limbs.len();
-    let read = ReadSenses {
-        senses,
-        active: rollout.active_senses(),
-        limb_weight_n: rollout.simulation().weight_n() / limbs.max(1) as f32,
-    };
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     let part = match view.limb {
         0 => ", the head",
@@ -47,87 +42,75 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
         0 => theme::flat(palette.red_limb),
         _ => theme::flat(palette.blue_limb),
     };
-    OF_LIMB.into_iter().for_each(|kind| read.row(ui, kind, view.limb, limb_color));
+    OF_LIMB.into_iter().for_each(|kind| row(ui, rollout, kind, view.limb, limb_color));
     if !view.is_selected {
         ui.label(weak(ui, "Click a limb on the stage to read its senses.").small());
     }
     title(ui, "Whole snake");
-    OF_SNAKE.into_iter().for_each(|kind| read.row(ui, kind, 0, palette.accent));
+    OF_SNAKE.into_iter().for_each(|kind| row(ui, rollout, kind, 0, palette.accent));
     title(ui, "Joints");
     for joint in 0..senses.joints.len() {
-        read.row(ui, SenseKind::Bend, joint, palette.bend);
+        row(ui, rollout, SenseKind::Bend, joint, palette.bend);
     }
 }
 
-/// Senses of a snake at the displayed time.
-struct ReadSenses<'s> {
-    senses: &'s Perception,
-    active: ActiveSenses,
-    /// Mean weight of a limb, in N.
-    limb_weight_n: f32,
-}
-
-impl ReadSenses<'_> {
-    /// Draws the row of a sense, for the part with this index.
-    fn row(&self, ui: &mut egui::Ui, kind: SenseKind, part: usize, color: Color32) {
-        let info = kind.info();
-        let sensed = self.senses.value(kind, part);
-        let value = info.scale.map_or(sensed, |scale| sensed * scale);
-        let [least, most] = info.range.map(|end| info.scale.map_or(end, |scale| end * scale));
-        let (text, note, value, range) = match kind {
-            SenseKind::Touch => {
-                let text = if value > 0.5 { "yes" } else { "no" };
-                (text.to_owned(), String::new(), value, [least, most])
-            }
-            SenseKind::Load | SenseKind::Blocked => {
-                let force_n = self.limb_weight_n * value / (1.0 - value.min(0.999));
-                let note = format!("½ at {:.0} N", self.limb_weight_n);
-                (format!("{} N", decimals(force_n, 0)), note, value, [least, most])
-            }
-            SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw => {
-                let angle_deg = libm::asinf(value.clamp(-1.0, 1.0)).to_degrees();
-                in_degrees(angle_deg, 90.0)
-            }
-            SenseKind::Bend | SenseKind::Twist => in_degrees(value.to_degrees(), most.to_degrees()),
-            SenseKind::Gap => {
-                let least_gap = if sensed >= 1.0 { "≥ " } else { "" };
-                let text = format!("{least_gap}{} m", decimals(value, 2));
-                (text, format!("0 to {most:.0} m"), value, [least, most])
-            }
-            SenseKind::Aside => {
-                let note = format!("±{most:.0} half widths");
-                (decimals(value, 2), note, value, [least, most])
-            }
-            _ => {
-                let text = format!("{} {}", decimals(value, 2), info.unit);
-                let from = if least < 0.0 { "±" } else { "0 to " };
-                (text, format!("{from}{most:.0} {}", info.unit), value, [least, most])
-            }
-        };
-        let is_frozen = !self.active.has(info.organ);
-        let name = match kind {
-            SenseKind::Bend => format!("Joint {} bend", part + 1),
-            _ => capitalized(info.name),
-        };
-        let row = ValueBar {
-            name: &name,
-            text,
-            value,
-            range,
-            note: if is_frozen { "frozen" } else { &note },
-            color,
-            is_frozen,
-            hint: format!("{}. The controller receives {}", hint(kind), decimals(sensed, 2)),
-            ..ValueBar::of_sense()
-        };
-        row.ui(ui);
-    }
-}
-
-/// Returns the text, the note, the value and the ends of the bar for an angle in a symmetric range.
-fn in_degrees(angle_deg: f32, most_deg: f32) -> (String, String, f32, [f32; 2]) {
-    let text = format!("{}°", decimals(angle_deg, 0));
-    (text, format!("±{most_deg:.0}°"), angle_deg, [-most_deg, most_deg])
+/// Draws the row of a sense, for the part with this index.
+fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color: Color32) {
+    let info = kind.info();
+    let senses = rollout.perception();
+    let sensed = senses.value(kind, part);
+    let scale = info.scale.unwrap_or(1.0);
+    let (value, [least, most]) = match (kind, sensed * scale, info.range.map(|end| end * scale)) {
+        (SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw, sine, _) => {
+            (libm::asinf(sine.clamp(-1.0, 1.0)).to_degrees(), [-90.0, 90.0])
+        }
+        (SenseKind::Bend | SenseKind::Twist, angle_rad, range_rad) => {
+            (angle_rad.to_degrees(), range_rad.map(f32::to_degrees))
+        }
+        (_, value, range) => (value, range),
+    };
+    let (text, note) = match kind {
+        SenseKind::Touch => (if value > 0.5 { "yes" } else { "no" }.to_owned(), String::new()),
+        SenseKind::Load | SenseKind::Blocked => {
+            // Mean weight of a limb.
+            let weight_n = rollout.simulation().weight_n() / senses.limbs.len().max(1) as f32;
+            let force_n = weight_n * value / (1.0 - value.min(0.999));
+            let note = format!("½ at {weight_n:.0} N");
+            (format!("{} N", decimals(force_n, 0)), note)
+        }
+        SenseKind::Pitch
+        | SenseKind::Roll
+        | SenseKind::Yaw
+        | SenseKind::Bend
+        | SenseKind::Twist => (format!("{}°", decimals(value, 0)), format!("±{most:.0}°")),
+        SenseKind::Gap => {
+            let least_gap = if sensed >= 1.0 { "≥ " } else { "" };
+            (format!("{least_gap}{} m", decimals(value, 2)), format!("0 to {most:.0} m"))
+        }
+        SenseKind::Aside => (decimals(value, 2), format!("±{most:.0} half widths")),
+        _ => {
+            let from = if least < 0.0 { "±" } else { "0 to " };
+            let text = format!("{} {}", decimals(value, 2), info.unit);
+            (text, format!("{from}{most:.0} {}", info.unit))
+        }
+    };
+    let is_frozen = !rollout.active_senses().has(info.organ);
+    let name = match kind {
+        SenseKind::Bend => format!("Joint {} bend", part + 1),
+        _ => capitalized(info.name),
+    };
+    let row = ValueBar {
+        name: &name,
+        text,
+        value,
+        range: [least, most],
+        note: if is_frozen { "frozen" } else { &note },
+        color,
+        is_frozen,
+        hint: format!("{}. The controller receives {}", hint(kind), decimals(sensed, 2)),
+        ..ValueBar::of_sense()
+    };
+    row.ui(ui);
 }
 
 fn capitalized(name: &str) -> String {

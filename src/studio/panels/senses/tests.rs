@@ -1,7 +1,7 @@
 //! Tests of the Senses panel with snakes of several controllers.
 
 use super::*;
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows, click};
 use crate::studio::panels::testing::{self, Sent, random_snake, set, shows};
 use egui_kittest::kittest::{NodeT, Queryable};
 use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
@@ -35,7 +35,7 @@ fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
             lane,
             limb,
             is_selected: limb > 0,
-            others: Vec::new(),
+            racers: Vec::new(),
             switched: lane.trial().agent.senses,
         };
         let area = egui::ScrollArea::vertical().auto_shrink(false);
@@ -53,9 +53,10 @@ fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
     assert!(shows(&head, "Limb 1 of 5, the head"));
     let gap = if gap_m < 2.0 { format!("Gap: {gap_m:.2} m") } else { "Gap: ≥ 2.00 m".to_owned() };
     assert!(shows(&head, &gap), "{gap}");
-    for label in ["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"] {
-        assert!(shows(&head, label), "{label}");
-    }
+    assert_shows(
+        &head,
+        &["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"],
+    );
     assert!(!shows(&head, "frozen"));
     assert_nothing_is_wider_than(&head, 320.0);
     assert!(shows(&panel_of(4), "Limb 5 of 5, the tail"));
@@ -98,27 +99,20 @@ fn a_snake_that_follows_only_its_genes_says_so() {
 }
 
 #[test]
-fn every_network_is_drawn_with_its_nodes() {
-    for (kind, node) in [
-        (ControllerKind::Modular, "front step up "),
-        (ControllerKind::Central, "limb 1 gap "),
-        (ControllerKind::Ctrnn, "neuron 1: bend target "),
-        (ControllerKind::Grown, "head step up "),
+fn every_network_is_drawn_with_its_nodes_and_reflexes_are_listed_by_sense() {
+    let reflexes: &[&str] = &["Joint 2: what each sense adds", "front touch: ", "Target moved: "];
+    for (kind, labels) in [
+        (ControllerKind::Modular, &["front step up "][..]),
+        (ControllerKind::Central, &["limb 1 gap "]),
+        (ControllerKind::Ctrnn, &["neuron 1: bend target "]),
+        (ControllerKind::Grown, &["head step up "]),
+        (ControllerKind::Reflex, reflexes),
     ] {
         let lane = lane_of(kind, &[], |_| ());
         let panel = panel(&lane, 2);
-        assert!(shows(&panel, node), "{kind}");
-        assert!(shows(&panel, &format!("Controller: {}", kind.title())));
+        assert_shows(&panel, labels);
+        assert_shows(&panel, &[&format!("Controller: {}", kind.title())]);
         assert_nothing_is_wider_than(&panel, 320.0);
-    }
-}
-
-#[test]
-fn reflexes_are_listed_by_sense() {
-    let lane = lane_of(ControllerKind::Reflex, &[], |_| ());
-    let panel = panel(&lane, 2);
-    for label in ["Joint 2: what each sense adds", "front touch: ", "Target moved: "] {
-        assert!(shows(&panel, label), "{label}");
     }
 }
 
@@ -160,18 +154,17 @@ fn the_panel_is_as_long_at_the_start_as_later() {
 fn decisions_show_situation_postures_and_rules() {
     let lane = lane_of(ControllerKind::Decisions, &[], |_| ());
     let table = panel(&lane, 0);
-    for label in ["Situation: ", "fold all: 0.00 0 visits", "0.00 0 visits, chosen", "taken before"]
-    {
-        assert!(shows(&table, label), "{label}");
-    }
+    assert_shows(
+        &table,
+        &["Situation: ", "fold all: 0.00 0 visits", "0.00 0 visits, chosen", "taken before"],
+    );
     assert!(!shows(&table, "Rules: "));
     let lane = lane_of_rules(0.2);
     let mut rules = panel(&lane, 0);
     assert!(shows(&rules, "of 400 match"));
     assert!(shows(&rules, "strength 20.00. It matches"));
     assert!(!shows(&rules, "does not match"));
-    rules.get_by_label("Also rules that do not match").click();
-    rules.run();
+    click(&mut rules, "Also rules that do not match");
     assert!(shows(&rules, "does not match this situation"));
     assert_nothing_is_wider_than(&rules, 320.0);
 }

@@ -8,7 +8,7 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::{decimals, in_percent};
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
-use snakes_core::control::{ActiveWave, ActiveWaveRule, WaveChoiceActivity};
+use snakes_core::control::{ActiveWaveRule, WaveChoiceActivity};
 use snakes_core::genome::controllers::{JointGroup, Wave};
 
 /// Height of the row of joints, and of a wave's row, in points.
@@ -33,8 +33,8 @@ pub(super) fn wave_view(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     );
     let most = choice.waves.iter().flat_map(|wave| [&wave.targets.bend, &wave.targets.twist]);
     let most = most.flat_map(curve).map(|[_, angle]| angle.abs()).fold(0.05, f32::max);
-    for (index, wave) in choice.waves.iter().enumerate() {
-        wave_row(ui, choice, index, wave, most);
+    for index in 0..choice.waves.len() {
+        wave_row(ui, choice, index, most);
     }
     rules(ui, choice);
 }
@@ -84,13 +84,8 @@ fn curve(wave: &Wave) -> impl Iterator<Item = [f32; 2]> + '_ {
 }
 
 /// Draws a wave with its phase. `most` is the largest angle of all waves, in radians.
-fn wave_row(
-    ui: &mut egui::Ui,
-    choice: &WaveChoiceActivity,
-    index: usize,
-    wave: &ActiveWave,
-    most: f32,
-) {
+fn wave_row(ui: &mut egui::Ui, choice: &WaveChoiceActivity, index: usize, most: f32) {
+    let wave = &choice.waves[index];
     let palette = theme::of(ui);
     let size = egui::vec2(ui.available_width(), WAVE_HEIGHT);
     let (area, response) = ui.allocate_exact_size(size, egui::Sense::hover());
@@ -162,18 +157,14 @@ fn rules(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
     rule_list(ui, "wave rules", listed.len(), |index| entry(listed[index]));
 }
 
-/// Describes a group of joints.
-fn joints_of(group: JointGroup) -> &'static str {
-    match group {
+/// Returns the row of a rule: its condition above, its joints and wave below.
+fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
+    let strength = decimals(rule.strength, 2);
+    let joints = match rule.group {
         JointGroup::Front => "front joints",
         JointGroup::All => "all joints",
         JointGroup::Rear => "rear joints",
-    }
-}
-
-/// Returns the row of a rule: its condition above, its joints and wave below.
-fn entry(ActiveWaveRule { rule, holds, decides }: &ActiveWaveRule) -> RuleRow {
-    let (joints, strength) = (joints_of(rule.group), decimals(rule.strength, 2));
+    };
     let condition = match rule.words() {
         always if always == "always" => "Always".to_owned(),
         words => format!("If {words}"),

@@ -7,7 +7,7 @@ use super::number::Control;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::theme;
-use snakes_core::schema::Choice;
+use snakes_core::schema::{Choice, SettingValue};
 
 impl Sheet {
     /// Draws a drop-down list. Returns the new choice, if it has changed.
@@ -17,18 +17,20 @@ impl Sheet {
         shown: &Shown,
         choices: &[Choice],
     ) -> Option<String> {
-        let chosen = choices.iter().find(|choice| choice.name == shown.value);
-        let title = chosen.map_or(shown.value, |choice| choice.title);
-        self.row(ui, shown, false, |_, ui, width, _| {
+        let is_chosen = |choice: &&Choice| SettingValue::Name(choice.name) == shown.listed.value;
+        let chosen = choices.iter().find(is_chosen);
+        let (title, sentence) =
+            chosen.map_or((&*shown.text, ""), |choice| (choice.title, &*choice.sentence));
+        self.usual_row(ui, shown, false, |_, ui, width, _| {
             let mut requested = None;
-            let list = egui::ComboBox::from_id_salt(shown.field)
+            let list = egui::ComboBox::from_id_salt(&shown.listed.path)
                 .selected_text(title)
                 .truncate()
                 .width(width)
                 .height(theme::list_height(ui))
                 .show_ui(ui, |ui| {
                     for choice in choices {
-                        let is_chosen = choice.name == shown.value;
+                        let is_chosen = is_chosen(&choice);
                         let option = ui.selectable_label(is_chosen, choice.title);
                         if option.on_hover_text(&choice.sentence).clicked() && !is_chosen {
                             requested = Some(choice.name.to_owned());
@@ -36,8 +38,7 @@ impl Sheet {
                     }
                 });
             let kind = egui::WidgetType::ComboBox;
-            let sentence = chosen.map_or("", |choice| &choice.sentence);
-            named(list.response, kind, shown.setting.label)
+            named(list.response, kind, shown.listed.setting.label)
                 .on_hover_text(format!("{}\n\nSelected: {sentence}", shown.hint));
             requested
         })
@@ -45,8 +46,8 @@ impl Sheet {
 
     /// Draws a check box. Returns the new value, if it has changed.
     pub(super) fn on_off(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
-        self.row(ui, shown, true, |_, ui, _, name| {
-            let mut is_on = shown.value == "true";
+        self.usual_row(ui, shown, true, |_, ui, _, name| {
+            let mut is_on = shown.listed.value == SettingValue::Switch(true);
             let ticked = check_box(ui, &mut is_on, "").labelled_by(name).on_hover_text(&shown.hint);
             ticked.changed().then(|| is_on.to_string())
         })
@@ -56,7 +57,7 @@ impl Sheet {
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
         let check = |text: &str| shown.check.typed(text);
         let plain = shown.text.trim_start_matches('[').trim_end_matches(']');
-        self.row(ui, shown, false, |sheet, ui, width, name| {
+        self.usual_row(ui, shown, false, |sheet, ui, width, name| {
             let control = Control { value: plain, ..Control::of(shown, name, &check) };
             sheet.text_field(ui, &control, plain, width)
         })

@@ -1,7 +1,6 @@
 //! Basic and advanced settings of a section. The advanced settings are below a fold, except those with unusual values,
 //! so that what is special about a surface is always visible.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use bevy_egui::egui;
@@ -12,61 +11,34 @@ use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::text_rows::weak;
 use snakes_core::schema::{ListedSetting, Section};
 
-/// Which advanced settings are visible.
-#[derive(Debug, Default)]
-pub(super) struct Folds {
-    /// Titles of the sections whose advanced settings are unfolded.
-    open: BTreeSet<String>,
-    /// Advanced settings that had unusual values, by their full names. They stay above the fold until the fold is used or another preset
-    /// is selected. Otherwise a control would disappear under the pointer when it reaches the usual value.
-    kept: BTreeSet<String>,
-}
-
-impl Folds {
-    /// Moves settings that have their usual values again below their folds.
-    pub fn forget_kept(&mut self) {
-        self.kept.clear();
-    }
-}
-
 impl Sheet {
     /// Unfolds the advanced settings of the sections with these titles.
     pub fn unfold(&mut self, sections: impl IntoIterator<Item = String>) {
-        self.folds.open.extend(sections);
+        self.unfolded.extend(sections);
     }
 
     /// Draws the settings of a section, with the advanced ones below a fold, and the section's reset button.
     pub fn section(&mut self, ui: &mut egui::Ui, section: Section) {
         let values = Arc::clone(&self.values);
-        let is_open = self.folds.open.contains(section.title);
-        let listed = values.listed().iter().filter(|listed| listed.section == section);
-        for listed in listed.filter(|listed| values.is_special(&listed.path)) {
-            self.folds.kept.insert(listed.path.clone());
+        let is_open = self.unfolded.contains(section.title);
+        let listed = values.listed.iter().filter(|listed| listed.section == section);
+        for listed in listed.filter(|listed| values.is_special(listed)) {
+            self.kept.insert(listed.path.clone());
         }
-        let kept = self.folds.kept.clone();
+        let kept = self.kept.clone();
         let is_below = |listed: &ListedSetting| {
             listed.setting.is_advanced && (is_open || !kept.contains(&listed.path))
         };
         self.entries(ui, section, |listed| !is_below(listed));
-        if self.in_section(section).any(is_below) {
-            self.advanced(ui, section, is_below);
+        let below = self.in_section(section).filter(|listed| is_below(listed)).count();
+        if below > 0 {
+            let label = weak(ui, format!("Advanced ({below})"));
+            let said = format!("Advanced settings of {}", section.title);
+            if self.fold(ui, section.title, label, &said) {
+                self.entries(ui, section, is_below);
+            }
         }
         self.reset_section(ui, section);
-    }
-
-    /// Draws the fold, and below it the settings for which `is_below` holds.
-    fn advanced(
-        &mut self,
-        ui: &mut egui::Ui,
-        section: Section,
-        is_below: impl Fn(&ListedSetting) -> bool,
-    ) {
-        let count = self.in_section(section).filter(|listed| is_below(listed)).count();
-        let label = weak(ui, format!("Advanced ({count})"));
-        let said = format!("Advanced settings of {}", section.title);
-        if self.fold(ui, section.title, label, &said) {
-            self.entries(ui, section, is_below);
-        }
     }
 
     /// Draws a fold whose state is remembered, and returns whether it is open. `said` is its name for accessibility tools.
@@ -77,7 +49,7 @@ impl Sheet {
         label: egui::RichText,
         said: &str,
     ) -> bool {
-        let is_open = self.folds.open.contains(section);
+        let is_open = self.unfolded.contains(section);
         let header = egui::CollapsingHeader::new(label)
             .id_salt(("advanced", section))
             .open(Some(is_open))
@@ -85,11 +57,10 @@ impl Sheet {
             .header_response;
         let kind = egui::WidgetType::CollapsingHeader;
         if named_selected(header, kind, is_open, said).clicked() {
-            self.folds.forget_kept();
-            if is_open {
-                self.folds.open.remove(section);
-            } else {
-                self.folds.open.insert(section.to_owned());
+            self.kept.clear();
+            // Removes the title of an open section, or else adds it.
+            if !self.unfolded.remove(section) {
+                self.unfolded.insert(section.to_owned());
             }
             let is_open = !is_open;
             self.sent.push(Command::Window(WindowCommand::Fold { section, is_open }));
@@ -101,10 +72,10 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::settings::tests::click;
     use crate::studio::panels::testing::shows;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
     use snakes_core::score::Trial;
 
     type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
@@ -132,11 +103,9 @@ mod tests {
         assert!(shows(&panel, "Friction") && shows(&panel, "Softness"));
         assert!(!shows(&panel, "Creep"));
         let fold = "Advanced settings of Surface";
-        panel.get_by_label(fold).click();
-        panel.run();
+        click(&mut panel, fold);
         assert!(shows(&panel, "Creep") && shows(&panel, "Springiness"));
-        panel.get_by_label(fold).click();
-        panel.run();
+        click(&mut panel, fold);
         assert!(!shows(&panel, "Creep"));
         let command =
             |is_open| Command::Window(WindowCommand::Fold { section: "Surface", is_open });

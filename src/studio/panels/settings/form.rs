@@ -4,16 +4,14 @@
 //! slider takes effect at intervals: see [`Changing::takes_effect`]. Typed text takes effect when its field loses the
 //! focus. Invalid text stays in the field, with the reason below.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use bevy_egui::egui;
 
 use super::changing::Changing;
-use super::columns::{Columns, Part};
-use super::folds::Folds;
 use super::validation::Check;
-use super::values::{Values, sections_of};
+use super::values::Values;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::buttons::CommandButton;
@@ -21,7 +19,7 @@ use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::text_rows::problem;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Settings;
-use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind};
+use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind, SettingValue};
 
 /// Values that are being dragged or typed in the controls of a panel.
 #[derive(Debug, Default)]
@@ -33,7 +31,11 @@ pub struct Sheet {
     pub(super) typed: BTreeMap<String, Typed>,
     /// Number of the last frame in which the panel was drawn.
     pub(super) drawn_in: u64,
-    pub(super) folds: Folds,
+    /// Titles of the sections whose advanced settings are unfolded.
+    pub(super) unfolded: BTreeSet<String>,
+    /// Advanced settings that had unusual values, by their full names. They stay above the fold until the fold is used or another preset
+    /// is selected. Otherwise a control would disappear under the pointer when it reaches the usual value.
+    pub(super) kept: BTreeSet<String>,
     /// Whether the run in progress accepts changes, with the reason if not; `None` if no run is in progress.
     takes_changes: Option<Result<(), &'static str>>,
     /// Commands of the user: see [`Sheet::send`].
@@ -63,8 +65,8 @@ impl Sheet {
         self.drawn_in = frame;
         self.takes_changes = run.is_under_way().then(|| run.takes_changes());
         if !self.values.are_of(run) {
-            if self.values.preset_name() != run.next_preset() {
-                self.folds.forget_kept();
+            if self.values.preset_name != run.next_preset() {
+                self.kept.clear();
             }
             self.values = Arc::new(Values::of(run));
         }
@@ -77,7 +79,7 @@ impl Sheet {
 
     /// Returns the settings of the next run.
     pub fn settings(&self) -> &Settings {
-        self.values.settings()
+        &self.values.settings
     }
 
     /// Returns whether a visible field contains invalid text.
@@ -100,13 +102,16 @@ impl Sheet {
 
     /// Returns the sections of those settings of the next run whose full names begin with `prefix`.
     pub fn sections(&self, prefix: &str) -> Vec<Section> {
-        let listed = self.values.listed().iter();
-        sections_of(listed.filter(|listed| listed.path.starts_with(prefix)))
+        let listed = self.values.listed.iter().filter(|listed| listed.path.starts_with(prefix));
+        let mut sections: Vec<Section> = listed.map(|listed| listed.section).collect();
+        // The settings of a section are adjacent.
+        sections.dedup();
+        sections
     }
 
     /// Returns the settings of a section.
     pub fn in_section(&self, section: Section) -> impl Iterator<Item = &ListedSetting> {
-        self.values.listed().iter().filter(move |listed| listed.section == section)
+        self.values.listed.iter().filter(move |listed| listed.section == section)
     }
 
     /// Draws the settings of a section for which `is_wanted` holds.
@@ -117,7 +122,7 @@ impl Sheet {
         is_wanted: impl Fn(&ListedSetting) -> bool,
     ) {
         let values = Arc::clone(&self.values);
-        let listed = values.listed().iter().filter(|listed| listed.section == section);
+        let listed = values.listed.iter().filter(|listed| listed.section == section);
         for listed in listed.filter(|listed| is_wanted(listed)) {
             self.entry(ui, listed);
         }
@@ -126,7 +131,7 @@ impl Sheet {
     /// Draws the first setting for which `is_wanted` holds, if it has an effect at present.
     pub fn knob(&mut self, ui: &mut egui::Ui, is_wanted: impl Fn(&str) -> bool) {
         let values = Arc::clone(&self.values);
-        let mut used = values.listed().iter().filter(|listed| listed.is_used);
+        let mut used = values.listed.iter().filter(|listed| listed.is_used);
         if let Some(listed) = used.find(|listed| is_wanted(&listed.path)) {
             self.entry(ui, listed);
         }
@@ -134,32 +139,32 @@ impl Sheet {
 
     /// Draws the button that resets a section, if a setting differs from the preset.
     pub(super) fn reset_section(&mut self, ui: &mut egui::Ui, section: Section) {
-        let fields = self.in_section(section).map(|listed| listed.path.as_str());
-        let back = self.values.back(fields);
+        let back = |listed: &ListedSetting| {
+            Some((listed.path.clone(), self.values.changed_from(listed)?.to_string()))
+        };
+        let back: Vec<_> = self.in_section(section).filter_map(back).collect();
         if back.is_empty() {
             return;
         }
-        let name = self.values.preset_name();
+        let name = &self.values.preset_name;
         let hint = format!("Reset all settings of \"{}\" to the preset {name}", section.title);
         let back = Command::Plan(PlanCommand::SetFields(back));
         CommandButton::small("Reset section", hint, back).show(ui, &mut self.sent);
     }
 
-    /// Draws a setting, if it exists at present.
+    /// Draws a setting.
     pub fn entry(&mut self, ui: &mut egui::Ui, listed: &ListedSetting) {
         let values = Arc::clone(&self.values);
-        let (field, setting) = (listed.path.as_str(), &listed.setting);
-        let Some(value) = values.now(field) else { return };
-        let answer = self.takes_changes.map(|answer| answer.and(values.live(field)));
-        let is_from_next_generation = answer == Some(Ok(()));
+        let setting = &listed.setting;
+        let live = values.live.get(&listed.path).copied().unwrap_or(Ok(()));
+        let answer = self.takes_changes.map(|answer| answer.and(live));
         let shown = Shown {
-            setting,
+            listed,
             hint: hint(setting, answer),
-            check: Check { settings: values.settings(), field, setting, all: values.listed() },
-            field,
-            value,
-            text: setting.shown_text(value),
-            is_from_next_generation,
+            check: Check { values: &values, listed },
+            stored: listed.value.to_string(),
+            text: setting.shown_value(&listed.value),
+            is_from_next_generation: answer == Some(Ok(())),
         };
         let new = match &setting.kind {
             SettingKind::Number(range) => self.number(ui, &shown, range),
@@ -168,35 +173,31 @@ impl Sheet {
             SettingKind::Switch => self.on_off(ui, &shown),
             SettingKind::Absent(_) => None,
         };
-        self.sent.extend(new.map(|text| set(field, &text)));
+        self.sent.extend(new.map(|text| set(&listed.path, &text)));
     }
 
     /// Draws the sweep button beside a number of the world, and the reset button if the value differs from the preset.
     /// Returns the preset's value after a click on the reset button.
     pub(super) fn buttons(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
-        let is_number = matches!(shown.setting.kind, SettingKind::Number(_));
-        if is_number && shown.field.starts_with("trial.") {
-            let label = format!("Sweep {}", shown.setting.label);
-            let hint = format!(
-                "Show the snake on the stage with five values of \"{}\" side by side",
-                shown.setting.label
-            );
+        let ListedSetting { path, setting, .. } = shown.listed;
+        let name = setting.label;
+        let is_number = matches!(setting.kind, SettingKind::Number(_));
+        if is_number && path.starts_with("trial.") {
+            let label = format!("Sweep {name}");
+            let hint =
+                format!("Show the snake on the stage with five values of \"{name}\" side by side");
             if small_icon_button(ui, Icon::Sweep, &label, &hint).clicked() {
-                self.sent.push(Command::Stage(StageCommand::Sweep(shown.field.to_owned())));
+                self.sent.push(Command::Stage(StageCommand::Sweep(path.clone())));
             }
         }
-        self.reset(ui, shown)
-    }
-
-    fn reset(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
-        let preset = self.values.changed_from(shown.field)?.to_owned();
-        let in_words = match preset.as_str() {
-            "none" => "off".to_owned(),
-            other => shown.setting.shown_text(other),
+        let preset = self.values.changed_from(shown.listed)?;
+        let in_words = match preset {
+            SettingValue::None => "off".to_owned(),
+            other => setting.shown_value(other),
         };
         let hint = format!("Reset to the preset's value: {in_words}");
-        let label = format!("Reset {}", shown.setting.label);
-        small_icon_button(ui, Icon::Reset, &label, &hint).clicked().then_some(preset)
+        let button = small_icon_button(ui, Icon::Reset, &format!("Reset {name}"), &hint);
+        button.clicked().then(|| preset.to_string())
     }
 
     /// Draws the reason why the text of a control is invalid, if it is.
@@ -205,38 +206,17 @@ impl Sheet {
             problem(ui, reason);
         }
     }
-
-    /// Draws the row of a setting: label, `control` and buttons. Returns a new value, if there is one.
-    pub(super) fn row(
-        &mut self,
-        ui: &mut egui::Ui,
-        shown: &Shown,
-        is_small: bool,
-        mut control: impl FnMut(&mut Self, &mut egui::Ui, f32, egui::Id) -> Option<String>,
-    ) -> Option<String> {
-        let mut name = ui.id();
-        let mut new = None;
-        Columns::of(ui, is_small).row(ui, |ui, part, width| match part {
-            Part::Label => name = shown.name(ui, width).id,
-            Part::Control => new = control(self, ui, width, name).or(new.take()),
-            Part::Buttons => new = self.buttons(ui, shown).or(new.take()),
-        });
-        self.problem(ui, shown.field);
-        new
-    }
 }
 
 /// A setting that is being drawn.
 pub(super) struct Shown<'a> {
-    pub setting: &'a Setting,
+    pub listed: &'a ListedSetting,
     /// Text of the setting's tooltip.
     pub hint: String,
     /// Check for text that is typed for the setting.
     pub check: Check<'a>,
-    /// Full dotted name of the setting.
-    pub field: &'a str,
     /// Value as text, in the unit of files.
-    pub value: &'a str,
+    pub stored: String,
     /// Value as text, in the unit of panels.
     pub text: String,
     is_from_next_generation: bool,
@@ -249,7 +229,7 @@ impl Shown<'_> {
         if self.is_from_next_generation {
             next_generation_mark(ui);
         }
-        ui.add(egui::Label::new(self.setting.title()).wrap()).on_hover_text(&self.hint)
+        ui.add(egui::Label::new(self.listed.setting.title()).wrap()).on_hover_text(&self.hint)
     }
 }
 
@@ -272,7 +252,8 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
         hint += &format!("\nFiles and --set have {} instead.", setting.unit);
     }
     if let Some(answer) = answer {
-        hint += &format!("\n{}", when(answer));
+        let when = answer.err().unwrap_or("Takes effect from the next generation");
+        hint += &format!("\n{}.", when.trim_end_matches('.'));
     }
     hint
 }
@@ -283,14 +264,6 @@ fn set(field: &str, text: &str) -> Command {
         Ok(population) if field == "evolution.population" => PlanCommand::SetPopulation(population),
         _ => PlanCommand::set(field, text),
     })
-}
-
-/// Describes when a change takes effect.
-fn when(answer: Result<(), &'static str>) -> String {
-    match answer {
-        Ok(()) => "Takes effect from the next generation.".to_owned(),
-        Err(reason) => format!("{}.", reason.trim_end_matches('.')),
-    }
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@
 
 mod changing;
 mod choices;
-mod columns;
 mod folds;
 mod form;
 mod number;
+mod row;
 mod scale;
 mod slider;
 mod validation;

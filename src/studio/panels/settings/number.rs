@@ -4,16 +4,16 @@
 
 use bevy_egui::egui;
 
-use super::columns::{Columns, Part, VALUE_WIDTH};
 use super::form::{Sheet, Shown};
+use super::row::VALUE_WIDTH;
 use super::scale::{NUMBERS_HEIGHT, Scale};
-use super::values::{list_of, numbers, rounded};
+use super::values::rounded;
 use crate::studio::ui::accessible::{named, named_selected};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::number_field::select_all_on_focus;
 use crate::studio::ui::text_rows::{text_field, weak};
 use crate::studio::ui::theme;
-use snakes_core::schema::NumberRange;
+use snakes_core::schema::{ListedSetting, NumberRange, SettingValue};
 
 /// Width of the switch between a single value and one value per part, in points.
 const SWITCH_WIDTH: f32 = 72.0;
@@ -42,8 +42,8 @@ impl<'a> Control<'a> {
         name: egui::Id,
         check: &'a dyn Fn(&str) -> Result<String, String>,
     ) -> Self {
-        let Shown { field, value, ref text, ref hint, .. } = *shown;
-        Self { id: field, name, said: None, value: text, stored: value, hint, check }
+        let Shown { listed, stored, text, hint, .. } = shown;
+        Self { id: &listed.path, name, said: None, value: text, stored, hint, check }
     }
 }
 
@@ -55,43 +55,37 @@ impl Sheet {
         shown: &Shown,
         range: &NumberRange,
     ) -> Option<String> {
-        let each = numbers(shown.value);
-        let shown_range = shown.setting.shown_range(range);
-        let is_given = shown.value != "none";
-        let mut name = ui.id();
-        let mut new = None;
-        let part_word = range.parts.word();
+        let each = match &shown.listed.value {
+            SettingValue::List(each) => Some(each.as_slice()),
+            _ => None,
+        };
+        let is_given = shown.listed.value != SettingValue::None;
         let is_small = range.slider.is_none() && range.begins_with.is_none();
-        Columns::of(ui, is_small).row(ui, |ui, part, width| {
-            let requested = match part {
-                Part::Label => {
-                    let (id, requested) = number_name(ui, shown, range, each.as_deref(), width);
-                    name = id;
-                    requested
-                }
-                Part::Control if !is_given => {
-                    instead(ui, "off: each snake has its own");
-                    None
-                }
-                Part::Control if each.is_some() => {
-                    instead(ui, &format!("{part_word} by {part_word}"));
-                    None
-                }
-                Part::Control => {
+        let mut new = self.row(
+            ui,
+            (&shown.listed.path, is_small),
+            |ui, width| number_name(ui, shown, range, each, width),
+            |sheet, ui, width, name| {
+                if is_given && each.is_none() {
                     let check = |text: &str| shown.check.typed(text);
                     let control = Control::of(shown, name, &check);
-                    self.slider_and_field(ui, &control, shown, &shown_range, width)
+                    return sheet.slider_and_field(ui, &control, shown, range, width);
                 }
-                Part::Buttons => self.buttons(ui, shown),
-            };
-            new = requested.or(new.take());
-        });
-        self.problem(ui, shown.field);
+                let part = range.parts.word();
+                let instead = match is_given {
+                    true => format!("{part} by {part}"),
+                    false => "off: each snake has its own".to_owned(),
+                };
+                ui.add(egui::Label::new(weak(ui, instead)).wrap());
+                None
+            },
+            |sheet, ui| sheet.buttons(ui, shown),
+        );
         if is_given && each.is_none() {
             make_room_for_numbers(ui, range);
         }
-        for index in 0..each.as_ref().map_or(0, Vec::len) {
-            let each = each.as_deref().unwrap_or_default();
+        let each = each.unwrap_or_default();
+        for index in 0..each.len() {
             new = self.part(ui, shown, range, each, index).or(new.take());
         }
         new
@@ -107,43 +101,34 @@ impl Sheet {
         index: usize,
     ) -> Option<String> {
         let part = range.parts.name(index);
-        let id = format!("{}[{index}]", shown.field);
+        let id = format!("{}[{index}]", shown.listed.path);
         let stored = each[index].to_string();
-        let value = shown.setting.shown_number(each[index]);
+        let setting = &shown.listed.setting;
+        let value = setting.shown_number(each[index]);
         let with = |text: &str| {
-            let number: f32 = text.parse().unwrap_or(each[index]);
             let mut all = each.to_vec();
-            all[index] = number;
-            list_of(&all)
+            all[index] = text.parse().unwrap_or(each[index]);
+            SettingValue::List(all).to_string()
         };
         let check = |text: &str| {
             let text = shown.check.typed(text)?;
             shown.check.whole(&with(&text)).map(|()| text)
         };
-        let mut name = ui.id();
-        let mut new = None;
-        Columns::of(ui, false).row(ui, |ui, place, width| match place {
-            Part::Label => {
+        let new = self.row(
+            ui,
+            (&id, false),
+            |ui, _| {
                 ui.add_space(theme::GAP * 2.0);
-                name = ui.label(weak(ui, &part)).id;
-            }
-            Part::Control => {
-                let said = Some(format!("{} of {}", shown.setting.label, part.to_lowercase()));
-                let control = Control {
-                    id: &id,
-                    name,
-                    said,
-                    value: &value,
-                    stored: &stored,
-                    hint: &shown.hint,
-                    check: &check,
-                };
-                let range = shown.setting.shown_range(range);
-                new = self.slider_and_field(ui, &control, shown, &range, width);
-            }
-            Part::Buttons => {}
-        });
-        self.problem(ui, &id);
+                (ui.label(weak(ui, &part)).id, None)
+            },
+            |sheet, ui, width, name| {
+                let said = Some(format!("{} of {}", setting.label, part.to_lowercase()));
+                let of_whole = Control::of(shown, name, &check);
+                let control = Control { id: &id, said, value: &value, stored: &stored, ..of_whole };
+                sheet.slider_and_field(ui, &control, shown, range, width)
+            },
+            |_, _| None,
+        );
         make_room_for_numbers(ui, range);
         new.map(|text| with(&text))
     }
@@ -158,11 +143,13 @@ impl Sheet {
         range: &NumberRange,
         width: f32,
     ) -> Option<String> {
+        let setting = &shown.listed.setting;
+        let range = setting.shown_range(range);
         let mut slid = None;
         if let Some(ends) = range.slider {
             ui.spacing_mut().slider_width =
                 (width - VALUE_WIDTH - theme::GAP).max(theme::GAP * 4.0);
-            let scale = Scale::of(range, ends, shown.setting.shown_unit());
+            let scale = Scale::of(&range, ends, setting.shown_unit());
             slid = self.slider(ui, control, &scale, range.is_whole);
         } else {
             // The field is aligned with the other fields.
@@ -234,7 +221,8 @@ fn number_name(
     each: Option<&[f32]>,
     width: f32,
 ) -> (egui::Id, Option<String>) {
-    let is_given = shown.value != "none";
+    let ListedSetting { setting, value, .. } = shown.listed;
+    let is_given = *value != SettingValue::None;
     let has_switch = range.parts.count() > 1 && is_given;
     let name_width = if has_switch { width - SWITCH_WIDTH - theme::GAP } else { width };
     let mut requested = None;
@@ -244,7 +232,7 @@ fn number_name(
         ui.set_width(name_width);
         let Some(begins_with) = range.begins_with else { return shown.name(ui, name_width) };
         let mut given = is_given;
-        let name = check_box(ui, &mut given, shown.setting.title()).on_hover_text(&shown.hint);
+        let name = check_box(ui, &mut given, setting.title()).on_hover_text(&shown.hint);
         if name.changed() {
             requested = Some(if given { begins_with.to_string() } else { "none".to_owned() });
         }
@@ -259,13 +247,13 @@ fn number_name(
             format!("Set each {of_what} separately")
         };
         let switch = ui.selectable_label(is_each, format!("per {of_what}")).on_hover_text(hint);
-        let said = format!("{}: {of_what} by {of_what}", shown.setting.label);
+        let said = format!("{}: {of_what} by {of_what}", setting.label);
         let kind = egui::WidgetType::SelectableLabel;
         if named_selected(switch, kind, is_each, &said).clicked() {
-            let count = range.parts.count();
+            let one = shown.stored.parse().unwrap_or_default();
             requested = Some(match each {
                 Some(each) => each.first().copied().unwrap_or_default().to_string(),
-                None => list_of(&vec![shown.value.parse().unwrap_or_default(); count]),
+                None => SettingValue::List(vec![one; range.parts.count()]).to_string(),
             });
         }
     }
@@ -277,9 +265,4 @@ fn make_room_for_numbers(ui: &mut egui::Ui, range: &NumberRange) {
     if range.slider.is_some() && range.logarithmic_from.is_some() {
         ui.add_space(NUMBERS_HEIGHT);
     }
-}
-
-/// Draws an explanation in place of a number.
-fn instead(ui: &mut egui::Ui, text: &str) {
-    ui.add(egui::Label::new(weak(ui, text)).wrap());
 }

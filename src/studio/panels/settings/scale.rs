@@ -33,15 +33,6 @@ pub struct Scale {
     is_angle: bool,
 }
 
-/// A mark below the rail of a slider.
-#[derive(Debug, Clone, PartialEq)]
-struct ScaleMark {
-    /// Position of the mark on the rail: 0 is the left end, 1 the right end.
-    share: f32,
-    /// Value of the mark as text, if the scale has numbers.
-    number: Option<String>,
-}
-
 impl Scale {
     /// Creates the scale of a setting with this range and unit. `least` and `most` are the ends of its slider.
     pub fn of(range: &NumberRange, [least, most]: [f32; 2], unit: &str) -> Self {
@@ -93,11 +84,9 @@ impl Scale {
         (libm::log10f(value / first) / libm::log10f(self.most / first)).clamp(0.0, 1.0)
     }
 
-    /// Returns the marks from left to right.
-    fn marks(&self) -> Vec<ScaleMark> {
+    /// Returns the values with a mark, from left to right.
+    fn marks(&self) -> Vec<f32> {
         let Some(from) = self.logarithmic_from else { return self.linear_marks() };
-        let mark =
-            |value: f32| ScaleMark { share: self.share(value), number: Some(value.to_string()) };
         let first = if self.least > 0.0 { self.least } else { 0.0 };
         let lowest = libm::ceilf(libm::log10f(from) - 1.0e-3) as i32;
         let highest = libm::floorf(libm::log10f(self.most) + 1.0e-3) as i32;
@@ -106,20 +95,19 @@ impl Scale {
         let mut values: Vec<f32> =
             std::iter::once(first).chain(decades).chain([self.most]).collect();
         values.dedup();
-        values.into_iter().map(mark).collect()
+        values
     }
 
-    fn linear_marks(&self) -> Vec<ScaleMark> {
+    fn linear_marks(&self) -> Vec<f32> {
         let width = self.most - self.least;
         let of_angle = ANGLE_STEPS.into_iter().find(|step| width / step <= MOST_STEPS);
         let step = of_angle.filter(|_| self.is_angle).unwrap_or_else(|| round_step(width));
         let first = (self.least / step).ceil() as i32;
         let values = (first..).map(|index| index as f32 * step);
-        let values = values.take_while(|value| *value <= self.most + step * 1.0e-3);
-        values.map(|value| ScaleMark { share: self.share(value), number: None }).collect()
+        values.take_while(|value| *value <= self.most + step * 1.0e-3).collect()
     }
 
-    /// Draws the marks below the rail of a slider at `rect`.
+    /// Draws the marks below the rail of a slider at `rect`, with numbers on a logarithmic scale.
     pub fn paint(&self, ui: &egui::Ui, rect: egui::Rect) {
         if !ui.is_rect_visible(rect) {
             return;
@@ -134,30 +122,25 @@ impl Scale {
         let color = theme::of(ui).text_weak;
         let top = rect.center().y + MARK_TOP;
         let marks = self.marks();
+        let x_of = |value: f32| rail.min + rail.span() * self.share(value);
         let mut numbers: Vec<egui::Rect> = Vec::new();
-        let mut number = |mark: &ScaleMark, x: f32| {
-            let Some(text) = &mark.number else { return };
+        // The ends come first, so that they have their numbers even if there is no room for all.
+        let numbered = marks.first().into_iter().chain(marks.last()).chain(&marks);
+        for value in numbered.filter(|_| self.logarithmic_from.is_some()) {
             let font = egui::FontId::proportional(NUMBER_SIZE);
-            let galley = ui.painter().layout_no_wrap(text.clone(), font, color);
+            let galley = ui.painter().layout_no_wrap(value.to_string(), font, color);
             let size = galley.size();
-            let left =
-                (x - size.x / 2.0).clamp(rect.left(), (rect.right() - size.x).max(rect.left()));
+            let most_left = (rect.right() - size.x).max(rect.left());
+            let left = (x_of(*value) - size.x / 2.0).clamp(rect.left(), most_left);
             let place = egui::Rect::from_min_size(egui::pos2(left, top + MARK_LENGTH - 1.0), size);
-            if numbers
-                .iter()
-                .all(|other| !other.expand2(egui::vec2(NUMBER_GAP, 0.0)).intersects(place))
-            {
+            let gap = egui::vec2(NUMBER_GAP, 0.0);
+            if numbers.iter().all(|other| !other.expand2(gap).intersects(place)) {
                 ui.painter().galley(place.min, galley, color);
                 numbers.push(place);
             }
-        };
-        let x_of = |mark: &ScaleMark| rail.min + rail.span() * mark.share;
-        // The ends come first, so that they have their numbers even if there is no room for all.
-        for mark in marks.first().into_iter().chain(marks.last()).chain(&marks) {
-            number(mark, x_of(mark));
         }
-        for mark in &marks {
-            ui.painter().vline(x_of(mark), top..=top + MARK_LENGTH, egui::Stroke::new(1.0, color));
+        for value in marks {
+            ui.painter().vline(x_of(value), top..=top + MARK_LENGTH, egui::Stroke::new(1.0, color));
         }
     }
 }
@@ -190,9 +173,8 @@ mod tests {
 
     #[test]
     fn a_logarithmic_scale_has_a_numbered_mark_at_zero_and_at_each_decade() {
-        let numbers = |scale: Scale| -> Vec<String> {
-            scale.marks().into_iter().filter_map(|mark| mark.number).collect()
-        };
+        let numbers =
+            |scale: Scale| -> Vec<String> { scale.marks().iter().map(f32::to_string).collect() };
         assert_eq!(numbers(scale(0.0, 10.0, Some(0.01))), ["0", "0.01", "0.1", "1", "10"]);
         assert_eq!(numbers(scale(0.05, 5.0, Some(0.05))), ["0.05", "0.1", "1", "5"]);
         assert_eq!(numbers(scale(0.0, 0.1, Some(1.0e-6))).last().map(String::as_str), Some("0.1"));
@@ -210,7 +192,7 @@ mod tests {
     #[test]
     fn a_linear_scale_has_a_few_round_marks() {
         let shares = |scale: Scale| -> Vec<f32> {
-            scale.marks().into_iter().map(|mark| mark.share).collect()
+            scale.marks().into_iter().map(|value| scale.share(value)).collect()
         };
         assert_eq!(shares(scale(0.0, 1.0, None)).len(), 6);
         assert_eq!(shares(scale(0.0, 2.0, None)), [0.0, 0.25, 0.5, 0.75, 1.0]);
@@ -229,7 +211,8 @@ mod tests {
             let scale = Scale::of(&range, ends, listed.setting.shown_unit());
             let marks = scale.marks();
             assert!((2..=9).contains(&marks.len()), "{}: {}", listed.path, marks.len());
-            assert!(marks.is_sorted_by(|a, b| a.share < b.share), "{}: {marks:?}", listed.path);
+            let are_sorted = marks.is_sorted_by(|a, b| scale.share(*a) < scale.share(*b));
+            assert!(are_sorted, "{}: {marks:?}", listed.path);
         }
     }
 }

@@ -75,7 +75,6 @@ impl Sheet {
 mod tests {
     use super::*;
     use crate::studio::commands::{Command, PlanCommand};
-    use crate::studio::panels::settings::values::sections_of;
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -87,10 +86,9 @@ mod tests {
         let mut sheet = Sheet::default();
         let ui = move |ui: &mut egui::Ui, (run, taken): &mut State| {
             sheet.begin(ui, run);
-            let listed = sheet.values.listed().iter().filter(|listed| listed.path == field);
-            for section in sections_of(listed) {
-                sheet.entries(ui, section, |listed| listed.path == field);
-            }
+            let listed = sheet.values.listed.iter().find(|listed| listed.path == field);
+            let listed = listed.expect("a setting").clone();
+            sheet.entry(ui, &listed);
             for command in std::mem::take(&mut sheet.sent) {
                 let Command::Plan(PlanCommand::SetField { field, text }) = command else {
                     panic!("{command:?}")

@@ -6,13 +6,14 @@ use bevy_egui::egui;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use super::values::list_of;
 use super::*;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::testing::{self, Sent, set};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
 use snakes_core::evolve::{Settings, fields, with_field, with_fields};
-use snakes_core::schema::{ListedSetting, NumberRange, Parts, Section, SettingKind, list};
+use snakes_core::schema::{
+    ListedSetting, NumberRange, Parts, Section, SettingKind, SettingValue, list,
+};
 
 /// Asserts that labels and controls fit into a panel of this width, in points.
 pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
@@ -27,6 +28,50 @@ pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
         let is_inside = rect.left() >= 0.0 && rect.right() <= width;
         assert!(is_inside, "{rect:?} of {width} points: {node:?}");
     }
+}
+
+/// Asserts that a panel has labels that contain these texts.
+pub(in crate::studio::panels) fn assert_shows<S>(panel: &Harness<'_, S>, texts: &[&str]) {
+    for text in texts {
+        assert!(testing::shows(panel, text), "{text}");
+    }
+}
+
+/// Asserts that a part of a panel has at least `least` texts, and that no two of them overlap by more than `touch` points.
+pub(in crate::studio::panels) fn assert_no_texts_overlap<S>(
+    panel: &Harness<'_, S>,
+    part: egui::Rect,
+    least: usize,
+    touch: f32,
+) {
+    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if part.contains(text.pos) => {
+            let rect = clipped.shape.visual_bounding_rect().shrink(touch);
+            Some((text.galley.text().to_owned(), rect))
+        }
+        _ => None,
+    });
+    let texts: Vec<_> = texts.collect();
+    assert!(texts.len() >= least, "{texts:?}");
+    for (index, (text, rect)) in texts.iter().enumerate() {
+        for (other, beside) in &texts[index + 1..] {
+            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
+        }
+    }
+}
+
+/// Clicks on the element with this label.
+pub(in crate::studio::panels) fn click<S>(panel: &mut Harness<'_, S>, label: &str) {
+    panel.get_by_label(label).click();
+    panel.run();
+}
+
+/// Clicks at a position, in points.
+pub(in crate::studio::panels) fn click_at<S>(panel: &mut Harness<'_, S>, at: egui::Pos2) {
+    panel.drag_at(at);
+    panel.run();
+    panel.drop_at(at);
+    panel.run();
 }
 
 /// Returns the titles of all sections.
@@ -71,27 +116,32 @@ fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) ->
 fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
     let listed = setting(run, field);
     let mut sheet = Sheet::default();
-    Harness::builder().with_size(egui::vec2(320.0, 400.0)).with_step_dt(1.0 / 60.0).build_ui_state(
+    let builder = Harness::builder().with_size(egui::vec2(320.0, 400.0));
+    // Frames are so short that a slider does not come to rest within a drag.
+    let mut panel = builder.with_step_dt(1.0 / 60.0).build_ui_state(
         move |ui, commands| {
             sheet.begin(ui, run);
             sheet.entry(ui, &listed);
             sheet.send(commands);
         },
         Vec::new(),
-    )
+    );
+    panel.run();
+    panel
 }
 
+/// Role of the only field.
+const FIELD: egui::accesskit::Role = egui::accesskit::Role::TextInput;
+
 /// Types into the only field, and presses Enter.
-fn type_into(harness: &mut Harness<'_, Vec<Command>>, text: &str) {
-    let field = || egui::accesskit::Role::TextInput;
-    harness.get_by_role(field()).focus();
+fn type_into(harness: &mut Sent<'_>, text: &str) {
+    harness.get_by_role(FIELD).focus();
     harness.run();
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     harness.run();
-    harness.get_by_role(field()).type_text(text);
+    harness.get_by_role(FIELD).type_text(text);
     harness.run();
-    harness.key_press(egui::Key::Enter);
-    harness.run();
+    testing::press(harness, egui::Key::Enter);
 }
 
 #[test]
@@ -125,7 +175,6 @@ fn every_control_sends_the_value_that_was_entered() {
         let full = listed.path;
         let now = &values.iter().find(|(field, _)| *field == full).expect("there").1;
         let mut panel = panel_of(&run, &full);
-        panel.run();
         let expected = match &listed.setting.kind {
             SettingKind::Number(range) => {
                 let is_allowed = |text: &str| with_field(settings, &full, text).is_ok();
@@ -183,7 +232,7 @@ fn the_ranges_in_tooltips_are_those_of_the_settings() {
         let (SettingKind::Number(range) | SettingKind::List(range)) = kind else { continue };
         let (least, most) = (range.least, range.most);
         let is_list = matches!(kind, SettingKind::List(_));
-        let text = |value: f32| if is_list { list_of(&[value]) } else { value.to_string() };
+        let text = |value: f32| if is_list { format!("[{value}]") } else { value.to_string() };
         let below = least - least.abs() * 0.5 - if least == 0.0 { 1.0 } else { 0.0 };
         let above = if range.is_whole { most + 1.0 } else { most * 1.1 + 1.0 };
         for wrong in [below, above] {
@@ -239,8 +288,7 @@ fn invalid_text_stays_with_its_reason_and_nothing_is_sent() {
     assert_eq!(*panel.state(), []);
     let said = "Rise is \"9\"; allowed: -5 to -0.01 or 0.01 to 5 m";
     assert!(panel.query_by_label_contains(said).is_some());
-    let field = panel.get_by_role(egui::accesskit::Role::TextInput);
-    assert_eq!(field.value().as_deref(), Some("9"), "to be corrected");
+    assert_eq!(panel.get_by_role(FIELD).value().as_deref(), Some("9"), "to be corrected");
     type_into(&mut panel, "4");
     assert_eq!(*panel.state(), [set("trial.stairs.rise_m", "4")], "beyond the slider's end");
 }
@@ -270,7 +318,6 @@ fn one_limb_changes_without_the_others() {
     let mut run = prepared_run();
     run.set_field("trial.agent.limb_width_m", "[1.5, 1, 1, 1, 1]").expect("allowed");
     let mut panel = panel_of(&run, "trial.agent.limb_width_m");
-    panel.run();
     let slider = "Limb width of limb 3";
     let role = egui::accesskit::Role::Slider;
     let rail = panel.get_by_role_and_label(role, slider).rect();
@@ -294,7 +341,6 @@ fn a_limit_is_optional() {
     assert_eq!(commands, [set("trial.agent.bend_limit_rad", "1")]);
     run.set_field("trial.agent.bend_limit_rad", "0.5").expect("allowed");
     let mut panel = panel_of(&run, "trial.agent.bend_limit_rad");
-    panel.run();
     panel.get_by_role(egui::accesskit::Role::CheckBox).click();
     panel.run();
     assert_eq!(*panel.state(), [set("trial.agent.bend_limit_rad", "none")]);
@@ -313,7 +359,11 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
         };
         let now = fields(run.next_settings()).into_iter().find(|(field, _)| *field == full);
         let value: f32 = now.expect("there").1.parse().expect("a number");
-        let listed = with_field(run.next_settings(), &full, &list_of(&vec![value; count]));
+        let listed = with_field(
+            run.next_settings(),
+            &full,
+            &SettingValue::List(vec![value; count]).to_string(),
+        );
         assert_eq!(listed.is_ok(), range.parts != Parts::One, "{full}");
     }
 }
@@ -346,9 +396,7 @@ fn angles_are_shown_and_typed_in_degrees_and_set_in_radians() {
     let limit = "trial.agent.bend_limit_rad";
     run.set_field(limit, "0.6").expect("allowed");
     let mut panel = panel_of(&run, limit);
-    panel.run();
-    let field = || egui::accesskit::Role::TextInput;
-    assert_eq!(panel.get_by_role(field()).value().as_deref(), Some("34.38"));
+    assert_eq!(panel.get_by_role(FIELD).value().as_deref(), Some("34.38"));
     type_into(&mut panel, "34.38");
     assert_eq!(*panel.state(), [], "the value keeps the digits that are not shown");
     type_into(&mut panel, "200");
@@ -358,9 +406,8 @@ fn angles_are_shown_and_typed_in_degrees_and_set_in_radians() {
     assert_eq!(*panel.state(), [set(limit, &radians)]);
     drop(panel);
     run.set_field(limit, &radians).expect("allowed");
-    let mut panel = panel_of(&run, limit);
-    panel.run();
-    assert_eq!(panel.get_by_role(field()).value().as_deref(), Some("57.25"));
+    let panel = panel_of(&run, limit);
+    assert_eq!(panel.get_by_role(FIELD).value().as_deref(), Some("57.25"));
 }
 
 #[test]

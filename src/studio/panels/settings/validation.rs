@@ -1,21 +1,17 @@
 //! Checks and normalises text that is typed for a setting.
 
-use super::values::numbers;
+use super::values::{Values, numbers};
 use snakes_core::check::Invalid;
-use snakes_core::evolve::{Settings, with_field};
-use snakes_core::schema::{ListedSetting, Setting, SettingKind, SettingValue};
+use snakes_core::evolve::with_field;
+use snakes_core::schema::{ListedSetting, SettingKind, SettingValue};
 
 /// A setting that is being typed, with all other settings.
 #[derive(Clone, Copy)]
-pub struct Check<'a> {
-    /// Current settings of the next run.
-    pub settings: &'a Settings,
-    /// Full dotted name of the setting.
-    pub field: &'a str,
-    /// Declaration of the setting.
-    pub setting: &'a Setting,
-    /// All settings with their declarations.
-    pub all: &'a [ListedSetting],
+pub(super) struct Check<'a> {
+    /// All settings of the next run, with their declarations.
+    pub values: &'a Values,
+    /// Declaration and present value of the setting.
+    pub listed: &'a ListedSetting,
 }
 
 impl Check<'_> {
@@ -24,17 +20,14 @@ impl Check<'_> {
     /// # Errors
     /// The text is invalid; the message contains the setting, the value and the allowed range.
     pub fn typed(&self, text: &str) -> Result<String, String> {
-        let typed = text.trim();
+        let (typed, setting) = (text.trim(), &self.listed.setting);
         let unreadable = || {
-            format!(
-                "{} is \"{typed}\"; allowed: {}",
-                self.setting.label,
-                self.setting.shown_range_in_words()
-            )
+            let allowed = setting.shown_range_in_words();
+            format!("{} is \"{typed}\"; allowed: {allowed}", setting.label)
         };
-        let text = match &self.setting.kind {
+        let text = match &setting.kind {
             SettingKind::Number(range) => {
-                let text = self.setting.stored_text(&with_point(typed)).ok_or_else(unreadable)?;
+                let text = setting.stored_text(&with_point(typed)).ok_or_else(unreadable)?;
                 let is_number = if range.is_whole {
                     text.parse::<u32>().is_ok()
                 } else {
@@ -49,14 +42,14 @@ impl Check<'_> {
             }
             SettingKind::List(range) => {
                 let inside = typed.trim_start_matches('[').trim_end_matches(']');
-                let text = match self.setting.display {
+                let text = match setting.display {
                     None => format!("[{inside}]"),
                     Some(_) => self.stored_list(inside).ok_or_else(unreadable)?,
                 };
                 let list = numbers(&text).ok_or_else(unreadable)?;
                 let is_allowed = |number: &f32| range.allows(*number);
                 // The check of the whole list would show the numbers in the unit of files.
-                let is_shown_otherwise = self.setting.display.is_some();
+                let is_shown_otherwise = setting.display.is_some();
                 if list.iter().any(|number| !number.is_finite())
                     || (is_shown_otherwise && !list.iter().all(is_allowed))
                 {
@@ -74,15 +67,12 @@ impl Check<'_> {
     /// Converts a list to the unit of files. A number whose text has not changed keeps all its digits, although the
     /// text in the unit of panels is rounded.
     fn stored_list(&self, typed: &str) -> Option<String> {
-        let now = self.all.iter().find(|listed| listed.path == self.field);
-        let now = match now.map(|listed| &listed.value) {
-            Some(SettingValue::List(numbers)) => numbers.as_slice(),
-            _ => &[],
-        };
+        let ListedSetting { setting, value, .. } = self.listed;
+        let now = if let SettingValue::List(numbers) = value { numbers.as_slice() } else { &[] };
         let number = |(index, text): (usize, &str)| {
             let text = text.trim();
-            let same = now.get(index).filter(|number| self.setting.shown_number(**number) == text);
-            same.map(f32::to_string).or_else(|| self.setting.stored_text(text))
+            let same = now.get(index).filter(|number| setting.shown_number(**number) == text);
+            same.map(f32::to_string).or_else(|| setting.stored_text(text))
         };
         let stored: Option<Vec<String>> = typed.split(',').enumerate().map(number).collect();
         stored.map(|texts| format!("[{}]", texts.join(", ")))
@@ -93,9 +83,9 @@ impl Check<'_> {
     /// # Errors
     /// The text is invalid; the error is a message for the user.
     pub fn whole(&self, text: &str) -> Result<(), String> {
-        let checked = with_field(self.settings, self.field, text);
+        let checked = with_field(&self.values.settings, &self.listed.path, text);
         let checked = checked.and_then(|settings| settings.check_start());
-        checked.map_err(|invalid| in_words(&invalid, self.all))
+        checked.map_err(|invalid| in_words(&invalid, &self.values.listed))
     }
 }
 
@@ -122,14 +112,14 @@ fn in_words(invalid: &Invalid, all: &[ListedSetting]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::schema::list;
+    use snakes_core::schema::{PerPart, list};
 
     fn typed(field: &str, text: &str) -> Result<String, String> {
-        let mut settings = Settings::default();
-        settings.trial.agent.limb_width_m = snakes_core::schema::PerPart::Each(vec![1.0; 5]);
-        let all = list(&settings);
-        let listed = all.iter().find(|listed| listed.path == field).expect("a setting");
-        Check { settings: &settings, field, setting: &listed.setting, all: &all }.typed(text)
+        let mut values = Values::default();
+        values.settings.trial.agent.limb_width_m = PerPart::Each(vec![1.0; 5]);
+        values.listed = list(&values.settings);
+        let listed = values.listed.iter().find(|listed| listed.path == field);
+        Check { values: &values, listed: listed.expect("a setting") }.typed(text)
     }
 
     #[test]

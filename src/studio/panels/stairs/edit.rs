@@ -17,3 +17,12 @@ impl StairsEdit {
         Self { stairs, is_complete: true }
     }
 }
+
+/// Response of the drawing and the table to the pointer.
+#[derive(Debug, Default)]
+pub(super) struct StairsResponse {
+    /// Step whose edge or row is under the pointer; the lowest is 0.
+    pub pointed: Option<u32>,
+    /// Change of the stairs, if any.
+    pub edit: Option<StairsEdit>,
+}

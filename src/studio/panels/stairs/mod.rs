@@ -24,7 +24,7 @@ use snakes_core::world::Stairs;
 pub(super) use choice::stairs_choice;
 use choice::{name_of, replacement};
 use codes::codes;
-use edit::StairsEdit;
+use edit::{StairsEdit, StairsResponse};
 use profile::{Grab, Profile};
 use random::RandomStairs;
 use table::table;
@@ -79,10 +79,7 @@ impl StairsPanel {
             agent: &next.agent,
             pointed: self.pointed,
         };
-        let drawn = profile.ui(ui, self.grab);
-        self.grab = drawn.grab;
-        let mut pointed = drawn.pointed;
-        let mut edit = drawn.edit;
+        let mut response = profile.ui(ui, &mut self.grab);
         codes(ui, &stairs);
         if let Some(reason) = &self.problem {
             problem(ui, reason);
@@ -90,15 +87,14 @@ impl StairsPanel {
         if let Some(genome) = self.random.ui(ui) {
             let (first_riser_y_m, landing_m) = (stairs.first_riser_y_m, stairs.landing_m);
             let drawn = Stairs { first_riser_y_m, landing_m, ..genome.stairs() };
-            edit = Some(StairsEdit::complete(drawn));
+            response.edit = Some(StairsEdit::complete(drawn));
         }
         let hint =
             "Width, landing, nosing and the other settings of the stairs, in the Change panel";
         let find = Command::Window(WindowCommand::FindSetting("Stairs"));
         CommandButton::new("More settings", hint, find).show(ui, commands);
-        let listed = table(ui, &stairs, self.pointed);
-        pointed = pointed.or(listed.pointed);
-        edit = listed.edit.or(edit);
+        table(ui, &stairs, self.pointed, &mut response);
+        let StairsResponse { pointed, edit } = response;
         if pointed != self.pointed {
             self.pointed = pointed;
             ui.ctx().request_repaint();

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::edit::StairsEdit;
+use super::edit::{StairsEdit, StairsResponse};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::score::AgentSettings;
@@ -40,17 +40,6 @@ pub(super) struct Profile<'a> {
     pub pointed: Option<u32>,
 }
 
-/// Response of the drawing to the pointer.
-#[derive(Debug, Default)]
-pub(super) struct ProfileResponse {
-    /// Step whose edge is under the pointer; the lowest is 0.
-    pub pointed: Option<u32>,
-    /// Edge that is being dragged, if any.
-    pub grab: Option<Grab>,
-    /// Change of the stairs by a moved edge, if any.
-    pub edit: Option<StairsEdit>,
-}
-
 /// An edge that is being dragged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grab {
@@ -84,8 +73,8 @@ impl ProfileScale {
 
 impl Profile<'_> {
     /// Draws the stairs. While an edge is dragged, returns the changed stairs, with the movement rounded to steps.
-    /// `grab` is the edge that was dragged in the last frame.
-    pub fn ui(&self, ui: &mut egui::Ui, grab: Option<Grab>) -> ProfileResponse {
+    /// `grab` is the edge that is being dragged, if any.
+    pub fn ui(&self, ui: &mut egui::Ui, grab: &mut Option<Grab>) -> StairsResponse {
         let stairs = self.next;
         let [block_m, block_high_m] =
             [self.agent.limb_length_m.at(0), self.agent.limb_height_m.at(0)];
@@ -114,7 +103,7 @@ impl Profile<'_> {
         self.solids(&painter, scale, palette);
         let ground = egui::Stroke::new(1.0, palette.text_weak);
         painter.hline(area.x_range(), origin.y, ground);
-        self.code_line(ui, &painter, scale, area);
+        self.code_line(&painter, scale, palette);
         self.handles(ui, scale, grab)
     }
 
@@ -145,13 +134,8 @@ impl Profile<'_> {
     }
 
     /// Draws the steepest stairs that building codes allow in a home, as a dashed line over the first edges.
-    fn code_line(
-        &self,
-        ui: &egui::Ui,
-        painter: &egui::Painter,
-        scale: ProfileScale,
-        area: egui::Rect,
-    ) {
+    fn code_line(&self, painter: &egui::Painter, scale: ProfileScale, palette: &theme::Palette) {
+        let area = painter.clip_rect();
         let steepest = BUILDING_CODES.iter().map(BuildingCode::steepest).fold(0.0, f32::max);
         if self.stairs.steps == 0 {
             return;
@@ -160,7 +144,6 @@ impl Profile<'_> {
         let most_z_m = scale.back_m(area.left_top())[1];
         let along_m = (most_z_m - from_m[1]) / steepest;
         let to_m = [from_m[0] + along_m, most_z_m];
-        let palette = theme::of(ui);
         let stroke = egui::Stroke::new(1.5, palette.second);
         let line = [scale.at(from_m), scale.at(to_m)];
         painter.extend(egui::Shape::dashed_line(&line, stroke, 6.0, 4.0));
@@ -180,10 +163,11 @@ impl Profile<'_> {
         &self,
         ui: &mut egui::Ui,
         scale: ProfileScale,
-        grab: Option<Grab>,
-    ) -> ProfileResponse {
+        grab: &mut Option<Grab>,
+    ) -> StairsResponse {
         let palette = theme::of(ui);
-        let mut drawn = ProfileResponse::default();
+        let before = grab.take();
+        let mut drawn = StairsResponse::default();
         for step in 0..self.stairs.steps {
             let handle_m = self.stairs.handle_m(step);
             let at = scale.at(handle_m);
@@ -203,13 +187,13 @@ impl Profile<'_> {
             ui.painter().circle(at, radius, color, egui::Stroke::new(1.0, palette.field));
             if is_taken && let Some(pointer) = response.interact_pointer_pos() {
                 let pointer_m = scale.back_m(pointer);
-                let grab = grab.filter(|grab| grab.step == step);
-                let grab = grab.unwrap_or(Grab { step, from_m: pointer_m });
-                drawn.grab = Some(grab).filter(|_| response.dragged());
+                let same = before.filter(|before| before.step == step);
+                let now = same.unwrap_or(Grab { step, from_m: pointer_m });
+                *grab = Some(now).filter(|_| response.dragged());
                 let snap_m = if ui.input(|input| input.modifiers.shift) { FINE_M } else { SNAP_M };
                 // The movement is rounded, not the position, so that a coordinate that is not moved stays exactly as it is.
                 let moved_m =
-                    |axis: usize| ((pointer_m[axis] - grab.from_m[axis]) / snap_m).round() * snap_m;
+                    |axis: usize| ((pointer_m[axis] - now.from_m[axis]) / snap_m).round() * snap_m;
                 let [y_m, z_m] = self.next.handle_m(step);
                 let to_m = [y_m + moved_m(0), z_m + moved_m(1)];
                 let stairs = self.next.with_handle_at(step, to_m);

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::edit::StairsEdit;
+use super::edit::{StairsEdit, StairsResponse};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::short;
 use crate::studio::ui::text_rows::explain;
@@ -12,24 +12,20 @@ use snakes_core::world::Stairs;
 /// Change of a length per point by which its field is dragged, in metres.
 const SPEED_M: f32 = 0.01;
 
-/// Response of the table to the user.
-#[derive(Debug, Default)]
-pub(super) struct Listed {
-    /// Step whose row is under the pointer; the lowest is 0.
-    pub pointed: Option<u32>,
-    /// Change of the stairs: a step was changed, copied or removed.
-    pub edit: Option<StairsEdit>,
-}
-
-/// Draws a row for each step, the lowest first.
-pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) -> Listed {
-    let mut listed = Listed::default();
+/// Draws a row for each step, the lowest first. Adds to `response` the step whose row is under the pointer, and the change of
+/// the stairs if a step was changed, copied or removed.
+pub(super) fn table(
+    ui: &mut egui::Ui,
+    stairs: &Stairs,
+    pointed: Option<u32>,
+    response: &mut StairsResponse,
+) {
     if stairs.steps == 0 {
         explain(ui, "Flat ground: there are no steps.");
         if ui.button("Add a step").clicked() {
-            listed.edit = Some(StairsEdit::complete(Stairs { steps: 1, ..stairs.clone() }));
+            response.edit = Some(StairsEdit::complete(Stairs { steps: 1, ..stairs.clone() }));
         }
-        return listed;
+        return;
     }
     egui::Grid::new("steps").num_columns(5).spacing([theme::GAP, 2.0]).show(ui, |ui| {
         for heading in ["Step", "Rise", "Tread", "Top"] {
@@ -45,27 +41,28 @@ pub(super) fn table(ui: &mut egui::Ui, stairs: &Stairs, pointed: Option<u32>) ->
             }
             let row = ui.label(text);
             let (rise_m, tread_m) = (stairs.step_rise_m(step), stairs.step_tread_m(step));
-            let rise = length(ui, rise_m, &format!("Rise of step {number}"), -5.0..=5.0);
-            let tread = length(ui, tread_m, &format!("Tread of step {number}"), 0.1..=20.0);
-            let tread = tread.map(|to| to.edit(|length_m| stairs.with_step_tread(step, length_m)));
-            let rise = rise.map(|to| to.edit(|length_m| stairs.with_step_rise(step, length_m)));
-            listed.edit = rise.or(tread).or(listed.edit.take());
+            let name = format!("Rise of step {number}");
+            let rise =
+                length(ui, rise_m, &name, -5.0..=5.0, |to_m| stairs.with_step_rise(step, to_m));
+            let name = format!("Tread of step {number}");
+            let tread =
+                length(ui, tread_m, &name, 0.1..=20.0, |to_m| stairs.with_step_tread(step, to_m));
+            response.edit = rise.or(tread).or(response.edit.take());
             explain(ui, &format!("{:.2} m", stairs.height_m(number)));
             let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
             if copied {
-                listed.edit = Some(StairsEdit::complete(stairs.with_step_copied(step)));
+                response.edit = Some(StairsEdit::complete(stairs.with_step_copied(step)));
             }
             if removed {
-                listed.edit = Some(StairsEdit::complete(stairs.without_step(step)));
+                response.edit = Some(StairsEdit::complete(stairs.without_step(step)));
             }
             let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), row.rect.y_range());
             if ui.rect_contains_pointer(line) {
-                listed.pointed = Some(step);
+                response.pointed = response.pointed.or(Some(step));
             }
             ui.end_row();
         }
     });
-    listed
 }
 
 /// Draws the buttons of a row. Returns whether to copy the step, and whether to remove it.
@@ -80,26 +77,15 @@ fn buttons(ui: &mut egui::Ui, number: u32) -> [bool; 2] {
     [copied, removed]
 }
 
-/// A length that the user has changed.
-struct Changed {
-    length_m: f32,
-    is_complete: bool,
-}
-
-impl Changed {
-    /// Returns the change of the stairs, which `stairs` computes from the length.
-    fn edit(self, stairs: impl FnOnce(f32) -> Stairs) -> StairsEdit {
-        StairsEdit { stairs: stairs(self.length_m), is_complete: self.is_complete }
-    }
-}
-
-/// Draws a field for a length that can be dragged or typed. Returns the length if it has changed.
+/// Draws a field for a length that can be dragged or typed. Returns the change of the
+/// stairs, which `changed` computes from a new length.
 fn length(
     ui: &mut egui::Ui,
     length_m: f32,
     name: &str,
     range: std::ops::RangeInclusive<f32>,
-) -> Option<Changed> {
+    changed: impl FnOnce(f32) -> Stairs,
+) -> Option<StairsEdit> {
     let mut changed_m = length_m;
     let field = egui::DragValue::new(&mut changed_m)
         .speed(SPEED_M)
@@ -110,5 +96,5 @@ fn length(
     let response = named(ui.add(field), egui::WidgetType::DragValue, name);
     let is_complete = !response.dragged();
     let is_new = response.changed() || response.drag_stopped();
-    is_new.then_some(Changed { length_m: changed_m, is_complete })
+    is_new.then(|| StairsEdit { stairs: changed(changed_m), is_complete })
 }

@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
+use crate::studio::panels::settings::tests::click;
 use crate::studio::panels::testing::{press, shows};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::ui::theme;
@@ -66,11 +67,6 @@ fn house() -> Stairs {
 
 fn centre(window: &Window, name: &str) -> egui::Pos2 {
     window.get_by_label(name).rect().center()
-}
-
-fn click(window: &mut Window, name: &str) {
-    window.get_by_label(name).click();
-    window.run();
 }
 
 /// Drags the element with this name by some points, in many small steps.

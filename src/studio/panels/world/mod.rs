@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use bevy_egui::egui;
 
+use super::own_files::OwnName;
 use super::settings::Sheet;
 use super::stairs::stairs_choice;
 use super::undo_buttons::undo_buttons;
@@ -22,14 +23,15 @@ use snakes_core::schema::{ListedSetting, Section, SettingKind};
 use snakes_core::score::{AgentSettings, Trial};
 use snakes_core::world::Stairs;
 
-use presets::PresetChoice;
+use presets::preset_choice;
 use surface_readout::{ReadLanes, ReadSurface};
 
 /// The Change panel, with its search text and fields.
 #[derive(Debug, Default)]
 pub(super) struct WorldPanel {
     sheet: Sheet,
-    presets: PresetChoice,
+    /// Field for the name of a preset to save.
+    preset_name: OwnName,
     /// Text for which settings are searched.
     search: String,
 }
@@ -46,11 +48,22 @@ impl WorldPanel {
     ) {
         self.sheet.begin(ui, run);
         title_and(ui, "World", |ui| undo_buttons(ui, history, commands));
-        self.presets.ui(ui, run, commands);
+        preset_choice(ui, &mut self.preset_name, run, commands);
         next_run(ui, run, commands);
         self.search_field(ui);
         if self.search.trim().is_empty() {
-            self.sections(ui, run, on_stage, commands);
+            let all = self.sheet.sections("trial.");
+            let (first, others): (Vec<Section>, Vec<Section>) =
+                all.into_iter().partition(|section| FIRST.contains(section));
+            self.sheet.knob(ui, |path| path == GRAVITY);
+            for section in first {
+                self.folded(ui, section, run, on_stage, commands);
+            }
+            if self.sheet.fold(ui, ADVANCED, title_text("Advanced"), ADVANCED) {
+                for section in others {
+                    self.folded(ui, section, run, on_stage, commands);
+                }
+            }
         } else {
             self.search_results(ui);
         }
@@ -83,28 +96,6 @@ impl WorldPanel {
                 self.search.clear();
             }
         });
-    }
-
-    fn sections(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        on_stage: &ReadLanes,
-        commands: &mut Vec<Command>,
-    ) {
-        let all = self.sheet.sections("trial.");
-        let (first, others): (Vec<Section>, Vec<Section>) =
-            all.into_iter().partition(|section| FIRST.contains(section));
-        self.sheet.knob(ui, |path| path == GRAVITY);
-        for section in first {
-            self.folded(ui, section, run, on_stage, commands);
-        }
-        let label = title_text("Advanced");
-        if self.sheet.fold(ui, ADVANCED, label, ADVANCED) {
-            for section in others {
-                self.folded(ui, section, run, on_stage, commands);
-            }
-        }
     }
 
     /// Draws a section that its header unfolds.
@@ -218,19 +209,17 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         ("The current run uses these settings.", palette.text_weak)
     };
     ui.label(egui::RichText::new(text).color(color));
-    let button = egui::Button::new("New run in this world");
-    let button = ui.add_enabled(run.next_run_differs(), button);
     let hint = "Prepares and starts a run with the changed settings; the current run stays saved";
     let refusal = match run.status() {
+        _ if run.next_run_differs() => None,
         RunStatus::Running | RunStatus::Paused => {
-            "The current run uses these settings already: change a setting first"
+            Some("The current run uses these settings already: change a setting first")
         }
-        RunStatus::Ready => "The next run uses these settings: start it in the Watch panel",
-        RunStatus::Finished => "The finished run used these settings: change a setting first",
+        RunStatus::Ready => Some("The next run uses these settings: start it in the Watch panel"),
+        RunStatus::Finished => Some("The finished run used these settings: change a setting first"),
     };
-    if button.on_hover_text(hint).on_disabled_hover_text(refusal).clicked() {
-        commands.push(Command::Run(RunCommand::New));
-    }
+    let begin = Command::Run(RunCommand::New);
+    CommandButton::new("New run in this world", hint, begin).unless(refusal).show(ui, commands);
 }
 
 #[cfg(test)]

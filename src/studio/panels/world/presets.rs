@@ -10,36 +10,32 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::save::{KnownFiles, Preset};
 
-/// The selection of presets, with its text field.
-#[derive(Debug, Default)]
-pub(crate) struct PresetChoice {
-    /// Field for the name of a preset to save.
-    name: OwnName,
-}
-
-impl PresetChoice {
-    /// Draws the selection of presets, and collects the user's commands.
-    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-        ui.horizontal_wrapped(|ui| {
-            ui.label("Preset");
-            let list = egui::ComboBox::from_id_salt("preset")
-                .selected_text(in_words(run))
-                .width(theme::COMBO_WIDTH)
-                .height(theme::list_height(ui))
-                .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
-            let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
-            if list.clicked() {
-                // The folder may contain new files.
-                commands.push(Command::Plan(PlanCommand::ListPresets));
-            }
-            list.on_hover_text("Replaces all settings of the next run");
-            let hint = "Save the settings of the next run under a name, to use them again later";
-            let suggestion = || run.presets().name_for_copy(run.next_preset());
-            self.name.button(ui, ("Save as preset…", hint), suggestion);
-        });
-        if let Some(name) = self.name.field(ui, run.presets()) {
-            commands.push(Command::Plan(PlanCommand::StorePreset(name)));
+/// Draws the selection of presets, and the button and field that save a new one. Collects the user's commands.
+pub(super) fn preset_choice(
+    ui: &mut egui::Ui,
+    name: &mut OwnName,
+    run: &CurrentRun,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Preset");
+        let list = egui::ComboBox::from_id_salt("preset")
+            .selected_text(in_words(run))
+            .width(theme::COMBO_WIDTH)
+            .height(theme::list_height(ui))
+            .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
+        let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
+        if list.clicked() {
+            // The folder may contain new files.
+            commands.push(Command::Plan(PlanCommand::ListPresets));
         }
+        list.on_hover_text("Replaces all settings of the next run");
+        let hint = "Save the settings of the next run under a name, to use them again later";
+        let suggestion = || run.presets().name_for_copy(run.next_preset());
+        name.button(ui, ("Save as preset…", hint), suggestion);
+    });
+    if let Some(name) = name.field(ui, run.presets()) {
+        commands.push(Command::Plan(PlanCommand::StorePreset(name)));
     }
 }
 
@@ -147,11 +143,11 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     fn panel(run: &CurrentRun) -> Sent<'_> {
-        let mut choice = PresetChoice::default();
+        let mut name = OwnName::default();
         // The height is that of the smallest usual window.
         testing::panel([theme::PANEL_WIDTH, 720.0], move |ui, commands| {
             theme::apply(ui.ctx());
-            choice.ui(ui, run, commands);
+            preset_choice(ui, &mut name, run, commands);
         })
     }
 

@@ -58,19 +58,8 @@ struct ReadoutLine {
     term: &'static str,
     hint: &'static str,
     draw: fn(&LaneColumn, &mut egui::Ui),
-    /// Contents of the tooltip of a value in the line.
-    detail: ReadoutDetail,
-}
-
-/// Contents of the tooltip of a reading.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ReadoutDetail {
-    /// Slip, grip and depth of each limb.
-    Limbs,
-    /// Speed of the fastest point, and the readings of each limb.
-    LimbsAndFastest,
-    /// Energy that was lost, by cause.
-    Energy,
+    /// Draws the tooltip of a value in the line, below the line's hint.
+    explain: fn(&LaneColumn, &mut egui::Ui),
 }
 
 /// Lines of the readings. The last is about the whole snake, and is shown only with the stairs.
@@ -80,7 +69,7 @@ const LINES: [ReadoutLine; 6] = [
         term: "",
         hint: "Number of limbs that touched it in the last 0.25 s",
         draw: |column, ui| column.contact(ui),
-        detail: ReadoutDetail::Limbs,
+        explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
         name: "Slip speed",
@@ -88,7 +77,7 @@ const LINES: [ReadoutLine; 6] = [
         hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed limbs count most. \
                Near 0 the limbs hold",
         draw: |column, ui| column.value(ui, |reading| in_m_s(reading.slip_m_s)),
-        detail: ReadoutDetail::LimbsAndFastest,
+        explain: |column, ui| column.explain_slip(ui),
     },
     ReadoutLine {
         name: "Grip used",
@@ -96,7 +85,7 @@ const LINES: [ReadoutLine; 6] = [
         hint: "Share of the friction that is used: sideways force divided by friction times the force pressing down. Mean \
                of all contacts in the last 0.25 s. At 100 % everything that touches slides",
         draw: |column, ui| column.grip(ui),
-        detail: ReadoutDetail::Limbs,
+        explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
         name: "Sinks in",
@@ -104,7 +93,7 @@ const LINES: [ReadoutLine; 6] = [
         hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. \
                In a soft one, a limb that stands on its end can sink in by more than a metre",
         draw: |column, ui| column.value(ui, |reading| in_mm(reading.depth_m)),
-        detail: ReadoutDetail::Limbs,
+        explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
         name: "Heat",
@@ -112,7 +101,7 @@ const LINES: [ReadoutLine; 6] = [
         hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's \
                damping takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
         draw: |column, ui| column.value(ui, |reading| in_watts(reading.lost_w)),
-        detail: ReadoutDetail::Limbs,
+        explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
         name: "Lost so far",
@@ -121,7 +110,7 @@ const LINES: [ReadoutLine; 6] = [
                of the joints, minus the gain in motion and height, minus what the damping of joints and rotation took. A \
                dent holds a part of it, which may come back. Below 0, the engine has added energy",
         draw: |column, ui| column.lost(ui),
-        detail: ReadoutDetail::Energy,
+        explain: |column, ui| column.explain_energy(ui),
     },
 ];
 
@@ -161,36 +150,27 @@ impl<'l> ReadLanes<'l> {
             .default_open(surface != ReadSurface::Skin);
         let hint = "What the snake on the stage does there at the shown moment";
         folded(ui, header, hint, |ui| {
-            self.table(ui, surface, &|touched| surface.is_meant(has_own_ground, touched));
+            self.table(ui, surface, has_own_ground);
         });
     }
 
-    fn table(
-        &self,
-        ui: &mut egui::Ui,
-        surface: ReadSurface,
-        is_meant: &dyn Fn(TouchedSurface) -> bool,
-    ) {
-        let missing = if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
-            Some("Not available in a recording")
-        } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
-            Some("Not available for a ghost")
-        } else {
-            None
-        };
-        if let Some(missing) = missing {
-            return explain(ui, missing);
+    fn table(&self, ui: &mut egui::Ui, surface: ReadSurface, has_own_ground: bool) {
+        if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
+            return explain(ui, "Not available in a recording");
         }
-        let columns: Vec<LaneColumn> =
-            self.lanes.iter().map(|lane| LaneColumn::of(lane, self.is_playing, is_meant)).collect();
+        if self.lanes.iter().any(|lane| lane.is_ghost()) {
+            return explain(ui, "Not available for a ghost");
+        }
         let all_room = ui.available_width() - NAME_WIDTH;
         // Columns for which there is no room are drawn below the first ones.
         let most = ((all_room / (LEAST_COLUMN + theme::GAP)) as usize).max(1);
-        let beside = columns.len().div_ceil(columns.len().div_ceil(most));
-        let room = all_room / beside as f32 - theme::GAP;
+        let beside = self.lanes.len().div_ceil(self.lanes.len().div_ceil(most));
+        let width = all_room / beside as f32 - theme::GAP;
+        let is_meant = &|touched| surface.is_meant(has_own_ground, touched);
+        let column = |lane: &&'l Lane| LaneColumn::of(lane, width, self.is_playing, is_meant);
+        let columns: Vec<LaneColumn> = self.lanes.iter().map(column).collect();
         for (index, columns) in columns.chunks(beside).enumerate() {
-            let table = ReadoutTable { columns, is_meant, room };
-            self.grid(ui, (surface, index), &table);
+            self.grid(ui, (surface, index), columns);
         }
     }
 
@@ -199,21 +179,20 @@ impl<'l> ReadLanes<'l> {
         &self,
         ui: &mut egui::Ui,
         (surface, index): (ReadSurface, usize),
-        table: &ReadoutTable,
+        columns: &[LaneColumn],
     ) {
         let gap = theme::GAP;
         // A table with other columns is another one. It would be drawn once with the widths of the one before, so that its
         // texts overlap.
-        let columns = table.columns.len();
-        let grid = egui::Grid::new(("read-out", surface as u8, index, columns))
+        let grid = egui::Grid::new(("read-out", surface as u8, index, columns.len()))
             .min_col_width(0.0)
             .min_row_height(gap * 2.25)
             .spacing([gap, gap / 8.0]);
         grid.show(ui, |ui| {
             if self.are_named {
                 ui.label("");
-                for column in table.columns {
-                    table.cell(ui, |ui| {
+                for column in columns {
+                    cell(ui, column.width, |ui| {
                         let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
                         let label = column.lane.staged().label();
                         let name = weak(ui, head_of(ui, label));
@@ -223,10 +202,10 @@ impl<'l> ReadLanes<'l> {
                 }
                 ui.end_row();
             }
-            let lines = LINES.iter().filter(|line| {
-                surface == ReadSurface::Stairs || line.detail != ReadoutDetail::Energy
-            });
-            lines.for_each(|line| table.line(ui, line));
+            let of_snake = usize::from(surface == ReadSurface::Stairs);
+            for line in &LINES[..LINES.len() - 1 + of_snake] {
+                line.ui(ui, columns);
+            }
         });
     }
 }
@@ -243,47 +222,38 @@ fn head_of(ui: &egui::Ui, label: &str) -> String {
     }
 }
 
-/// A table of readings with a column for each lane.
-struct ReadoutTable<'c, 'l> {
-    columns: &'c [LaneColumn<'l>],
-    /// Returns whether a surface that a limb touches belongs to the section.
-    is_meant: &'c dyn Fn(TouchedSurface) -> bool,
-    /// Width of a column, in points.
-    room: f32,
-}
-
-impl ReadoutTable<'_, '_> {
-    fn line(&self, ui: &mut egui::Ui, line: &ReadoutLine) {
-        let hint = match line.term {
-            "" => line.hint.to_owned(),
-            term => format!("{}.\nIn the terms of the field: {term}", line.hint),
+impl ReadoutLine {
+    /// Draws the line in a table with these columns.
+    fn ui(&self, ui: &mut egui::Ui, columns: &[LaneColumn]) {
+        let hint = match self.term {
+            "" => self.hint.to_owned(),
+            term => format!("{}.\nIn the terms of the field: {term}", self.hint),
         };
-        let size = egui::vec2(NAME_WIDTH, theme::GAP * 2.25);
-        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_width(NAME_WIDTH);
-            ui.label(weak(ui, line.name)).on_hover_text(hint);
-        });
-        for column in self.columns {
-            let cell = self.cell(ui, |ui| (line.draw)(column, ui));
+        cell(ui, NAME_WIDTH, |ui| drop(ui.label(weak(ui, self.name)).on_hover_text(hint)));
+        for column in columns {
+            let cell = cell(ui, column.width, |ui| (self.draw)(column, ui));
             // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
-            let id = ui.id().with((line.name, column.lane.number()));
-            ui.interact(cell.rect, id, egui::Sense::hover())
-                .on_hover_ui(|ui| column.explain(ui, line, self.is_meant));
+            let id = ui.id().with((self.name, column.lane.number()));
+            ui.interact(cell.rect, id, egui::Sense::hover()).on_hover_ui(|ui| {
+                ui.set_max_width(theme::NOTICE_WIDTH);
+                ui.label(self.hint);
+                (self.explain)(column, ui);
+            });
         }
         ui.end_row();
     }
+}
 
-    /// Draws a cell of fixed width, so that nothing moves while the values change.
-    fn cell(&self, ui: &mut egui::Ui, content: impl FnOnce(&mut egui::Ui)) -> egui::Response {
-        let size = egui::vec2(self.room, theme::GAP * 2.25);
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
-            ui.set_width(self.room);
-            ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            content(ui);
-        });
-        shown.response
-    }
+/// Draws a cell of this fixed width, in points, so that nothing moves while the values change.
+fn cell(ui: &mut egui::Ui, width: f32, content: impl FnOnce(&mut egui::Ui)) -> egui::Response {
+    let size = egui::vec2(width, theme::GAP * 2.25);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_width(width);
+        ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
+        content(ui);
+    });
+    shown.response
 }
 
 #[cfg(test)]

@@ -40,15 +40,9 @@ fn draw_letters(context: &egui::Context, pixels_per_point: f32, is_presenting: b
     let sizes = [TITLE_SIZE, HEADING_SIZE, TAG_SIZE, SMALL_SIZE - 1.0];
     let large = PRESENTED_SIZES.into_iter().chain([PRESENTED_DETAIL_SIZE]);
     let sizes = sizes.into_iter().chain(large.filter(|_| is_presenting));
-    let others = [
-        egui::TextStyle::Body,
-        egui::TextStyle::Monospace,
-        egui::TextStyle::Small,
-        egui::TextStyle::Button,
-    ];
-    let others = others.map(|of| of.resolve(&style));
     context.fonts_mut(|view| {
-        for font in sizes.map(egui::FontId::proportional).chain(others) {
+        for font in sizes.map(egui::FontId::proportional).chain(style.text_styles.values().cloned())
+        {
             let job = LayoutJob::simple_singleline(letters.clone(), font, Color32::WHITE);
             layout(view.fonts, pixels_per_point, Arc::new(job));
         }

@@ -11,7 +11,7 @@ fn subject(kind: ControllerKind, individual: u32, trial: &Trial) -> Subject {
     let space = snakes_core::genome::GenomeSpace { controller: kind, ..Default::default() };
     let mut rng = stream(1, 1, individual, Purpose::Birth);
     let genome = Arc::new(space.random_genome(trial.genome_shape(), &mut rng));
-    let name = name_of(1, individual);
+    let name = snake_of_generation(IndividualId { generation: 1, individual });
     Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
 }
 
@@ -74,15 +74,18 @@ fn the_torques_are_those_of_the_selected_snake_and_its_parent() {
         let champion: Champion = run.individual(place).expect("kept");
         StagedChampion::from_run(&champion, run.number())
     };
-    let name = |of: IndividualId| name_of(of.generation, of.individual);
     let mut torques = TorqueComparison::default();
     torques.update(&run, Some(&staged(child))).expect("a snake");
     let figure = computed(&mut torques).figure;
-    assert_eq!(figure.title, format!("Torques: {}", name(child)));
-    assert!(figure.note.contains(&format!("its parent, {}", name(parent))), "{}", figure.note);
+    assert_eq!(figure.title, format!("Torques: {}", snake_of_generation(child)));
+    assert!(
+        figure.note.contains(&format!("its parent, {}", snake_of_generation(parent))),
+        "{}",
+        figure.note
+    );
     torques.update(&run, Some(&staged(parent))).expect("a snake");
     let figure = computed(&mut torques).figure;
-    assert_eq!(figure.title, format!("Torques: {}", name(parent)));
+    assert_eq!(figure.title, format!("Torques: {}", snake_of_generation(parent)));
 }
 
 #[test]

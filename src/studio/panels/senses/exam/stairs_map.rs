@@ -11,19 +11,13 @@ use crate::studio::ui::theme;
 use crate::studio::ui::theme::palette::{ramp, text_on};
 use snakes_core::score::{ExamSuite, StairsCell, StairsGrid, Trial};
 
-/// A map of an exam's grid, and its place in the panel.
+/// A map of an exam's grid in the panel.
 pub(super) struct StairsMap<'m> {
     pub grid: &'m StairsGrid,
     /// Title above the map.
-    pub title: &'m str,
+    title: &'static str,
     /// Examined snake, as the stage shows it.
-    pub staged: &'m StagedChampion,
-    pub place: MapPlace,
-}
-
-/// Place of a map in the panel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct MapPlace {
+    staged: &'m StagedChampion,
     /// Rectangle of all cells, in points.
     cells: egui::Rect,
     /// Whether the labels of the rises are to the left of the map.
@@ -44,9 +38,13 @@ const DOT: f32 = 2.5;
 /// Size of a colour sample in the legend, in points.
 const SAMPLE: egui::Vec2 = egui::vec2(theme::GAP * 2.5, theme::GAP * 2.0);
 
-impl MapPlace {
-    /// Places grids of the same stairs side by side.
-    pub fn side_by_side(ui: &mut egui::Ui, grids: &[StairsGrid]) -> Vec<Self> {
+impl<'m> StairsMap<'m> {
+    /// Places the maps of grids of the same stairs side by side.
+    pub fn side_by_side(
+        ui: &mut egui::Ui,
+        grids: &'m [StairsGrid],
+        staged: &'m StagedChampion,
+    ) -> Vec<Self> {
         let columns: usize = grids.iter().map(|grid| grid.treads_m.len()).sum();
         let rows = grids.iter().map(|grid| grid.rises_m.len()).max().unwrap_or(0);
         let gaps = APART * grids.len().saturating_sub(1) as f32;
@@ -57,25 +55,29 @@ impl MapPlace {
         let all = egui::vec2(ui.available_width(), height);
         let (all, _) = ui.allocate_exact_size(all, egui::Sense::hover());
         let mut left = all.left() + RISES_WIDTH;
-        let place = |(index, grid): (usize, &StairsGrid)| {
+        let map = |(index, grid): (usize, &'m StairsGrid)| {
             let at = egui::pos2(left, all.top() + 2.0 * LINE);
             let size = egui::vec2(width * grid.treads_m.len() as f32, CELL_HEIGHT * rows as f32);
             left += size.x + APART;
-            Self { cells: egui::Rect::from_min_size(at, size), has_rises: index == 0 }
+            let title = match grid.suite {
+                ExamSuite::Lesion => "Without senses",
+                _ if grids.len() > 1 => "With senses",
+                _ => "On other stairs",
+            };
+            let cells = egui::Rect::from_min_size(at, size);
+            Self { grid, title, staged, cells, has_rises: index == 0 }
         };
-        grids.iter().enumerate().map(place).collect()
+        grids.iter().enumerate().map(map).collect()
     }
 
     /// Returns the rectangle of the cell in a row, counted from the bottom, and a column, counted from the left.
-    fn cell(&self, grid: &StairsGrid, row: usize, column: usize) -> egui::Rect {
-        let (rows, columns) = (grid.rises_m.len() as f32, grid.treads_m.len() as f32);
+    fn cell(&self, row: usize, column: usize) -> egui::Rect {
+        let (rows, columns) = (self.grid.rises_m.len() as f32, self.grid.treads_m.len() as f32);
         let size = self.cells.size() / egui::vec2(columns, rows);
         let corner = egui::vec2(column as f32 * size.x, (rows - 1.0 - row as f32) * size.y);
         egui::Rect::from_min_size(self.cells.min + corner, size).shrink(0.5)
     }
-}
 
-impl StairsMap<'_> {
     /// Draws the map. Returns the index of the clicked cell, if any.
     pub fn ui(&self, ui: &mut egui::Ui) -> Option<usize> {
         self.labels(ui);
@@ -87,7 +89,7 @@ impl StairsMap<'_> {
             let Some((row, column)) = row.zip(same(&self.grid.treads_m, cell.tread_m)) else {
                 continue;
             };
-            let rect = self.place.cell(self.grid, row, column);
+            let rect = self.cell(row, column);
             let id = ui.id().with(("exam", self.title, index));
             let response = ui.interact(rect, id, egui::Sense::click());
             self.draw(ui, cell, rect);
@@ -116,7 +118,7 @@ impl StairsMap<'_> {
     /// Draws the title, the count and the axes of the map.
     fn labels(&self, ui: &egui::Ui) {
         let palette = theme::of(ui);
-        let cells = self.place.cells;
+        let cells = self.cells;
         let body = egui::TextStyle::Body.resolve(ui.style());
         let small = egui::FontId::proportional(theme::SMALL_SIZE);
         let text =
@@ -130,18 +132,18 @@ impl StairsMap<'_> {
         let at = egui::pos2(cells.left(), cells.top() - theme::GAP / 2.0);
         text(at, egui::Align2::LEFT_BOTTOM, count, &small, palette.text_weak);
         for (column, tread_m) in self.grid.treads_m.iter().enumerate() {
-            let at = self.place.cell(self.grid, 0, column).center_bottom();
+            let at = self.cell(0, column).center_bottom();
             let at = at + egui::vec2(0.0, theme::GAP / 4.0);
             text(at, egui::Align2::CENTER_TOP, tread_m.to_string(), &small, palette.text_weak);
         }
         let at = egui::pos2(cells.center().x, cells.bottom() + LINE - theme::GAP / 4.0);
         text(at, egui::Align2::CENTER_TOP, "Tread (m)".to_owned(), &small, palette.text_weak);
-        if !self.place.has_rises {
+        if !self.has_rises {
             return;
         }
         let right = cells.left() - theme::GAP / 2.0;
         for (row, rise_m) in self.grid.rises_m.iter().enumerate() {
-            let at = egui::pos2(right, self.place.cell(self.grid, row, 0).center().y);
+            let at = egui::pos2(right, self.cell(row, 0).center().y);
             text(at, egui::Align2::RIGHT_CENTER, rise_m.to_string(), &small, palette.text_weak);
         }
         let at = egui::pos2(right, cells.top() - theme::GAP / 2.0);

@@ -2,7 +2,6 @@
 
 use bevy_egui::egui;
 
-use super::{ReadoutDetail, ReadoutLine};
 use crate::studio::stage::contact_meter::SurfaceReading;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::accessible::named;
@@ -24,16 +23,25 @@ const SLIDES_FROM: f32 = 0.995;
 /// A column of the table: a lane with its reading on one surface.
 pub(super) struct LaneColumn<'l> {
     pub lane: &'l Lane,
+    /// Width of the column, in points.
+    pub width: f32,
     /// Reading of the surface; `None` if no limb touches it.
     reading: Option<SurfaceReading>,
     is_playing: bool,
+    /// Returns whether a surface that a limb touches belongs to the section.
+    is_meant: &'l dyn Fn(TouchedSurface) -> bool,
 }
 
 impl<'l> LaneColumn<'l> {
     /// Creates the column of a lane for the surfaces for which `is_meant` holds.
-    pub fn of(lane: &'l Lane, is_playing: bool, is_meant: impl Fn(TouchedSurface) -> bool) -> Self {
+    pub fn of(
+        lane: &'l Lane,
+        width: f32,
+        is_playing: bool,
+        is_meant: &'l dyn Fn(TouchedSurface) -> bool,
+    ) -> Self {
         let reading = lane.readings().meter.surface(is_playing, is_meant);
-        Self { lane, reading, is_playing }
+        Self { lane, width, reading, is_playing, is_meant }
     }
 
     /// Draws the energy lost so far in contacts and at the stops of the joints.
@@ -83,27 +91,26 @@ impl<'l> LaneColumn<'l> {
         number(ui, &format!("{percent:>5}"));
     }
 
-    /// Draws the tooltip of a value: its meaning, and the readings of each limb that touches the surface.
-    pub fn explain(
-        &self,
-        ui: &mut egui::Ui,
-        line: &ReadoutLine,
-        is_meant: impl Fn(TouchedSurface) -> bool,
-    ) {
-        ui.set_max_width(theme::NOTICE_WIDTH);
-        ui.label(line.hint);
-        if line.detail == ReadoutDetail::Energy {
-            return self.explain_energy(ui);
-        }
-        let Some(reading) = self.reading else { return };
-        if line.detail == ReadoutDetail::LimbsAndFastest {
+    /// Draws the speed of the fastest point, and the readings of each limb.
+    pub fn explain_slip(&self, ui: &mut egui::Ui) {
+        if let Some(reading) = self.reading {
             ui.label(format!("Fastest point: {:.2} m/s", reading.top_slip_m_s));
+        }
+        self.explain_limbs(ui);
+    }
+
+    /// Draws slip, grip and depth of each limb that touches the surface.
+    pub fn explain_limbs(&self, ui: &mut egui::Ui) {
+        if self.reading.is_none() {
+            return;
         }
         let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
         grid.show(ui, |ui| {
             for limb in 0..self.lane.body().limbs() {
                 let meter = &self.lane.readings().meter;
-                let Some(reading) = meter.limb(self.is_playing, limb, &is_meant) else { continue };
+                let Some(reading) = meter.limb(self.is_playing, limb, self.is_meant) else {
+                    continue;
+                };
                 ui.label(format!("Limb {}", limb + 1));
                 for text in [
                     format!("{:5.2} m/s", reading.slip_m_s),
@@ -118,7 +125,7 @@ impl<'l> LaneColumn<'l> {
     }
 
     /// Draws a list of the energy lost, by cause.
-    fn explain_energy(&self, ui: &mut egui::Ui) {
+    pub fn explain_energy(&self, ui: &mut egui::Ui) {
         let Some(lost) = self.lane.readings().energy_lost else {
             if self.lane.is_disturbed() {
                 ui.label("Unknown, because the mouse has pulled the snake.");

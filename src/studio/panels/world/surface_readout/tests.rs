@@ -2,7 +2,9 @@
 
 use super::lane_column::in_joules;
 use super::*;
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
+use crate::studio::panels::settings::tests::{
+    assert_no_texts_overlap, assert_nothing_is_wider_than, assert_shows,
+};
 use crate::studio::panels::testing::{climber, climber_lane, shows};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::decimals::in_percent;
@@ -154,9 +156,7 @@ fn the_columns_of_one_settings_values_are_told_apart_by_their_values() {
     };
     let lanes = ["0.05", "0.018", "0.13"].map(changed);
     let panel = panel(lanes.iter().collect(), ReadSurface::Stairs, 320.0 + 16.0);
-    for value in ["…0.05", "…0.018", "…0.13"] {
-        assert!(shows(&panel, value), "{value}");
-    }
+    assert_shows(&panel, &["…0.05", "…0.018", "…0.13"]);
 }
 
 #[test]
@@ -173,17 +173,5 @@ fn a23_texts_do_not_overlap_in_the_frame_after_a_change_is_discarded() {
     harness.run();
     shown.set(1);
     harness.step();
-    let texts = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-        egui::Shape::Text(text) => {
-            Some((text.galley.text().to_owned(), clipped.shape.visual_bounding_rect()))
-        }
-        _ => None,
-    });
-    let texts: Vec<_> = texts.collect();
-    assert!(texts.len() > 8, "{texts:?}");
-    for (index, (text, rect)) in texts.iter().enumerate() {
-        for (other, beside) in &texts[index + 1..] {
-            assert!(!rect.shrink(1.0).intersects(beside.shrink(1.0)), "{text} and {other}");
-        }
-    }
+    assert_no_texts_overlap(&harness, egui::Rect::EVERYTHING, 9, 1.0);
 }

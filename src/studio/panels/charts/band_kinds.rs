@@ -1,10 +1,39 @@
-//! Chart of the numbers of blocks in evolving bodies, and of the size of the best body.
+//! The kinds of bands: species of networks, and numbers of blocks in evolving bodies.
 
-use super::bands::{Bands, BestNumbers};
+use super::bands::Bands;
+use snakes_core::genome::ControllerGenes;
 use snakes_lab::run::GenerationReport;
 
+/// Texts of the chart of species by generation.
+pub(super) const SPECIES: &Bands = &Bands {
+    title: "Species by generation",
+    name: "Species",
+    note: "Each band is a species; its height is the number of its snakes.",
+    band: |number| format!("Species {number}"),
+    count: |count| format!("{count} species"),
+    rest: "smaller species",
+    column: "species",
+    best: "Best network",
+    best_axis: "Links and hidden nodes",
+    best_names: ["links of the best network", "its hidden nodes"],
+    best_columns: ["links of the best network", "hidden nodes of the best network"],
+    best_of: network_size,
+    best_words: |[links, hidden]| {
+        let nodes = if hidden == 1.0 { "node" } else { "nodes" };
+        format!("{links} links\n{hidden} hidden {nodes}")
+    },
+};
+
+/// Returns the numbers of enabled links and of hidden nodes in the best snake's network.
+fn network_size(report: &GenerationReport) -> Option<[f64; 2]> {
+    let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
+        return None;
+    };
+    Some([genes.network.enabled_links() as f64, genes.network.hidden().len() as f64])
+}
+
 /// Texts of the chart of the numbers of blocks by generation.
-pub(super) static BLOCKS: Bands = Bands {
+pub(super) const BLOCKS: &Bands = &Bands {
     title: "Blocks by generation",
     name: "Blocks",
     note: "Each band is a number of blocks; its height is the number of snakes that have it.",
@@ -15,14 +44,12 @@ pub(super) static BLOCKS: Bands = Bands {
     },
     rest: "others",
     column: "blocks",
-    best: BestNumbers {
-        name: "Best body",
-        axis: "Blocks, and length in m",
-        names: ["blocks of the best body", "its length in m"],
-        columns: ["blocks of the best body", "length of the best body (m)"],
-        of: body_size,
-        words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
-    },
+    best: "Best body",
+    best_axis: "Blocks, and length in m",
+    best_names: ["blocks of the best body", "its length in m"],
+    best_columns: ["blocks of the best body", "length of the best body (m)"],
+    best_of: body_size,
+    best_words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
 };
 
 /// Returns the number of blocks of the best snake, and its length in metres.
@@ -50,7 +77,7 @@ mod tests {
         }
         let all: u32 = report.species.iter().map(|band| band.size).sum();
         assert_eq!(all, report.evaluations);
-        let view = view(&BLOCKS, run.settings(), run.reports());
+        let view = view(BLOCKS, run.settings(), run.reports());
         let words = view.hits[0][0].words();
         assert!(words.starts_with("Bodies of 2 blocks in generation 1\n"), "{words}");
         let best = view.hits[1][0].words();
