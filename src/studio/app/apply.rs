@@ -60,7 +60,7 @@ pub(super) fn apply(
     let notices = &mut *notices;
     for command in commands.read() {
         let before = run.next_plan().clone();
-        let left = stage.scene(&view.rig);
+        let left = stage.scene(command, &view.rig);
         let frames = |workspace: &Workspace, lessons: &Lessons| FrameState {
             is_presenting: workspace.is_presenting(),
             is_lesson: lessons.view().is_some(),
@@ -71,7 +71,8 @@ pub(super) fn apply(
                 Err(LESSON.to_owned())
             }
             Command::Run(command) => {
-                if replaces_run(command, &run) {
+                let is_other = replaces_run(command, &run);
+                if is_other {
                     let takes_change = !matches!(command, RunCommand::Continue(_));
                     if let Some(change) = stage.tried_change().filter(|_| takes_change) {
                         notices
@@ -79,7 +80,12 @@ pub(super) fn apply(
                     }
                     stage.settle();
                 }
-                run.apply(command, notices)
+                run.apply(command, notices).inspect(|()| {
+                    if is_other {
+                        // Nothing leads from the new run back to the scenes of the one before.
+                        stage.way_back.forget();
+                    }
+                })
             }
             Command::Plan(command) => {
                 stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)

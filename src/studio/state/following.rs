@@ -98,6 +98,13 @@ impl Following {
         self.repeats = repeats;
     }
 
+    /// Follows again what an earlier scene followed, unless another run has begun since. No generation is announced twice.
+    pub fn restore(&mut self, earlier: Self) {
+        if earlier.run == self.run {
+            *self = Self { announced: self.announced, repeats: self.repeats, ..earlier };
+        }
+    }
+
     /// Shows the first, a middle and the latest of the better generations in turn.
     ///
     /// # Errors
@@ -313,6 +320,22 @@ mod tests {
         following.stop();
         assert_eq!(following.due(&run, true), None);
         assert!(!following.awaits_first());
+    }
+
+    #[test]
+    fn a_generation_is_announced_once_even_if_an_earlier_scene_comes_back() {
+        let mut app = App::new();
+        app.insert_resource(explored_run())
+            .init_resource::<Following>()
+            .init_resource::<Notices>()
+            .add_systems(Update, announce);
+        let earlier = app.world().resource::<Following>().clone();
+        app.update();
+        assert_eq!(app.world().resource::<Notices>().len(), 1);
+        app.insert_resource(Notices::default());
+        app.world_mut().resource_mut::<Following>().restore(earlier);
+        app.update();
+        assert_eq!(app.world().resource::<Notices>().len(), 0, "it was announced before");
     }
 
     #[test]

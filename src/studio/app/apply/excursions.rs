@@ -1,9 +1,7 @@
 //! Effect of each command on the way back to earlier scenes of the stage.
 
 use super::stage::StageParams;
-use crate::studio::commands::{
-    BodyCommand, Command, ExamCommand, PlanCommand, RunCommand, StageCommand,
-};
+use crate::studio::commands::{BodyCommand, Command, ExamCommand, PlanCommand, StageCommand};
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::way_back::{Excursion, LeftScene, WayBack};
 use crate::studio::stage::StageMode;
@@ -49,7 +47,9 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
         Command::Exam(ExamCommand::BackToOwnStairs) => Effect::Leave(Excursion::Exam),
         Command::Body(BodyCommand::Close) => Effect::Leave(Excursion::Body),
         _ if shown.is_none() => Effect::None,
-        Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) => Effect::Settle,
+        Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) | Command::Run(_) => {
+            Effect::Settle
+        }
         Command::Plan(_) | Command::Undo | Command::Redo => match shown.map(is_what_if) {
             Some(true) if !is_what_if(from) => Effect::Enter(Excursion::WhatIf),
             Some(false) if is_what_if(from) => Effect::Leave(Excursion::WhatIf),
@@ -71,32 +71,35 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
         Command::Exam(_) => Effect::Enter(Excursion::Exam),
         Command::Body(_) => Effect::Enter(Excursion::Body),
         Command::Stage(ShowGeneration(_)) | Command::Lesson(_) => Effect::Forget,
-        Command::Run(
-            RunCommand::Start | RunCommand::New | RunCommand::Reset | RunCommand::Continue(_),
-        ) => Effect::Forget,
         _ => Effect::None,
     }
 }
 
+/// Returns whether a command may begin an excursion, so that the scene before it has to be copied.
+fn may_begin(command: &Command) -> bool {
+    use Command::{Machines, Notify, Player, Quit, Run, Share, View};
+    !matches!(command, Run(_) | Player(_) | View(_) | Share(_) | Machines(_) | Notify(_) | Quit)
+}
+
 impl StageParams<'_, '_> {
-    /// Returns the present scene without its lanes, which are copied only when an excursion begins.
-    pub(super) fn scene(&self, camera: &CameraRig) -> LeftScene {
-        LeftScene {
+    /// Returns the scene before a command, if the command may begin an excursion. The lanes are copied only when it does.
+    pub(super) fn scene(&self, command: &Command, camera: &CameraRig) -> Option<LeftScene> {
+        may_begin(command).then(|| LeftScene {
             mode: self.mode.clone(),
             lanes: Vec::new(),
             playback: self.playback.clone(),
             camera: camera.clone(),
             selected: (self.selection.lane, self.selection.limb),
             following: self.following.clone(),
-        }
+        })
     }
 
     /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
-    /// is the scene before the command.
+    /// is the scene before the command: see [`Self::scene`].
     pub(super) fn finish(
         &mut self,
         command: &Command,
-        left: LeftScene,
+        left: Option<LeftScene>,
         (before, after): (FrameState, FrameState),
         camera: &mut CameraRig,
     ) {
@@ -124,16 +127,18 @@ impl StageParams<'_, '_> {
             (FrameState { is_lesson: true, .. }, FrameState { is_lesson: false, .. }) => {
                 Effect::Leave(teaches)
             }
-            _ => effect(command, &left.mode, mode, &self.way_back),
+            _ => effect(command, &self.mode, mode, &self.way_back),
         };
         match effect {
             Effect::None => {}
             Effect::Enter(excursion) => {
-                let lanes = &self.lanes;
-                self.way_back.enter(excursion, || {
-                    let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
-                    LeftScene { lanes, ..left }
-                });
+                if let Some(left) = left {
+                    let lanes = &self.lanes;
+                    self.way_back.enter(excursion, || {
+                        let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
+                        LeftScene { lanes, ..left }
+                    });
+                }
             }
             Effect::Leave(excursion) => {
                 if let Some(scene) = self.way_back.leave(excursion) {

@@ -118,7 +118,7 @@ impl StageParams<'_, '_> {
         *self.mode = scene.mode;
         self.playback.restore(&scene.playback);
         (self.selection.lane, self.selection.limb) = scene.selected;
-        *self.following = scene.following;
+        self.following.restore(scene.following);
         *camera = scene.camera;
     }
 

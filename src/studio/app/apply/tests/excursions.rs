@@ -4,9 +4,12 @@ use super::*;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{ExamCommand, StageCommand};
 use crate::studio::stage;
-use crate::studio::state::current_run::{climber, explored_run};
+use crate::studio::state::current_run::{climber, explored_run, small_run};
+use crate::studio::state::options::Options;
+use crate::studio::state::run_context::RunContext;
 use crate::studio::state::stairs_exams::tests::made_up;
 use bevy::time::TimeUpdateStrategy;
+use snakes_core::save::SavesFolder;
 use snakes_core::score::ExamSuite;
 use snakes_core::world::Pose;
 use std::time::Duration;
@@ -177,4 +180,22 @@ fn a5_a6_one_snake_of_a_crowd_keeps_its_moment_and_leads_back_to_the_crowd() {
     assert_eq!(alone.poses[0], crowd.poses[0]);
     send(&mut app, &Command::Stage(StageCommand::Leave));
     assert_eq!(differences(&seen(&mut app), &crowd), Vec::<&str>::new());
+}
+
+#[test]
+fn a_new_run_leads_back_to_no_scene_of_the_one_before_and_a_refused_one_changes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let missing = RunCommand::Continue(folder.path().join("missing"));
+    for (command, can_leave) in
+        [(RunCommand::New, false), (RunCommand::Reset, false), (missing, true)]
+    {
+        let mut app = studio();
+        let saves = SavesFolder::find(Some(folder.path()));
+        let options = Options::of_test(small_run(&saves, 1, 3), saves);
+        app.insert_resource(CurrentRun::new(RunContext::new(&options)));
+        send(&mut app, &Command::Stage(StageCommand::RaceStairs));
+        assert!(app.world().resource::<WayBack>().can_leave());
+        send(&mut app, &Command::Run(command.clone()));
+        assert_eq!(app.world().resource::<WayBack>().can_leave(), can_leave, "{command:?}");
+    }
 }
