@@ -21,7 +21,7 @@ mod state;
 mod ui;
 mod workspace;
 
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
@@ -34,7 +34,7 @@ use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;
 use failure::gpu_loss::Failure;
 use schedule::FrameSet;
-use stage::opening::{NamedChampion, OpeningChampions};
+use stage::opening::OpeningChampions;
 use state::following::Following;
 use state::options::OpenedComparison;
 use state::run_context::RunContext;
@@ -60,23 +60,22 @@ const SHIPPED: &str = "climber (built-in)";
 /// See [`StudioError`].
 pub fn run(options: Options) -> Result<(), StudioError> {
     let has_champions = !options.champions.is_empty();
-    let mut saved: Vec<NamedChampion> =
-        options.champions.clone().into_iter().map(NamedChampion::from).collect();
+    let mut saved = options.champions.clone();
     if saved.is_empty() {
-        saved.push(NamedChampion::from((SHIPPED.to_owned(), shipped_champion()?)));
+        saved.push((SHIPPED.to_owned(), shipped_champion()?));
     }
     let mut remembered = StoredPreferences::read(&options.preferences);
     if options.exit_after_frames.is_some() {
         // Automated runs have no user, so preferences are not saved.
         remembered = remembered.only_read();
     }
-    let chosen = remembered.chosen().clone();
+    let chosen = remembered.stored.clone();
     let theme = options.theme.unwrap_or_else(|| chosen.theme.parse().unwrap_or_default());
     let size = options.window_size.or(chosen.window_size).unwrap_or(WINDOW_SIZE);
     // Skip the tour in automated runs.
     let tour_is_over = chosen.tour_is_over || options.exit_after_frames.is_some();
     let engine = RunContext::new(&options);
-    let run_folder = engine.run_folder();
+    let run_folder = Arc::clone(&engine.run_folder);
     let exit_after = options.exit_after_frames;
     let problems = options.problems.clone();
     let failure = Failure::default();

@@ -74,11 +74,10 @@ pub(super) fn apply(
                 let is_other = replaces_run(command, &run);
                 if is_other {
                     let takes_change = !matches!(command, RunCommand::Continue(_));
-                    if let Some(change) = stage.tried_change().filter(|_| takes_change) {
+                    if let Some(change) = stage.settle().filter(|_| takes_change) {
                         notices
                             .info(format!("The new run has the change that was tried: {change}."));
                     }
-                    stage.settle();
                 }
                 run.apply(command, notices).inspect(|()| {
                     if is_other {

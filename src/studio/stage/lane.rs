@@ -38,7 +38,8 @@ pub(crate) struct Lane {
     before: Vec<Pose>,
     /// Displayed fraction of the last step, from 0 to 1, for the interpolation of poses.
     share: f32,
-    step_s: f64,
+    /// Length of a physics step, in seconds.
+    pub step_s: f64,
     /// Contacts, torques and joints after the last step.
     readings: Readings,
     /// Path of the middle limb since the first pull by the mouse, in metres.
@@ -48,7 +49,7 @@ pub(crate) struct Lane {
     /// Whether the final state has been compared with the champion's record.
     is_checked: bool,
     /// Whether the lane came back with an earlier scene, so that camera and selection stay as they were.
-    is_back: bool,
+    pub is_back: bool,
 }
 
 /// Maximum physics steps per frame, as a sum over all lanes (about 60 ms on one core).
@@ -135,11 +136,6 @@ impl Lane {
     /// Returns the trial that the lane shows.
     pub fn trial(&self) -> &Trial {
         self.staged.trial()
-    }
-
-    /// Returns the length of a physics step, in seconds.
-    pub fn step_s(&self) -> f64 {
-        self.step_s
     }
 
     /// Returns the end of the lane, in simulated seconds: the time of disqualification, if it is known, or else the end of the trial.

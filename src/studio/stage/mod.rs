@@ -203,15 +203,17 @@ fn put_on_stage(
         let stays = matches!(*on_stage, StageMode::WhatIf { .. });
         match outdated.iter().position(|(_, earlier)| stays && earlier.is_like(&lane)) {
             Some(index) => *outdated.swap_remove(index).1 = lane,
-            None => spawn(&mut commands, lane),
+            None => {
+                commands.spawn(placed(lane));
+            }
         }
     }
     outdated.into_iter().for_each(|(lane, _)| commands.entity(lane).despawn());
 }
 
-/// Spawns a lane at its offset.
-pub(super) fn spawn(commands: &mut Commands, lane: Lane) {
-    commands.spawn((Transform::from_translation(lane.offset()), Visibility::default(), lane));
+/// Returns the components of a lane at its offset.
+pub(super) fn placed(lane: Lane) -> impl Bundle {
+    (Transform::from_translation(lane.offset()), Visibility::default(), lane)
 }
 
 /// Advances the clock, and brings every lane to the clock's time.
@@ -226,7 +228,7 @@ fn advance(
     let most_steps = MAX_STEPS_PER_FRAME / (lanes.iter().len() as u32).max(1);
     let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
     for (_, lane) in &lanes {
-        steps_per_s += lane.step_s().recip();
+        steps_per_s += lane.step_s.recip();
         end_s = end_s.max(lane.end_s());
     }
     if steps_per_s == 0.0 {

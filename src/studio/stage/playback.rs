@@ -15,16 +15,17 @@ pub(crate) struct Playback {
     time_s: f64,
     speed: f32,
     is_playing: bool,
-    loops: bool,
+    /// Whether playback restarts after the end.
+    pub loops: bool,
     /// Real time since the clock reached the end, in seconds.
     rested_s: f32,
     /// Whether the time was set by a seek. The next frame then draws exactly this time.
     is_sought: bool,
     /// Time from which changes of the world were last tried, in simulated seconds; `None` if the user has since gone to
     /// another time or shows something else.
-    tried_from_s: Option<f64>,
-    /// Number of commands so far that paused, played or moved the clock.
-    commands: u32,
+    pub tried_from_s: Option<f64>,
+    /// Number of commands so far that paused, played or moved the clock. The studio can also stop the clock without a command.
+    pub commands: u32,
 }
 
 /// Allowed playback speeds, in simulated seconds per real second.
@@ -63,16 +64,6 @@ impl Playback {
         self.is_playing
     }
 
-    /// Returns how many commands have paused, played or moved the clock. The studio can also stop the clock without a command.
-    pub fn commands(&self) -> u32 {
-        self.commands
-    }
-
-    /// Returns whether playback restarts after the end.
-    pub fn loops(&self) -> bool {
-        self.loops
-    }
-
     /// Returns the playback speed, in simulated seconds per real second.
     pub fn speed(&self) -> f32 {
         self.speed
@@ -94,7 +85,7 @@ impl Playback {
             PlayerCommand::Step { forward } => self.step(*forward, step_s, end_s),
             PlayerCommand::SetSpeed(speed) => self.set_speed(*speed),
             PlayerCommand::ChangeSpeed { faster } => self.change_speed(*faster),
-            PlayerCommand::ToggleLoop => self.toggle_loop(),
+            PlayerCommand::ToggleLoop => self.loops = !self.loops,
         }
     }
 
@@ -109,12 +100,6 @@ impl Playback {
     pub fn play_change(&mut self, start_s: f64, tried_from_s: f64) {
         (self.time_s, self.rested_s, self.is_playing) = (start_s, 0.0, true);
         (self.is_sought, self.tried_from_s) = (true, Some(tried_from_s));
-    }
-
-    /// Returns the time from which changes of the world were last tried, in simulated seconds, unless the user has
-    /// since gone to another time.
-    pub fn tried_from_s(&self) -> Option<f64> {
-        self.tried_from_s
     }
 
     /// Plays from the start at the current speed.
@@ -139,11 +124,6 @@ impl Playback {
     /// Returns to the time and the settings of an earlier clock.
     pub fn restore(&mut self, earlier: &Self) {
         *self = Self { is_sought: true, commands: self.commands, ..earlier.clone() };
-    }
-
-    /// Turns looping on or off.
-    pub fn toggle_loop(&mut self) {
-        self.loops = !self.loops;
     }
 
     /// Sets the playback speed, clamped to the allowed range.
@@ -246,7 +226,7 @@ mod tests {
         }
         let rests = (0..40).position(|_| playback.pass(0.1, 1.0, 2.0)).expect("it begins again");
         assert!((14..17).contains(&rests), "{rests} frames of a tenth of a second");
-        playback.toggle_loop();
+        playback.loops = false;
         (0..40).for_each(|_| assert!(!playback.pass(0.1, 1.0, 2.0)));
         assert_eq!((playback.time_s(), playback.is_playing()), (2.0, false));
         playback.toggle(2.0);

@@ -25,8 +25,8 @@ pub(crate) struct Following {
     holds: bool,
     /// Number of the run that is followed.
     run: u32,
-    /// Whether a story is repeated after its end.
-    repeats: bool,
+    /// Whether a story is repeated after its end. This does not change what the stage shows.
+    pub repeats: bool,
     /// Whether the shown generation is the first to land. It stays until all its snakes have ended, so that the landing
     /// can be watched.
     is_landing: bool,
@@ -91,11 +91,6 @@ impl Following {
     /// Stops following, so that the user's choice stays on the stage.
     pub fn stop(&mut self) {
         (self.plan, self.holds) = (FollowPlan::Nothing, false);
-    }
-
-    /// Sets whether a story is repeated after its end. This does not change what the stage shows.
-    pub fn set_repeats(&mut self, repeats: bool) {
-        self.repeats = repeats;
     }
 
     /// Follows again what an earlier scene followed, unless another run has begun since. No generation is announced twice.
@@ -195,7 +190,7 @@ fn follow(
     time: Res<Time<Real>>,
     mut show: MessageWriter<Show>,
 ) {
-    if run.is_lent() {
+    if run.is_lent {
         // A lesson uses the stage.
         return;
     }
@@ -358,18 +353,17 @@ mod tests {
     #[test]
     fn a_repeated_story_begins_again_until_repeating_ends() {
         let run = explored_run();
-        let mut following = Following::default();
-        following.set_repeats(true);
+        let mut following = Following { repeats: true, ..Following::default() };
         assert_eq!(following.due(&run, true), None, "what was chosen stays");
         following.tell_story(&run).expect("two better generations");
         let parts = following.story_part().expect("a story").1;
         let told: Vec<_> = (0..2 * parts).map(|_| following.due(&run, true)).collect();
         assert!(told[0].is_some());
         assert_eq!(told[..parts], told[parts..]);
-        following.set_repeats(false);
+        following.repeats = false;
         let left: Vec<_> = (0..=parts).map(|_| following.due(&run, true)).collect();
         assert_eq!(left.last(), Some(&None), "it ends");
-        following.set_repeats(true);
+        following.repeats = true;
         assert_eq!(following.due(&run, true), None, "it stays over");
     }
 }

@@ -24,7 +24,8 @@ pub(crate) struct RunContext {
     pub presets: Arc<KnownFiles<Preset>>,
     /// Stairs that the user can choose.
     pub stairs: Arc<KnownFiles<NamedStairs>>,
-    run_folder: RunInProgress,
+    /// Shared cell with the folder of the run in progress.
+    pub run_folder: RunInProgress,
 }
 
 impl RunContext {
@@ -38,11 +39,6 @@ impl RunContext {
             stairs: Arc::new(KnownFiles::read(&options.saves)),
             run_folder: RunInProgress::default(),
         }
-    }
-
-    /// Returns the shared cell with the folder of the run in progress.
-    pub fn run_folder(&self) -> RunInProgress {
-        Arc::clone(&self.run_folder)
     }
 
     /// Sets the folder of the run in progress, which could be resumed after a crash; `None` without a run.

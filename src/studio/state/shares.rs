@@ -26,7 +26,7 @@ use snakes_core::score::evaluate;
 use snakes_lab::export::ExportFormat;
 use snakes_lab::run::BackgroundTask;
 
-use writer::{Leash, Writer, written};
+use writer::{Leash, written};
 
 /// The file that is being written, if any.
 #[derive(Resource, Debug, Default)]
@@ -117,14 +117,13 @@ impl Shares {
             return Err(format!("{} exists already; choose another name.", name_of(&named)));
         }
         let path = named;
-        let leash = Arc::new(Leash::default());
-        let writer =
-            Writer { leash: Arc::clone(&leash), arguments: arguments(format, &path, look) };
+        let (leash, arguments) = (Arc::new(Leash::default()), arguments(format, &path, look));
+        let held = Arc::clone(&leash);
         let failed = |error| format!("{} could not be written: {error}.", path.display());
         let work = BackgroundTask::start_counted(PARTS, move |control| {
             let champions: Vec<(String, Champion)> =
                 shared.into_iter().map(SharedChampion::evaluated).collect();
-            written(&writer, &champions, |share| {
+            written((&held, &arguments), &champions, |share| {
                 control.set_done((share * PARTS as f64) as u32);
             })
         });

@@ -19,14 +19,8 @@ use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, available_cores};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct StairsExams {
     /// Finished exams, the latest last.
-    finished: Vec<FinishedExam>,
+    finished: Vec<(Champion, Vec<StairsGrid>)>,
     under_way: Option<ExamUnderWay>,
-}
-
-#[derive(Debug)]
-struct FinishedExam {
-    champion: Champion,
-    grids: Vec<StairsGrid>,
 }
 
 /// An exam that is being simulated. Dropping the value cancels the exam.
@@ -79,8 +73,9 @@ impl StairsExams {
             }
             ExamCommand::Watch { suite, cell } => {
                 let selected = selected?;
-                let cell =
-                    self.grid(selected.champion(), *suite).and_then(|of| of.cells.get(*cell));
+                let mut grids = self.of(selected.champion()).unwrap_or_default().iter();
+                let grid = grids.find(|grid| grid.suite == *suite);
+                let cell = grid.and_then(|grid| grid.cells.get(*cell));
                 // The selected champion may have changed since the click. Then nothing happens.
                 return Ok(cell.map(|cell| {
                     Show::solo(
@@ -122,11 +117,7 @@ impl StairsExams {
     /// Returns the finished exam of a champion, if any: on other stairs and, if the champion has senses, also without senses.
     pub fn of(&self, champion: &Champion) -> Option<&[StairsGrid]> {
         let mut finished = self.finished.iter();
-        finished.find(|exam| is_same(&exam.champion, champion)).map(|exam| exam.grids.as_slice())
-    }
-
-    fn grid(&self, champion: &Champion, suite: ExamSuite) -> Option<&StairsGrid> {
-        self.of(champion)?.iter().find(|grid| grid.suite == suite)
+        finished.find(|(of, _)| is_same(of, champion)).map(|(_, grids)| grids.as_slice())
     }
 
     /// Returns the progress of the exam that is being simulated, if any.
@@ -160,7 +151,7 @@ impl StairsExams {
 
     /// Keeps a finished exam, and removes the oldest ones if there are too many.
     pub(in crate::studio) fn keep(&mut self, champion: Champion, grids: Vec<StairsGrid>) {
-        self.finished.push(FinishedExam { champion, grids });
+        self.finished.push((champion, grids));
         let too_many = self.finished.len().saturating_sub(MOST_KEPT);
         self.finished.drain(..too_many);
     }

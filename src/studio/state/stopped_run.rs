@@ -38,7 +38,7 @@ fn open(
         return;
     }
     let own = run.next_plan();
-    let is_plain = run.presets().settings_of(&own.preset) == Some(&own.settings);
+    let is_plain = run.context.presets.settings_of(&own.preset) == Some(&own.settings);
     let is_alike = |of: &RunSummary| {
         of.plan.preset == own.preset && (is_plain || of.plan.settings == own.settings)
     };
@@ -107,7 +107,7 @@ mod tests {
         assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 10000."));
         assert_eq!(notices.len(), 1);
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running));
+        assert_eq!((run.plan_now.seed, run.status()), (2, RunStatus::Running));
     }
 
     #[test]
@@ -116,11 +116,15 @@ mod tests {
         let is_open = |world: &World| world.resource::<CurrentRun>().reports().len() == 1;
         let mut app = started(folder.path(), (2, 10_000), is_open);
         let mut run = app.world_mut().resource_mut::<CurrentRun>();
-        assert_eq!((run.seed(), run.number(), run.reports().len()), (1, 0, 1));
+        assert_eq!((run.plan_now.seed, run.number(), run.reports().len()), (1, 0, 1));
         assert_eq!(run.status(), RunStatus::Paused);
         assert!(!run.milestones().is_empty(), "its best snake can be shown");
         let mut notices = Notices::default();
         run.apply(&RunCommand::New, &mut notices).expect("allowed");
-        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running), "the next unused seed");
+        assert_eq!(
+            (run.plan_now.seed, run.status()),
+            (2, RunStatus::Running),
+            "the next unused seed"
+        );
     }
 }

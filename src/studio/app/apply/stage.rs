@@ -13,7 +13,7 @@ use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode, end_s, spawn};
+use crate::studio::stage::{Show, StageMode, end_s, placed};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
@@ -72,14 +72,19 @@ impl StageParams<'_, '_> {
         lanes.into_iter().map(|lane| lane.staged().clone()).collect()
     }
 
-    /// Returns the champions on the stage. In a race, the champion of the selected lane is first, because a change of
-    /// the world applies to the first.
-    pub fn champions_to_change(&self) -> Vec<StagedChampion> {
-        let mut champions = self.champions();
-        if *self.mode == StageMode::Race && self.selection.lane < champions.len() {
-            champions.swap(0, self.selection.lane);
+    /// Returns a request for what is on the stage.
+    fn shown(&self) -> Show {
+        Show { champions: self.champions(), mode: self.mode.clone() }
+    }
+
+    /// Returns a request for what is on the stage. In a race, the champion of the selected lane is first, because a change
+    /// of the world applies to the first.
+    fn to_change(&self) -> Show {
+        let mut shown = self.shown();
+        if shown.mode == StageMode::Race && self.selection.lane < shown.champions.len() {
+            shown.champions.swap(0, self.selection.lane);
         }
-        champions
+        shown
     }
 
     /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
@@ -113,7 +118,7 @@ impl StageParams<'_, '_> {
             self.commands.entity(entity).despawn();
         }
         for lane in scene.lanes {
-            spawn(&mut self.commands, lane.back());
+            self.commands.spawn(placed(lane.back()));
         }
         *self.mode = scene.mode;
         self.playback.restore(&scene.playback);
@@ -132,24 +137,21 @@ impl StageParams<'_, '_> {
 
     /// Returns a request for the present champions, with that of the selected lane replaced.
     fn in_place(&self, replace: impl Fn(&StagedChampion) -> StagedChampion) -> Show {
-        let mut champions = self.champions();
-        if let Some(focused) = champions.get_mut(self.selection.lane) {
+        let mut shown = self.shown();
+        if let Some(focused) = shown.champions.get_mut(self.selection.lane) {
             *focused = replace(focused);
         }
-        Show { champions, mode: self.mode.clone() }
+        shown
     }
 
-    /// Keeps the change of a what-if when a run starts, because the run uses it.
-    pub fn settle(&mut self) {
-        let kept = kept(&self.champions(), &self.mode);
-        self.present_for_now(kept);
-    }
-
-    /// Describes the change of the what-if on the stage; returns `None` if there is none.
-    pub fn tried_change(&self) -> Option<String> {
-        let kept = kept(&self.champions(), &self.mode)?;
+    /// Keeps the change of a what-if, for example when a run that uses it starts. Describes the change; returns `None`
+    /// if there is none.
+    pub fn settle(&mut self) -> Option<String> {
+        let kept = kept(&self.shown())?;
         let changed = kept.champions.iter().find(|staged| staged.is_changed());
-        changed.map(|staged| staged.label().to_owned())
+        let change = changed.map(|staged| staged.label().to_owned());
+        self.present_for_now(Some(kept));
+        change
     }
 
     /// Executes a command to the lanes of the stage.
@@ -193,12 +195,11 @@ impl StageParams<'_, '_> {
                 None
             }
             StageCommand::Sweep(field) => {
-                let on_show = self.champions_to_change();
-                on_show.first().map(|champion| sweep(champion, field)).transpose()?
+                let champions = self.to_change().champions;
+                champions.first().map(|champion| sweep(champion, field)).transpose()?
             }
             StageCommand::RaceStairs => {
-                let on_show = self.champions_to_change();
-                on_show.first().map(stairs_race).transpose()?
+                self.to_change().champions.first().map(stairs_race).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
@@ -234,7 +235,7 @@ impl StageParams<'_, '_> {
             }
             StageCommand::TryAnother => {
                 // The clock continues, because nothing on the stage changes.
-                *self.pending = Some(another_beside(run, self.champions(), &self.mode)?);
+                *self.pending = Some(another_beside(run, self.shown())?);
                 None
             }
             StageCommand::ShowAsFound => {
@@ -257,7 +258,7 @@ impl StageParams<'_, '_> {
     /// Executes a command to the clock of the stage.
     pub fn apply_to_player(&mut self, command: &PlayerCommand) {
         let focused = self.all_lanes().find(|lane| lane.number() == self.selection.lane);
-        let step_s = focused.map_or(1.0, Lane::step_s);
+        let step_s = focused.map_or(1.0, |lane| lane.step_s);
         let end_s = end_s(self.all_lanes());
         self.playback.apply(command, step_s, end_s);
     }

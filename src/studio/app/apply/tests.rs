@@ -11,7 +11,6 @@ use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::opening::NamedChampion;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::{Show, StageMode};
@@ -31,10 +30,7 @@ fn app() -> App {
         .add_message::<ScreenshotArea>()
         .init_resource::<QuitRequest>()
         .insert_resource(prepared_run())
-        .insert_resource(OpeningChampions(vec![NamedChampion {
-            name: "climber".to_owned(),
-            loaded,
-        }]))
+        .insert_resource(OpeningChampions(vec![("climber".to_owned(), loaded)]))
         .insert_resource(Library::new(snakes_core::save::SavesFolder::find(None)))
         .init_resource::<Files>()
         .init_resource::<Notices>()
@@ -60,8 +56,7 @@ fn app() -> App {
 
 /// Creates a command that sets the friction of the next run.
 fn set(friction: &str) -> Command {
-    let (field, text) = ("trial.surface.friction".to_owned(), friction.to_owned());
-    Command::Plan(PlanCommand::SetField { field, text })
+    Command::Plan(PlanCommand::set("trial.surface.friction", friction))
 }
 
 /// Sends one command per frame and returns the friction of the next run.
@@ -135,7 +130,7 @@ fn a_preset_a_seed_and_a_group_of_settings_are_one_undo_step_each() {
     for command in [
         Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
         Command::Plan(PlanCommand::SetSeed(77)),
-        Command::Plan(PlanCommand::SetPopulation(9)),
+        Command::Plan(PlanCommand::set("evolution.population", "9")),
         Command::Plan(PlanCommand::SetFields(back.to_vec())),
     ] {
         friction_after(&mut app, &[command]);

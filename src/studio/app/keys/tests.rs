@@ -204,17 +204,8 @@ fn f1_a_latin_letter_acts_wherever_a_layout_puts_it() {
 fn f1_french_digit_keys_show_generations_without_shift() {
     let shown = |number| Some(Command::Stage(StageCommand::Show(Pick::Generation(number))));
     let row = ["&", "é", "\"", "'", "(", "-", "è", "_", "ç"];
-    let codes = [
-        KeyCode::Digit1,
-        KeyCode::Digit2,
-        KeyCode::Digit3,
-        KeyCode::Digit4,
-        KeyCode::Digit5,
-        KeyCode::Digit6,
-        KeyCode::Digit7,
-        KeyCode::Digit8,
-        KeyCode::Digit9,
-    ];
+    use KeyCode::{Digit1, Digit2, Digit3, Digit4, Digit5, Digit6, Digit7, Digit8, Digit9};
+    let codes = [Digit1, Digit2, Digit3, Digit4, Digit5, Digit6, Digit7, Digit8, Digit9];
     for (number, (text, code)) in (1..).zip(row.into_iter().zip(codes)) {
         // The character itself decides where it has a command.
         let slower = Some(Command::Player(PlayerCommand::ChangeSpeed { faster: false }));

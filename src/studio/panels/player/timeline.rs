@@ -131,7 +131,7 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
         (Icon::StepForward, "Next physics step", PlayerCommand::Step { forward: true }),
         (Icon::Loop, "Loop: start again at the end", PlayerCommand::ToggleLoop),
     ] {
-        let (is_on, command) = (icon == Icon::Loop && playback.loops(), Command::Player(command));
+        let (is_on, command) = (icon == Icon::Loop && playback.loops, Command::Player(command));
         let button = icon_button(ui, icon, is_on);
         if hint_of_command(button, hint, &command).clicked() {
             commands.push(command);

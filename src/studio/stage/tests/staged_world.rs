@@ -59,11 +59,7 @@ fn a_context_holds_what_the_engine_sees_at_the_place_of_its_lane() {
 
 #[test]
 fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
-    let mut recorded = shipped();
-    let Champion { genome, trial, .. } = &recorded.champion;
-    recorded.recording = Some(Recording::of(genome, trial));
-    recorded.engine.version = 1;
-    for loaded in [shipped_in(PhysicsEngine::Rapier), shipped_in(PhysicsEngine::Lanes), recorded] {
+    for loaded in ENGINES.map(shipped_in).into_iter().chain([recorded()]) {
         let mut app = stage_of(vec![loaded; 2]);
         play(&mut app, &[0.1, 0.0137], |lane| lane.replay().step() > 60);
         let world = app.world_mut();

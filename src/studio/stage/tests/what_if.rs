@@ -2,7 +2,7 @@
 
 use super::*;
 use snakes_core::evolve::{Settings, with_field};
-use snakes_core::score::{Rollout, Trial};
+use snakes_core::score::Trial;
 
 /// Physics step at which the world of the copies changes.
 const MOMENT: u32 = 312;
@@ -11,24 +11,22 @@ fn original() -> StagedChampion {
     StagedChampion::from_file(&shipped(), 0, "climber")
 }
 
-fn with_friction(text: &str) -> Trial {
-    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
-    with_field(&settings, "surface.friction", text).expect("allowed").trial
+/// Returns the trial of a champion with another value of a setting.
+fn changed(loaded: &LoadedChampion, field: &str, text: &str) -> Trial {
+    let settings = Settings { trial: loaded.champion.trial.clone(), ..Settings::default() };
+    with_field(&settings, field, text).expect("allowed").trial
 }
 
 /// Returns the original's rollout after this number of steps.
 fn original_at(step: u32) -> Rollout {
-    let mut rollout = original().rollout();
-    while rollout.step() < step {
-        assert!(rollout.advance());
-    }
-    rollout
+    rollout_after(&shipped().champion, step)
 }
 
 /// Returns a copy with this friction from [`MOMENT`] on.
 fn copy(friction: &str) -> StagedChampion {
+    let trial = changed(&shipped(), "surface.friction", friction);
     let label = format!("friction {friction}");
-    original().in_world_from(Some(&original_at(MOMENT)), &with_friction(friction), label)
+    original().in_world_from(Some(&original_at(MOMENT)), &trial, label)
 }
 
 /// Returns a what-if of the original and copies with these frictions, of which the latest is not kept.
@@ -90,8 +88,7 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
 
 #[test]
 fn a_copy_in_the_other_engine_goes_on_with_the_same_motion() {
-    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
-    let trial = with_field(&settings, "physics.engine", "lanes").expect("allowed").trial;
+    let trial = changed(&shipped(), "physics.engine", "lanes");
     let copy = original().in_world_from(Some(&original_at(MOMENT)), &trial, "lanes".to_owned());
     assert!(copy.is_changed());
     let (mut in_rapier, mut in_lanes) = (original().rollout(), copy.rollout());
@@ -189,9 +186,8 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
     let original = StagedChampion::from_file(&long, 0, "a champion");
     let step = lane(&mut app).replay().step();
     let moment = lane(&mut app).rollout_at(step);
-    let settings = Settings { trial: long.champion.trial, ..Settings::default() };
     let copies = ["0.3", "0.4", "0.5"].map(|friction| {
-        let trial = with_field(&settings, "surface.friction", friction).expect("allowed").trial;
+        let trial = changed(&long, "surface.friction", friction);
         let copy = original.in_world_from(Some(&moment), &trial, friction.to_owned());
         let mode = StageMode::what_if(RunPlan::new("climb", 1, Settings::default()));
         Show { champions: vec![original.clone(), copy], mode }

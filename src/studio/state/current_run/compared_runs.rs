@@ -11,12 +11,13 @@ use snakes_lab::run::BackgroundTask;
 pub(crate) struct ComparedRuns {
     listing: Option<BackgroundTask<(Vec<RunSummary>, Vec<String>)>>,
     /// All runs in the saves folder; `None` until they are listed.
-    runs: Option<Vec<RunSummary>>,
-    /// Description of the settings of each listed run.
-    settings: Vec<String>,
-    compared: Vec<ComparedCurve>,
+    pub runs: Option<Vec<RunSummary>>,
+    /// Description of the settings of each listed run: see [`settings_in_words`].
+    pub settings: Vec<String>,
+    /// Runs that are compared with the current one.
+    pub compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
-    version: u64,
+    pub version: u64,
 }
 
 /// Learning curve of another run, drawn in the chart of the current run.
@@ -91,25 +92,5 @@ impl ComparedRuns {
                 self.version += 1;
             }
         }
-    }
-
-    /// Returns all runs in the saves folder, or `None` until they are listed.
-    pub fn runs(&self) -> Option<&[RunSummary]> {
-        self.runs.as_deref()
-    }
-
-    /// Returns the description of the settings of each listed run: see [`settings_in_words`].
-    pub fn settings(&self) -> &[String] {
-        &self.settings
-    }
-
-    /// Returns the runs that are compared with the current one.
-    pub fn compared(&self) -> &[ComparedCurve] {
-        &self.compared
-    }
-
-    /// Returns the version number, which every change increments.
-    pub fn version(&self) -> u64 {
-        self.version
     }
 }

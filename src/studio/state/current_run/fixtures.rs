@@ -110,7 +110,7 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
     }
     let mut run = explored_run();
     run.others.toggle(&folder).expect("a thread");
-    while run.others.compared().iter().any(|compared| compared.read.is_none()) {
+    while run.others.compared.iter().any(|compared| compared.read.is_none()) {
         run.others.take_in();
     }
     run
@@ -121,14 +121,14 @@ fn a_run_is_added_to_the_comparison_and_removed_again() {
     let saves = tempfile::tempdir().expect("a folder");
     let mut run = compared_run(saves.path(), false);
     let version = run.version();
-    let folder = run.others.compared()[0].folder.clone();
+    let folder = run.others.compared[0].folder.clone();
     for name in ["a", "b"] {
         run.others.toggle(&saves.path().join(name)).expect("a thread");
     }
     let refusal = run.others.toggle(&saves.path().join("c")).expect_err("full");
     assert!(refusal.contains("room for 3"), "{refusal}");
     run.others.toggle(&folder).expect("taken away");
-    assert_eq!(run.others.compared().len(), 2);
+    assert_eq!(run.others.compared.len(), 2);
     assert_ne!(run.version(), version);
 }
 

@@ -55,9 +55,4 @@ impl CurrentRun {
     pub fn stop_at_the_end(&mut self) {
         (self.background, self.before) = (None, None);
     }
-
-    /// Returns the reason why results of other computers cannot be trusted, if there is one. Reports it only once.
-    pub fn take_fault(&mut self) -> Option<String> {
-        self.fault.take()
-    }
 }

@@ -29,7 +29,7 @@ fn connecting() -> MachinesLink {
 }
 
 fn known(link: &MachinesLink) -> &KnownServer {
-    let LinkState::Connected(known) = link.state() else { panic!("{:?}", link.state()) };
+    let LinkState::Connected(known) = &link.state else { panic!("{:?}", link.state) };
     known
 }
 
@@ -73,7 +73,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     assert_eq!(link.asked, None, "it has not begun");
 
     link.apply(&MachinesCommand::Disconnect, &mut run).expect("allowed");
-    assert_eq!((link.state(), link.address()), (&LinkState::Off, "nats://127.0.0.1:1"));
+    assert_eq!((&link.state, link.address.as_str()), (&LinkState::Off, "nats://127.0.0.1:1"));
     assert_eq!(notices.len(), 0);
 }
 
@@ -101,7 +101,7 @@ fn f3_a_server_without_room_is_still_being_connected_and_the_latest_reason_is_ke
     let (_folder, mut run) = held_run();
     let (mut link, mut notices) = (connecting(), Notices::default());
     link.take_in_news(WatchNews::Trouble("full".to_owned()), &mut run, &mut notices);
-    assert_eq!(link.state(), &LinkState::Connecting(Some("full".to_owned())));
+    assert_eq!(link.state, LinkState::Connecting(Some("full".to_owned())));
     link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
     assert_eq!(known(&link).problem, None);
 }
@@ -111,9 +111,9 @@ fn a_server_that_cannot_be_used_is_reported_and_its_address_stays() {
     let (_folder, mut run) = held_run();
     let (mut link, mut notices) = (connecting(), Notices::default());
     link.take_in_news(WatchNews::Failed("no server".to_owned()), &mut run, &mut notices);
-    assert_eq!(link.state(), &LinkState::Failed("no server".to_owned()));
+    assert_eq!(link.state, LinkState::Failed("no server".to_owned()));
     assert_eq!(notices.last(), Some("Other computers are not connected: no server"));
-    assert_eq!(link.address(), "nats://127.0.0.1:1");
+    assert_eq!(link.address, "nats://127.0.0.1:1");
     assert!(link.watch.is_none());
 }
 
@@ -129,7 +129,7 @@ fn wrong_results_end_the_connection() {
         .add_systems(Update, take_in);
     app.update();
     let link = app.world().resource::<MachinesLink>();
-    assert_eq!(link.state(), &LinkState::Failed("w lies".to_owned()));
+    assert_eq!(link.state, LinkState::Failed("w lies".to_owned()));
     assert!(!app.world().resource::<CurrentRun>().is_shared());
 }
 
@@ -148,5 +148,5 @@ fn an_address_is_completed_and_one_with_a_password_is_refused_without_repeating_
     }
     let mut link = MachinesLink::default();
     link.remember("nats://ann:secret@a:4222");
-    assert_eq!(link.address(), "");
+    assert_eq!(link.address, "");
 }

@@ -34,14 +34,14 @@ impl StageParams<'_, '_> {
         history: &UndoHistory,
         notices: &mut Notices,
     ) -> Result<(), String> {
-        let (on_show, mode) = (self.champions_to_change(), self.mode.clone());
+        let shown = self.to_change();
         let is_tried = matches!(
             command,
             PlanCommand::SetField { .. } | PlanCommand::SetFields(_) | PlanCommand::SetPreset(_)
         );
         let moment = is_tried.then(|| self.moment(history));
         let rollout = moment.as_ref().and_then(|moment| moment.rollout.as_ref());
-        let stage = ChangedStage { on_show: &on_show, mode: &mode, moment: rollout };
+        let stage = ChangedStage { show: &shown, moment: rollout };
         let show = apply_to_plan(command, run, saves, stage, notices)?;
         match (command, moment) {
             (_, Some(moment)) => self.present_change(show, &moment),
@@ -73,8 +73,8 @@ impl StageParams<'_, '_> {
             run.set_next_plan(next)?;
         }
         let moment = self.moment(history);
-        let (on_show, rollout) = (self.champions(), moment.rollout.as_ref());
-        let stage = ChangedStage { on_show: &on_show, mode: &self.mode, moment: rollout };
+        let shown = self.shown();
+        let stage = ChangedStage { show: &shown, moment: moment.rollout.as_ref() };
         let show = followed(stage, &now, run.next_plan())?;
         self.present_change(show, &moment);
         Ok(())
@@ -89,16 +89,16 @@ impl StageParams<'_, '_> {
         };
         // A drag of a slider across the original value ends the what-if and begins it again.
         let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || history.is_open();
-        let tried_s = self.playback.tried_from_s().filter(|_| goes_on);
+        let tried_s = self.playback.tried_from_s.filter(|_| goes_on);
         let time_s = tried_s.unwrap_or(self.playback.time_s());
         let (step, _) = lane.moment(time_s);
-        let is_over = f64::from(step) * lane.step_s() >= lane.end_s();
+        let is_over = f64::from(step) * lane.step_s >= lane.end_s();
         if step == 0 || is_over {
             return at_start;
         }
         // A genome whose simulation panics is tried from the start; the stage then reports the panic.
         let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
-        TriedMoment { time_s: f64::from(step) * lane.step_s(), rollout: Some(rollout) }
+        TriedMoment { time_s: f64::from(step) * lane.step_s, rollout: Some(rollout) }
     }
 
     /// Shows the effect of a change from the time of the change on.
