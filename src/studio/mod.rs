@@ -28,7 +28,7 @@ use bevy::prelude::*;
 use bevy::window::{PresentMode, WindowResolution};
 use bevy::winit::WinitSettings;
 
-use snakes_core::save::shipped_champion;
+use snakes_core::save::{PreferencesFile, shipped_champion};
 
 use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;
@@ -67,7 +67,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     let mut remembered = StoredPreferences::read(&options.preferences);
     if options.exit_after_frames.is_some() {
         // Automated runs have no user, so preferences are not saved.
-        remembered = remembered.only_read();
+        remembered.file = PreferencesFile::nowhere();
     }
     let chosen = remembered.stored.clone();
     let theme = options.theme.unwrap_or_else(|| chosen.theme.parse().unwrap_or_default());

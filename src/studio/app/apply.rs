@@ -32,7 +32,6 @@ use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoS
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
-use excursions::FrameState;
 use stage::StageParams;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -61,9 +60,8 @@ pub(super) fn apply(
     for command in commands.read() {
         let before = run.next_plan().clone();
         let left = stage.scene(command, &view.rig);
-        let frames = |workspace: &Workspace, lessons: &Lessons| FrameState {
-            is_presenting: workspace.is_presenting(),
-            is_lesson: lessons.view().is_some(),
+        let frames = |workspace: &Workspace, lessons: &Lessons| {
+            [workspace.is_presenting(), lessons.view().is_some()]
         };
         let frames_before = frames(&workspace, &lessons);
         let done = match command {

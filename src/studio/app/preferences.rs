@@ -20,7 +20,8 @@ use snakes_core::save::{Preferences, PreferencesFile};
 /// The stored preferences and the file in which they are stored.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct StoredPreferences {
-    file: PreferencesFile,
+    /// File in which the preferences are stored.
+    pub file: PreferencesFile,
     /// Last known contents of the preferences file.
     pub stored: Preferences,
     /// Preferences at the last check. A change is written when it has not changed further until the next check.
@@ -54,12 +55,6 @@ impl StoredPreferences {
         };
         let file = file.clone();
         Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0, was_smooth: None }
-    }
-
-    /// Returns the preferences without their file, so that changes are not stored.
-    pub fn only_read(mut self) -> Self {
-        self.file = PreferencesFile::nowhere();
-        self
     }
 }
 

@@ -201,7 +201,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
         KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration, Single,
         TellStory, ToggleFollowEvolution, TryAnother,
     };
-    let overlay = |of: Overlay| (of.entry(), of.keys(), View(ViewCommand::ToggleOverlay(of)));
+    let overlay = |of: Overlay| View(ViewCommand::ToggleOverlay(of));
     let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
     let picture = |of: ScreenshotArea| View(ViewCommand::TakePicture(of));
     let scale = |larger| Window(WindowCommand::ChangeScale { larger });
@@ -264,31 +264,26 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Slower", &["-"], Player(PlayerCommand::ChangeSpeed { faster: false })),
             ("Loop", &["O"], Player(PlayerCommand::ToggleLoop)),
         ],
-        Menu::View => {
-            let mut rows: Vec<ActionRow> = vec![
-                ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
-                ("Next camera", &["C"], View(ViewCommand::NextCameraMode)),
-                ("View from the side", &[], View(ViewCommand::SetCamera(CameraMode::Side))),
-                ("View from above", &[], View(ViewCommand::SetCamera(CameraMode::Top))),
-                ("Reset camera", &["Home"], View(ViewCommand::ResetCamera)),
-            ];
-            rows.extend(Overlay::ALL.map(overlay));
-            rows.extend::<[ActionRow; 8]>([
-                ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
-                ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
-                ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
-                ("Larger panels", &["Ctrl +", "Ctrl ="], scale(true)),
-                ("Smaller panels", &["Ctrl -"], scale(false)),
-                ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),
-                ("Show only the stage", &["H"], Window(WindowCommand::TogglePanels)),
-                (
-                    "Present on the full screen",
-                    &["F11", "F5"],
-                    Window(WindowCommand::TogglePresenting),
-                ),
-            ]);
-            rows
-        }
+        Menu::View => vec![
+            ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
+            ("Next camera", &["C"], View(ViewCommand::NextCameraMode)),
+            ("View from the side", &[], View(ViewCommand::SetCamera(CameraMode::Side))),
+            ("View from above", &[], View(ViewCommand::SetCamera(CameraMode::Top))),
+            ("Reset camera", &["Home"], View(ViewCommand::ResetCamera)),
+            ("Contacts and forces", &["V"], overlay(Overlay::Contacts)),
+            ("Joint torques", &["J"], overlay(Overlay::Torques)),
+            ("Trail", &["B"], overlay(Overlay::Trail)),
+            ("Fitness line", &["L"], overlay(Overlay::FitnessLine)),
+            ("Collision shapes", &["D"], overlay(Overlay::Wireframe)),
+            ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
+            ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
+            ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
+            ("Larger panels", &["Ctrl +", "Ctrl ="], scale(true)),
+            ("Smaller panels", &["Ctrl -"], scale(false)),
+            ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),
+            ("Show only the stage", &["H"], Window(WindowCommand::TogglePanels)),
+            ("Present on the full screen", &["F11", "F5"], Window(WindowCommand::TogglePresenting)),
+        ],
         Menu::Panels => {
             let mut rows = PanelKind::ALL.map(panel).to_vec();
             rows.push(("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)));

@@ -27,11 +27,11 @@ pub(crate) struct Lane {
     /// Index of the lane; the first is 0.
     number: usize,
     /// Offset of the lane's world along x, in metres.
-    offset_x_m: f32,
+    pub offset_x_m: f32,
     /// Whether the lane has the place of another lane and is drawn translucent, without stairs.
     is_ghost: bool,
-    replay: Replay,
-    lookahead: Lookahead,
+    pub(super) replay: Replay,
+    pub(super) lookahead: Lookahead,
     /// Step at which the snake of a recording first stood on the landing; `None` for a simulation.
     recorded_landing: Option<u32>,
     /// Poses of the parts before the last step, from head to tail.
@@ -94,12 +94,6 @@ impl Lane {
             is_checked: false,
             is_back: false,
         }
-    }
-
-    /// Places the lane at this offset along x, in metres.
-    pub fn at_x(mut self, offset_x_m: f32) -> Self {
-        self.offset_x_m = offset_x_m;
-        self
     }
 
     /// Turns the lane into a ghost.
@@ -256,17 +250,6 @@ impl Lane {
     /// Returns the rollout after the last step; `None` for a recording.
     pub fn rollout(&self) -> Option<&Rollout> {
         self.replay.rollout()
-    }
-
-    /// Returns the replay of this lane.
-    #[cfg(test)]
-    pub fn replay(&self) -> &Replay {
-        &self.replay
-    }
-
-    /// Receives results of the lookahead, if there are any.
-    pub fn poll_lookahead(&mut self) {
-        self.lookahead.poll();
     }
 
     /// Blocks until the lookahead has finished.

@@ -155,11 +155,10 @@ fn lanes_after(
     let beside_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
     let spacing_m = if is_generation { 0.0 } else { beside_m };
     let middle = (lanes.len().saturating_sub(1)) as f32 / 2.0;
-    let placed = lanes.into_iter().map(|lane| {
-        let offset_m = (middle - lane.number() as f32) * spacing_m;
-        lane.at_x(offset_m)
-    });
-    (placed.collect(), problems)
+    for lane in &mut lanes {
+        lane.offset_x_m = (middle - lane.number() as f32) * spacing_m;
+    }
+    (lanes, problems)
 }
 
 /// Shows the champions with which the studio was opened.
@@ -242,7 +241,7 @@ fn advance(
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull, most_steps).err();
         notices.problems(failed.map(|message| format!("The simulation failed: {message}")));
-        lane.poll_lookahead();
+        lane.lookahead.poll();
         if lane.has_just_ended() {
             notices.problems(differs_from_record(&lane));
         }

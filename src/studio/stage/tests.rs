@@ -88,7 +88,7 @@ fn finish_lookahead(app: &mut App) {
 }
 
 fn is_over(lane: &Lane) -> bool {
-    lane.replay().is_over()
+    lane.replay.is_over()
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn seeking_gives_the_played_state_bit_for_bit() {
         frame(&mut app, 0.016);
         let played = rollout_after(&champion, target);
         let shown = lane(&mut app);
-        assert_eq!(shown.replay().step(), target);
+        assert_eq!(shown.replay.step(), target);
         assert_eq!(shown.last_poses(), played.poses(), "step {target}");
         assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
@@ -137,13 +137,13 @@ fn seeking_gives_the_played_state_bit_for_bit() {
 #[test]
 fn stepping_back_and_forward_visits_the_same_states() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 200);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 200);
     let step_s = lane(&mut app).step_s;
     let mut seen = Vec::new();
     for forward in [true, true, false, false, true, true] {
         clock(&mut app).step(forward, step_s, 1.0e9);
         frame(&mut app, 0.1);
-        seen.push((lane(&mut app).replay().step(), lane(&mut app).last_poses().to_vec()));
+        seen.push((lane(&mut app).replay.step(), lane(&mut app).last_poses().to_vec()));
     }
     assert_eq!(seen[1], seen[5]);
     assert_eq!(seen[0], seen[2]);
@@ -156,7 +156,7 @@ fn playback_loops_unless_it_is_paused() {
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     play(&mut app, &[0.1], |lane| !is_over(lane));
-    assert!(lane(&mut app).replay().step() < 100, "from the start");
+    assert!(lane(&mut app).replay.step() < 100, "from the start");
     clock(&mut app).hold_at(1.0e9);
     (0..50).for_each(|_| frame(&mut app, 0.1));
     assert!(is_over(lane(&mut app)), "paused at the end");
@@ -205,7 +205,7 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
 #[test]
 fn drawn_poses_lie_between_the_last_two_steps() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.0251], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.0251], |lane| lane.replay.step() > 60);
     let time_s = clock(&mut app).time_s();
     let shown = lane(&mut app);
     let place = time_s / shown.step_s;
@@ -229,7 +229,7 @@ fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     let champion = shipped().champion;
     let mut app = stage_of(vec![shipped(); 12]);
     assert_eq!(*app.world().resource::<StageMode>(), StageMode::Race);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     let mut lanes = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
     lanes.sort_by_key(|lane| lane.number());
@@ -279,7 +279,7 @@ fn pull(app: &mut App, way_m: Vector) {
 fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record() {
     let mut app = stage_of(vec![shipped()]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     pull(&mut app, Vector::new(0.0, -2.0, 2.0));
     (0..20).for_each(|_| frame(&mut app, 0.05));
     assert!(lane(&mut app).is_disturbed());
@@ -304,7 +304,7 @@ fn a8_no_pull_ends_a_trial_and_a_pull_plays_a_paused_stage() {
     loaded.champion.trial.health.speed_m_s = 15.0;
     let mut app = stage_of(vec![loaded]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     clock(&mut app).hold_at(1.0);
     frame(&mut app, 0.1);
     pull(&mut app, Vector::new(60.0, 0.0, 0.0));
@@ -321,7 +321,7 @@ fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     loaded.champion.trial.physics.steps_per_s = 1000;
     let mut app = stage_of(vec![loaded]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.1], |lane| lane.replay().step() > 300);
+    play(&mut app, &[0.1], |lane| lane.replay.step() > 300);
     pull(&mut app, Vector::new(0.0, 0.0, 2.0));
     frame(&mut app, 0.1);
     assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
@@ -332,16 +332,16 @@ fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     let mut loaded = shipped();
     loaded.champion.trial.duration_s = 300.0;
     let mut app = stage_of(vec![loaded]);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     pull(&mut app, Vector::ZERO);
     frame(&mut app, 0.05);
     app.world_mut().resource_mut::<Selection>().held = None;
-    let before = lane(&mut app).replay().step();
+    let before = lane(&mut app).replay.step();
     clock(&mut app).hold_at(250.0);
     frame(&mut app, 0.05);
-    let after = lane(&mut app).replay().step();
+    let after = lane(&mut app).replay.step();
     assert!(after - before <= MAX_STEPS_PER_FRAME, "{before} to {after}");
-    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay().step() == 15_000);
+    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay.step() == 15_000);
 }
 
 #[test]

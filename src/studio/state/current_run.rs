@@ -63,7 +63,7 @@ pub(crate) struct CurrentRun {
     pending: Vec<(String, SettingValue)>,
     background: Option<BackgroundRun>,
     /// Evaluator that also uses other computers, while there is one, and the number of generations that were finished before it was set.
-    shared: Option<(Arc<dyn Evaluator>, usize)>,
+    pub(super) shared: Option<(Arc<dyn Evaluator>, usize)>,
     /// Reason why the previous run was stopped because its results cannot be trusted, until the reason is shown.
     pub fault: Option<String>,
     /// The previous run, which may still be stopping.
@@ -371,6 +371,6 @@ impl CurrentRun {
 mod fixtures;
 #[cfg(test)]
 pub(crate) use fixtures::{
-    bodies_run, climber, compared_run, explored_run, landed_run, prepared_run, small_run,
+    bodies_run, climber, compared_run, explored_run, landed_run, prepared_run, run_in, small_run,
     species_run,
 };

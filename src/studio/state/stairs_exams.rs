@@ -31,17 +31,6 @@ struct ExamUnderWay {
     work: BackgroundTask<Result<Vec<StairsGrid>, Cancelled>>,
 }
 
-/// Progress of the exam that is being simulated.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ExamProgress {
-    /// Name of the champion.
-    pub name: String,
-    /// Number of trials of the exam that are finished.
-    pub done: u32,
-    /// Number of all trials of the exam.
-    pub trials: u32,
-}
-
 /// Maximum number of champions whose exams are kept.
 const MOST_KEPT: usize = 8;
 /// Subject of messages about an exam, which replace each other.
@@ -117,16 +106,15 @@ impl StairsExams {
     /// Returns the finished exam of a champion, if any: on other stairs and, if the champion has senses, also without senses.
     pub fn of(&self, champion: &Champion) -> Option<&[StairsGrid]> {
         let mut finished = self.finished.iter();
-        finished.find(|(of, _)| is_same(of, champion)).map(|(_, grids)| grids.as_slice())
+        let is_it = |of: &Champion| of.genome == champion.genome && of.trial == champion.trial;
+        finished.find(|(of, _)| is_it(of)).map(|(_, grids)| grids.as_slice())
     }
 
-    /// Returns the progress of the exam that is being simulated, if any.
-    pub fn progress(&self) -> Option<ExamProgress> {
-        self.under_way.as_ref().map(|exam| ExamProgress {
-            name: exam.name.clone(),
-            done: exam.work.done().min(exam.work.total()) as u32,
-            trials: exam.work.total() as u32,
-        })
+    /// Returns the champion's name in the exam that is being simulated, if any, and the numbers of its finished and of all
+    /// its trials.
+    pub fn progress(&self) -> Option<(&str, [usize; 2])> {
+        let ExamUnderWay { name, work, .. } = self.under_way.as_ref()?;
+        Some((name, [work.done().min(work.total()), work.total()]))
     }
 
     /// Processes the result of a finished exam.
@@ -201,11 +189,6 @@ fn stairs_in_words(suite: ExamSuite, cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, .. } = cell;
     let frozen = if suite == ExamSuite::Lesion { ", without its senses" } else { "" };
     format!("rise {rise_m} m, tread {tread_m} m{frozen}")
-}
-
-/// Returns whether two champions behave alike in all trials.
-fn is_same(one: &Champion, other: &Champion) -> bool {
-    one.genome == other.genome && one.trial == other.trial
 }
 
 fn take_in(mut exams: ResMut<StairsExams>, mut notices: ResMut<Notices>) {

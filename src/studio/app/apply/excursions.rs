@@ -21,12 +21,8 @@ enum Effect {
     Forget,
 }
 
-/// Whether the stage is presented and whether a lesson is open, before a command or after it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FrameState {
-    pub is_presenting: bool,
-    pub is_lesson: bool,
-}
+/// Excursions that last from a command that begins them to one that ends them, whatever the commands between show.
+const FRAMES: [Excursion; 2] = [Excursion::Presenting, Excursion::Lesson];
 
 /// Returns the effect of a command that shows `shown`, if anything, on a stage in the mode `from`.
 fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &WayBack) -> Effect {
@@ -95,39 +91,28 @@ impl StageParams<'_, '_> {
     }
 
     /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
-    /// is the scene before the command: see [`Self::scene`].
+    /// is the scene before the command: see [`Self::scene`]. `before` and `after` tell which of [`FRAMES`] were open
+    /// before and after the command.
     pub(super) fn finish(
         &mut self,
         command: &Command,
         left: Option<LeftScene>,
-        (before, after): (FrameState, FrameState),
+        (before, after): ([bool; 2], [bool; 2]),
         camera: &mut CameraRig,
     ) {
         let shown = self.pending.take();
         let mode = shown.as_ref().map(|show| &show.mode);
-        let (presents, teaches) = (Excursion::Presenting, Excursion::Lesson);
-        let effect = match (before, after) {
+        let changed =
+            FRAMES.into_iter().enumerate().find(|(index, _)| before[*index] != after[*index]);
+        let effect = match changed {
             // A lesson ends a presentation, and returns to the scene before it.
-            (
-                FrameState { is_presenting: true, is_lesson: false },
-                FrameState { is_presenting: false, is_lesson: true },
-            ) => {
-                self.way_back.turn(presents, teaches);
+            Some((_, frame)) if (before, after) == ([true, false], [false, true]) => {
+                self.way_back.turn(frame, Excursion::Lesson);
                 Effect::None
             }
-            (FrameState { is_presenting: false, .. }, FrameState { is_presenting: true, .. }) => {
-                Effect::Enter(presents)
-            }
-            (FrameState { is_presenting: true, .. }, FrameState { is_presenting: false, .. }) => {
-                Effect::Leave(presents)
-            }
-            (FrameState { is_lesson: false, .. }, FrameState { is_lesson: true, .. }) => {
-                Effect::Enter(teaches)
-            }
-            (FrameState { is_lesson: true, .. }, FrameState { is_lesson: false, .. }) => {
-                Effect::Leave(teaches)
-            }
-            _ => effect(command, &self.mode, mode, &self.way_back),
+            Some((index, frame)) if after[index] => Effect::Enter(frame),
+            Some((_, frame)) => Effect::Leave(frame),
+            None => effect(command, &self.mode, mode, &self.way_back),
         };
         match effect {
             Effect::None => {}

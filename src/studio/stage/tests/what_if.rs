@@ -76,12 +76,12 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
     assert!(clock(&mut app).is_playing());
     assert_eq!(clock(&mut app).time_s(), moment_s);
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
-    assert_eq!((first.replay().step(), second.replay().step()), (MOMENT, MOMENT));
+    assert_eq!((first.replay.step(), second.replay.step()), (MOMENT, MOMENT));
     assert_eq!(first.last_poses(), original_at(MOMENT).poses());
     assert_eq!(second.last_poses(), first.last_poses());
     (0..40).for_each(|_| frame(&mut app, 0.05));
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
-    assert_eq!(first.last_poses(), original_at(first.replay().step()).poses());
+    assert_eq!(first.last_poses(), original_at(first.replay.step()).poses());
     let apart_m = first.drawn_middle().distance(second.drawn_middle());
     assert!(apart_m > 0.1, "{apart_m} m apart after two seconds on ice");
 }
@@ -126,7 +126,7 @@ fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
             frame(&mut app, 0.0);
             let lanes = lanes_of(&mut app);
             let shown = lanes[1].1;
-            assert_eq!(shown.replay().step(), step);
+            assert_eq!(shown.replay.step(), step);
             assert_eq!(shown.last_poses(), expected[step as usize - 1], "step {step}");
             if step <= MOMENT {
                 assert_eq!(shown.last_poses(), original_at(step).poses(), "step {step}");
@@ -151,7 +151,7 @@ fn while_a_copy_starts_over_the_other_lanes_stay() {
     assert_ne!(third, entities[2]);
     assert_eq!(changed.staged().label(), "friction 3");
     for lane in [original, fixed, changed] {
-        assert_eq!(lane.replay().step(), MOMENT);
+        assert_eq!(lane.replay.step(), MOMENT);
         assert_eq!(lane.last_poses(), original_at(MOMENT).poses());
     }
     assert!(original.history().is_some() && fixed.history().is_some(), "not computed again");
@@ -184,7 +184,7 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
     clock(&mut app).hold_at(moment_s);
     frame(&mut app, 0.0);
     let original = StagedChampion::from_file(&long, 0, "a champion");
-    let step = lane(&mut app).replay().step();
+    let step = lane(&mut app).replay.step();
     let moment = lane(&mut app).rollout_at(step);
     let copies = ["0.3", "0.4", "0.5"].map(|friction| {
         let trial = changed(&long, "surface.friction", friction);
@@ -197,7 +197,7 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
         clock(&mut app).play_change(moment_s, moment_s);
         frame(&mut app, 0.0);
         let lanes = lanes_of(&mut app);
-        let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay().step()).collect();
+        let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay.step()).collect();
         assert_eq!(steps, [step; 2], "both are there within one frame");
     }
 }

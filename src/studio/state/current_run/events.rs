@@ -98,9 +98,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
 mod tests {
     use super::*;
     use crate::studio::schedule::RESULTS_HZ;
-    use crate::studio::state::current_run::{prepared_run, small_run};
-    use crate::studio::state::options::Options;
-    use crate::studio::state::run_context::RunContext;
+    use crate::studio::state::current_run::{prepared_run, run_in, small_run};
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
     use snakes_core::schema::SettingValue;
@@ -109,9 +107,8 @@ mod tests {
 
     /// Creates a studio without a window, whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
-        let options = Options::of_test(small_run(saves, 1, 3), saves.clone());
         let mut app = App::new();
-        app.insert_resource(CurrentRun::new(RunContext::new(&options)))
+        app.insert_resource(run_in(saves, small_run(saves, 1, 3)))
             .init_resource::<Notices>()
             .add_systems(Update, take_in);
         app
@@ -189,7 +186,7 @@ mod tests {
             // Undo of a resumption makes the same change: another plan was set before.
             let mut other = before;
             other.settings.evolution.population = 5;
-            run.set_next_plan_alone(other)?;
+            run.replace_next(other, false)?;
             run.set_field("halving.parents", "3")?;
             let requested = run.requested_settings().into_owned().evolution;
             assert_eq!((requested.population, requested.halving.parents), (6, 4));

@@ -135,9 +135,12 @@ fn a_run_is_added_to_the_comparison_and_removed_again() {
 fn run_of(plan: RunPlan) -> CurrentRun {
     let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
     let saves = SavesFolder::find(Some(&folder));
-    let run = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
-    let options = Options::of_test(run, saves);
-    CurrentRun::new(RunContext::new(&options))
+    run_in(&saves, RunSource::in_saves(&saves, plan, ExistingRun::Keep))
+}
+
+/// Prepares a run in the studio that saves in this folder, without starting it.
+pub fn run_in(saves: &SavesFolder, run: RunSource) -> CurrentRun {
+    CurrentRun::new(RunContext::new(&Options::of_test(run, saves.clone())))
 }
 
 #[test]

@@ -62,12 +62,8 @@ impl CurrentRun {
         self.replace_next(plan, true)
     }
 
-    /// Replaces the next run's plan without changing a run in progress.
-    pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.replace_next(plan, false)
-    }
-
-    fn replace_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
+    /// Replaces the next run's plan. Only an edit also changes a run in progress.
+    pub fn replace_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
             format!("The champion from which the next run starts does not fit: {error}")
         })?;

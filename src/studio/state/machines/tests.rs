@@ -1,9 +1,7 @@
 //! The states of the connection, and their effect on the run.
 
 use super::*;
-use crate::studio::state::current_run::small_run;
-use crate::studio::state::options::Options;
-use crate::studio::state::run_context::RunContext;
+use crate::studio::state::current_run::{run_in, small_run};
 use snakes_cluster::RunQueue;
 use snakes_core::save::SavesFolder;
 use snakes_lab::run::LocalPool;
@@ -13,8 +11,7 @@ use std::sync::Arc;
 fn held_run() -> (tempfile::TempDir, CurrentRun) {
     let folder = tempfile::tempdir().expect("a folder");
     let saves = SavesFolder::find(Some(folder.path()));
-    let options = Options::of_test(small_run(&saves, 1, 3), saves);
-    let mut run = CurrentRun::new(RunContext::new(&options));
+    let mut run = run_in(&saves, small_run(&saves, 1, 3));
     run.start().and_then(|()| run.pause()).expect("started");
     (folder, run)
 }
@@ -43,7 +40,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     link.follow(&mut run);
     let (number, asked) = link.asked.clone().expect("asked");
     assert_eq!((number, asked.local_threads), (run.number(), 1));
-    assert!(asked.name.starts_with("test-seed1-") && !run.is_shared());
+    assert!(asked.name.starts_with("test-seed1-") && run.shared.is_none());
 
     let evaluator = || Arc::new(LocalPool::new(2).expect("threads"));
     let coordinates = |run: &WatchedRun| WatchNews::Coordinates {
@@ -53,22 +50,22 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     };
     let other = WatchedRun { name: "other".to_owned(), local_threads: 1 };
     link.take_in_news(coordinates(&other), &mut run, &mut notices);
-    assert!(!run.is_shared(), "another run was asked for");
+    assert!(run.shared.is_none(), "another run was asked for");
     link.take_in_news(coordinates(&asked), &mut run, &mut notices);
-    assert!(run.is_shared());
+    assert!(run.shared.is_some());
     assert_eq!(known(&link).own_run.as_deref(), Some("n"));
 
     // Another number of threads needs another coordinator. Until it is ready, only this computer evaluates.
     run.set_threads(2).expect("allowed");
     link.follow(&mut run);
-    assert!(!run.is_shared());
+    assert!(run.shared.is_none());
     assert_eq!(link.asked.as_ref().map(|(_, run)| run.local_threads), Some(2));
     link.take_in_news(coordinates(&link.asked.clone().expect("asked").1), &mut run, &mut notices);
-    assert!(run.is_shared());
+    assert!(run.shared.is_some());
 
     // Another run needs another coordinator as well.
     run.reset().expect("allowed");
-    assert!(!run.is_shared());
+    assert!(run.shared.is_none());
     link.follow(&mut run);
     assert_eq!(link.asked, None, "it has not begun");
 
@@ -130,7 +127,7 @@ fn wrong_results_end_the_connection() {
     app.update();
     let link = app.world().resource::<MachinesLink>();
     assert_eq!(link.state, LinkState::Failed("w lies".to_owned()));
-    assert!(!app.world().resource::<CurrentRun>().is_shared());
+    assert!(app.world().resource::<CurrentRun>().shared.is_none());
 }
 
 #[test]

@@ -67,11 +67,7 @@ impl StageParams<'_, '_> {
         let (from, to) = if way == UndoDirection::Back { (after, before) } else { (before, after) };
         let now = run.next_plan().clone();
         let next = stepped(&now, from, to);
-        if step.is_of_another_run() {
-            run.set_next_plan_alone(next)?;
-        } else {
-            run.set_next_plan(next)?;
-        }
+        run.replace_next(next, !step.is_of_another_run())?;
         let moment = self.moment(history);
         let shown = self.shown();
         let stage = ChangedStage { show: &shown, moment: moment.rollout.as_ref() };

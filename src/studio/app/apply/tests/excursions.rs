@@ -4,9 +4,7 @@ use super::*;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{ExamCommand, StageCommand};
 use crate::studio::stage;
-use crate::studio::state::current_run::{climber, explored_run, small_run};
-use crate::studio::state::options::Options;
-use crate::studio::state::run_context::RunContext;
+use crate::studio::state::current_run::{climber, explored_run, run_in, small_run};
 use crate::studio::state::stairs_exams::tests::made_up;
 use bevy::time::TimeUpdateStrategy;
 use snakes_core::save::SavesFolder;
@@ -171,8 +169,7 @@ fn a_new_run_leads_back_to_no_scene_of_the_one_before_and_a_refused_one_changes_
     {
         let mut app = studio();
         let saves = SavesFolder::find(Some(folder.path()));
-        let options = Options::of_test(small_run(&saves, 1, 3), saves);
-        app.insert_resource(CurrentRun::new(RunContext::new(&options)));
+        app.insert_resource(run_in(&saves, small_run(&saves, 1, 3)));
         send(&mut app, &Command::Stage(StageCommand::RaceStairs));
         assert!(app.world().resource::<WayBack>().can_leave());
         send(&mut app, &Command::Run(command.clone()));
