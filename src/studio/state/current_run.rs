@@ -371,6 +371,6 @@ impl CurrentRun {
 mod fixtures;
 #[cfg(test)]
 pub(crate) use fixtures::{
-    bodies_run, climber, compared_run, explored_run, landed_run, prepared_run, run_in, small_run,
-    species_run,
+    bodies_run, climber, compared_run, evolve, explored_run, landed_run, prepared_run, run_in,
+    small_run, species_run,
 };

@@ -66,21 +66,15 @@ fn offer_text(run: &RunSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::small_run;
+    use crate::studio::state::current_run::{evolve, small_run};
     use crate::studio::state::options::Options;
     use snakes_core::save::SavesFolder;
-    use snakes_lab::run::{LocalPool, RunControl};
     use std::path::Path;
 
     /// Keeps a stopped run of seed 1 in this folder, starts the studio with another run, and waits until `is_ready`.
     fn started(folder: &Path, own: (u64, u32), is_ready: impl Fn(&World) -> bool) -> App {
         let saves = SavesFolder::find(Some(folder));
-        let mut earlier = small_run(&saves, 1, 10_000).open("a test").expect("opened");
-        let pool = LocalPool::new(1).expect("threads");
-        let report = earlier.experiment.run_generation(&pool, &RunControl::default());
-        let report = report.expect("not cancelled");
-        earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
-        drop(earlier);
+        evolve(small_run(&saves, 1, 10_000), 1);
         let run = small_run(&saves, own.0, own.1);
         let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
         let context = RunContext::new(&options);

@@ -86,6 +86,17 @@ pub fn landed_run() -> CurrentRun {
     run
 }
 
+/// Evolves a run for this number of generations, and saves them in its folder.
+pub fn evolve(run: RunSource, generations: u32) {
+    let mut run = run.open("a test").expect("opened");
+    let pool = LocalPool::new(1).expect("threads");
+    for _ in 0..generations {
+        let report = run.experiment.run_generation(&pool, &RunControl::default());
+        let report = report.expect("not cancelled");
+        run.recorder.record_generation(&run.experiment, &report).expect("kept");
+    }
+}
+
 /// Creates the run of `explored_run`, compared with another run of two generations in this folder. The log of the other
 /// run can be damaged.
 pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
@@ -95,15 +106,7 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
     let plan = RunPlan::new("other", 7, settings);
     let source = RunSource::in_saves(&SavesFolder::find(Some(saves)), plan, ExistingRun::Keep);
     let folder = source.folder.clone();
-    let mut other = source.open("a test").expect("opened");
-    let pool = LocalPool::new(1).expect("threads");
-    for _ in 0..2 {
-        let report = other.experiment.run_generation(&pool, &RunControl::default());
-        other
-            .recorder
-            .record_generation(&other.experiment, &report.expect("not cancelled"))
-            .expect("kept");
-    }
+    evolve(source, 2);
     if is_damaged {
         let nonsense = [vec!["no log".to_owned()]];
         store_csv(&folder.join("log.jsonl"), &nonsense).expect("written");
