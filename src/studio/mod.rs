@@ -35,9 +35,9 @@ use app::ui_dump::UiDumpFile;
 use failure::gpu_loss::Failure;
 use schedule::FrameSet;
 use stage::opening::OpeningChampions;
+use state::current_run::CurrentRun;
 use state::following::Following;
 use state::options::OpenedComparison;
-use state::run_context::RunContext;
 use state::turns::Turns;
 use ui::notifications::Notices;
 use workspace::Workspace;
@@ -74,8 +74,8 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     let size = options.window_size.or(chosen.window_size).unwrap_or(WINDOW_SIZE);
     // Skip the tour in automated runs.
     let tour_is_over = chosen.tour_is_over || options.exit_after_frames.is_some();
-    let engine = RunContext::new(&options);
-    let run_folder = Arc::clone(&engine.run_folder);
+    let run = CurrentRun::new(&options);
+    let run_folder = Arc::clone(&run.context.run_folder);
     let exit_after = options.exit_after_frames;
     let problems = options.problems.clone();
     let failure = Failure::default();
@@ -98,7 +98,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))
-        .insert_resource(engine)
+        .insert_resource(run)
         .insert_resource(failure)
         .configure_sets(
             Update,
@@ -106,9 +106,10 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         )
         .add_plugins((
             app::plugin,
-            failure::plugin,
+            failure::gpu_loss::plugin,
+            failure::panic_guard::plugin,
             panels::plugin,
-            pictures::plugin,
+            pictures::screenshot::plugin,
             scene::plugin,
             stage::plugin,
             state::plugin,

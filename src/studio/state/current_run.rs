@@ -16,6 +16,7 @@ use std::sync::{Arc, OnceLock};
 use bevy::prelude::*;
 
 use super::milestones::Milestone;
+use super::options::Options;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
 use snakes_core::save::{ExistingRun, RunSummary};
@@ -89,15 +90,10 @@ pub(crate) struct CurrentRun {
     discarded: Option<PathBuf>,
 }
 
-impl FromWorld for CurrentRun {
-    fn from_world(world: &mut World) -> Self {
-        Self::new(world.resource::<RunContext>().clone())
-    }
-}
-
 impl CurrentRun {
     /// Prepares the run with which the studio opens.
-    pub fn new(context: RunContext) -> Self {
+    pub fn new(options: &Options) -> Self {
+        let context = RunContext::new(options);
         Self::prepared(context.first.clone(), context.first.plan.clone(), context)
     }
 

@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bevy::prelude::*;
-
 use super::options::Options;
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
 use snakes_lab::run::{Evaluator, RunSource};
 
 /// What all runs since the start of the program share.
-#[derive(Resource, Debug, Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct RunContext {
     /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,

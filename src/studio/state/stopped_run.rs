@@ -4,7 +4,6 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use crate::studio::commands::{Command, RunCommand};
-use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::RunSummary;
 
@@ -13,21 +12,16 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Lists the runs, unless the user has named a run.
-fn list(mut run: ResMut<CurrentRun>, context: Res<RunContext>, mut notices: ResMut<Notices>) {
-    if context.offers_stopped_run {
+fn list(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if run.context.offers_stopped_run {
         notices.problems(run.list_runs().err());
     }
 }
 
 /// Opens the run that was stopped last, paused, once the runs are listed. If the program was started with other settings,
 /// starts its own run and offers the stopped one.
-fn open(
-    mut run: ResMut<CurrentRun>,
-    context: Res<RunContext>,
-    mut notices: ResMut<Notices>,
-    mut is_done: Local<bool>,
-) {
-    if *is_done || !context.offers_stopped_run {
+fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: Local<bool>) {
+    if *is_done || !run.context.offers_stopped_run {
         return;
     }
     // A list that cannot be read is reported, and the own run starts.
@@ -77,10 +71,8 @@ mod tests {
         evolve(small_run(&saves, 1, 10_000), 1);
         let run = small_run(&saves, own.0, own.1);
         let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
-        let context = RunContext::new(&options);
         let mut app = App::new();
-        app.insert_resource(CurrentRun::new(context.clone()))
-            .insert_resource(context)
+        app.insert_resource(CurrentRun::new(&options))
             .init_resource::<Notices>()
             .add_plugins(bevy::time::TimePlugin)
             .add_plugins((crate::studio::state::current_run::events::plugin, plugin));

@@ -9,9 +9,7 @@ use snakes_core::save::ExistingRun;
 use snakes_lab::run::{OpenedRun, RunEvent};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<CurrentRun>()
-        .add_systems(Startup, start_at_once)
-        .add_systems(FixedUpdate, take_in);
+    app.add_systems(Startup, start_at_once).add_systems(FixedUpdate, take_in);
 }
 
 /// Starts evolution together with the program, unless a stopped run may be opened instead.

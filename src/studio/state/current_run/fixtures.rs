@@ -3,7 +3,6 @@
 use super::*;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::state::options::Options;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::{RunPlan, Rung, StrategyKind};
 use snakes_core::genome::ControllerKind;
@@ -143,7 +142,7 @@ fn run_of(plan: RunPlan) -> CurrentRun {
 
 /// Prepares a run in the studio that saves in this folder, without starting it.
 pub fn run_in(saves: &SavesFolder, run: RunSource) -> CurrentRun {
-    CurrentRun::new(RunContext::new(&Options::of_test(run, saves.clone())))
+    CurrentRun::new(&Options::of_test(run, saves.clone()))
 }
 
 #[test]
