@@ -111,9 +111,7 @@ fn restore(
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
         let known = Overlay::ALL.into_iter().find(|overlay| overlay.name() == name);
-        if let Some(overlay) = known.filter(|overlay| !chosen.overlays.shows(*overlay)) {
-            chosen.overlays.toggle(overlay);
-        }
+        known.into_iter().for_each(|overlay| chosen.overlays.show(overlay));
     }
     chosen.playback.set_speed(speed);
     chosen.playback.loops = loops;

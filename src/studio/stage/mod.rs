@@ -233,7 +233,7 @@ fn advance(
     if steps_per_s == 0.0 {
         return;
     }
-    if selection.as_ref().is_some_and(|selection| selection.is_pulling()) {
+    if selection.as_ref().is_some_and(|of| of.held.is_some_and(|held| held.is_pulling)) {
         playback.go_on();
     }
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);

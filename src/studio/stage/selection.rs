@@ -34,11 +34,6 @@ impl Selection {
         self.held.filter(|held| held.is_pulling && held.lane == lane).map(|held| held.pull)
     }
 
-    /// Returns whether the mouse pulls a limb.
-    pub fn is_pulling(&self) -> bool {
-        self.held.is_some_and(|held| held.is_pulling)
-    }
-
     /// Selects a limb of a lane and holds one of its parts.
     pub fn grab(&mut self, lane: usize, limb: usize, held: HeldLimb) {
         (self.lane, self.limb) = (lane, Some(limb));

@@ -269,12 +269,7 @@ impl StagedChampion {
 
     /// Returns whether the champion is shown otherwise than as it was found, although that is possible.
     pub fn could_be_as_found(&self) -> bool {
-        let is_resimulated = self.shown_as == ShownAs::Simulated && self.has_recording();
-        self.is_changed() || is_resimulated
-    }
-
-    fn has_recording(&self) -> bool {
-        matches!(self.elsewhere, Some((_, Some(_))))
+        self.shown_as != ShownAs::Found
     }
 
     /// Returns the champion as it was found.

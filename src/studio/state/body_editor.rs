@@ -214,16 +214,9 @@ impl Edited {
             return false;
         };
         self.evaluation = None;
-        match result.and_then(|champion| champion) {
-            Ok(champion) => {
-                self.ready = Some(champion);
-                true
-            }
-            Err(problem) => {
-                notices.problem(format!("This body cannot be simulated: {problem}"));
-                false
-            }
-        }
+        let failed = |reason| notices.problem(format!("This body cannot be simulated: {reason}"));
+        self.ready = result.flatten().map_err(failed).ok();
+        self.ready.is_some()
     }
 
     fn of(original: &StagedChampion) -> Result<Self, String> {

@@ -155,7 +155,8 @@ impl CurrentRun {
     /// Returns the stopped runs that can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
         let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
-        Some(self.others.runs.as_ref()?.iter().filter(is_other))
+        let runs = self.others.runs.as_ref()?.iter();
+        Some(runs.map(|(run, _)| run).filter(is_other))
     }
 
     /// Returns the reports of the finished generations, the first generation first.

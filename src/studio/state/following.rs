@@ -76,10 +76,8 @@ impl Following {
 
     /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
     pub fn story_part(&self) -> Option<(usize, usize)> {
-        match &self.plan {
-            FollowPlan::Story { generations, next } => Some((*next, generations.len())),
-            FollowPlan::Nothing | FollowPlan::Evolution => None,
-        }
+        let FollowPlan::Story { generations, next } = &self.plan else { return None };
+        Some((*next, generations.len()))
     }
 
     /// Shows each better generation from now on, beginning with the latest of them.

@@ -205,12 +205,7 @@ fn name_of(path: &Path) -> String {
 fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
     let ending = format.info().ending;
     let has_it = path.extension().is_some_and(|of| of.eq_ignore_ascii_case(ending));
-    if has_it {
-        return path.to_owned();
-    }
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{ending}"));
-    PathBuf::from(name)
+    if has_it { path.to_owned() } else { path.with_added_extension(ending) }
 }
 
 /// Returns the arguments of the program that writes the file, apart from the champions.

@@ -55,11 +55,7 @@ impl StairsExams {
         let selected = selected.ok_or("There is no snake on the stage.");
         match command {
             ExamCommand::Examine => self.examine(selected?)?,
-            ExamCommand::Cancel => {
-                if let Some(under_way) = &self.under_way {
-                    under_way.work.cancel();
-                }
-            }
+            ExamCommand::Cancel => self.under_way.iter().for_each(|exam| exam.work.cancel()),
             ExamCommand::Watch { suite, cell } => {
                 let selected = selected?;
                 let mut grids = self.of(selected.champion()).unwrap_or_default().iter();

@@ -106,8 +106,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         }
     }
     let Some(runs) = &others.runs else { return explain(ui, "Loading the list of runs…") };
-    let listed = runs.iter().zip(&others.settings);
-    let mut choices = listed.filter(|(other, _)| other.folder != run.folder()).peekable();
+    let mut choices = runs.iter().filter(|(other, _)| other.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
