@@ -58,7 +58,7 @@ fn update(
             format!("{what}{manner}{disturbed}")
         }
     };
-    let stopped = match playback.is_playing() {
+    let stopped = match playback.is_playing {
         true => String::new(),
         false => format!(", stopped at {:.2} s", playback.time_s()),
     };

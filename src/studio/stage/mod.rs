@@ -234,7 +234,7 @@ fn advance(
         return;
     }
     if selection.as_ref().is_some_and(|of| of.held.is_some_and(|held| held.is_pulling)) {
-        playback.go_on();
+        playback.is_playing = true;
     }
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
     for (entity, mut lane) in &mut lanes {

@@ -14,7 +14,8 @@ pub(crate) struct Playback {
     /// Time that the stage displays, in simulated seconds.
     time_s: f64,
     speed: f32,
-    is_playing: bool,
+    /// Whether playback is running.
+    pub is_playing: bool,
     /// Whether playback restarts after the end.
     pub loops: bool,
     /// Real time since the clock reached the end, in seconds.
@@ -57,11 +58,6 @@ impl Playback {
     /// Returns the time that the stage displays, in simulated seconds.
     pub fn time_s(&self) -> f64 {
         self.time_s
-    }
-
-    /// Returns whether playback is running.
-    pub fn is_playing(&self) -> bool {
-        self.is_playing
     }
 
     /// Returns the playback speed, in simulated seconds per real second.
@@ -114,11 +110,6 @@ impl Playback {
         } else {
             self.is_playing = !self.is_playing;
         }
-    }
-
-    /// Plays from the present time on.
-    pub fn go_on(&mut self) {
-        self.is_playing = true;
     }
 
     /// Returns to the time and the settings of an earlier clock.
@@ -212,7 +203,7 @@ mod tests {
             seen.push(steps(&playback));
         }
         assert_eq!(seen, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
-        assert!(!playback.is_playing());
+        assert!(!playback.is_playing);
     }
 
     #[test]
@@ -230,9 +221,9 @@ mod tests {
         assert!((14..17).contains(&rests), "{rests} frames of a tenth of a second");
         playback.loops = false;
         (0..40).for_each(|_| playback.pass(0.1, 1.0, 2.0));
-        assert_eq!((playback.time_s(), playback.is_playing()), (2.0, false));
+        assert_eq!((playback.time_s(), playback.is_playing), (2.0, false));
         playback.toggle(2.0);
-        assert_eq!((playback.time_s(), playback.is_playing()), (0.0, true), "play begins anew");
+        assert_eq!((playback.time_s(), playback.is_playing), (0.0, true), "play begins anew");
     }
 
     #[test]

@@ -309,7 +309,7 @@ fn a8_no_pull_ends_a_trial_and_a_pull_plays_a_paused_stage() {
     frame(&mut app, 0.1);
     pull(&mut app, Vector::new(60.0, 0.0, 0.0));
     (0..80).for_each(|_| frame(&mut app, 0.1));
-    assert!(clock(&mut app).is_playing(), "or nothing would move");
+    assert!(clock(&mut app).is_playing, "or nothing would move");
     let lane = lane(&mut app);
     assert_eq!(lane.evaluation().disqualified, None);
     assert!(lane.is_disturbed() && lane.last_poses()[0].translation.x.abs() > 3.0);

@@ -198,14 +198,14 @@ fn follow(
         following.follow_evolution();
         following.is_new = true;
     }
-    if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
+    if following.holds && (playback.is_playing || run.status() != RunStatus::Running) {
         // The user plays the present champion, or evolution is not running.
         following.holds = false;
-        if !playback.is_playing() {
+        if !playback.is_playing {
             playback.restart();
         }
     }
-    if playback.is_playing() {
+    if playback.is_playing {
         following.shown_for += time.delta();
     } else if !following.holds {
         // The user is looking at the paused stage.

@@ -367,7 +367,7 @@ fn take_in(
     }
     let end_s = end_s(lanes.iter().copied());
     let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
-    if is_over && playback.is_playing() && playback.time_s() >= end_s {
+    if is_over && playback.is_playing && playback.time_s() >= end_s {
         // The finish stays in sight until the reader plays again.
         playback.hold_at(end_s);
     }

@@ -128,7 +128,7 @@ fn take_turns(
     let first = lanes.iter().min_by_key(|lane| lane.number());
     let on_stage = first.map(Lane::staged);
     let end_s = end_s(lanes);
-    let is_over = playback.is_playing() && end_s > 0.0 && playback.time_s() >= end_s;
+    let is_over = playback.is_playing && end_s > 0.0 && playback.time_s() >= end_s;
     turns.rested = if is_over { turns.rested + time.delta() } else { Duration::ZERO };
     let goes_on = turns.rested >= REST && turns.goes_on(&run, &following, (&mode, on_stage));
     let asked = turns.asked.take();

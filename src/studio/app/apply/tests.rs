@@ -100,7 +100,7 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
         let step = current.changes_at_step();
         *app.world_mut().resource_mut::<StageMode>() = mode;
         let playback = app.world().resource::<Playback>();
-        assert!(playback.is_playing(), "or there would be nothing to see");
+        assert!(playback.is_playing, "or there would be nothing to see");
         (step, playback.time_s())
     };
     let goes_to = |time_s| {
@@ -182,7 +182,7 @@ fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
     app.world_mut().write_message_batch(commands);
     app.update();
     assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
-    assert!(!app.world().resource::<Playback>().is_playing(), "and paused");
+    assert!(!app.world().resource::<Playback>().is_playing, "and paused");
 }
 
 #[test]

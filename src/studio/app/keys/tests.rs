@@ -62,24 +62,22 @@ fn every_shortcut_triggers_its_action() {
 #[test]
 fn the_command_of_a_key_depends_on_the_situation() {
     let calm = Situation::default();
-    assert_eq!(command(&Key::Escape, NONE, calm), None, "nothing to leave");
     let can_leave = Situation { can_leave: true, ..calm };
-    assert_eq!(command(&Key::Escape, NONE, can_leave), Some(Command::Stage(StageCommand::Leave)));
     let is_what_if = Situation { is_what_if: true, ..calm };
-    assert_eq!(
-        command(&Key::Escape, NONE, is_what_if),
-        Some(Command::Plan(PlanCommand::DropChange))
-    );
     let is_covered = Situation { is_covered: true, ..is_what_if };
-    assert_eq!(
-        command(&Key::Escape, NONE, is_covered),
-        Some(Command::Window(WindowCommand::CloseModal))
-    );
     let is_running = Situation { is_running: true, ..calm };
-    assert_eq!(command(&character("e"), NONE, is_running), Some(Command::Run(RunCommand::Pause)));
-    assert_eq!(command(&character("e"), NONE, calm), Some(Command::Run(RunCommand::Start)));
     let third = Command::Stage(StageCommand::Show(Pick::Generation(3)));
-    assert_eq!(command(&character("3"), NONE, calm), Some(third));
+    for (key, now, expected) in [
+        (Key::Escape, calm, None),
+        (Key::Escape, can_leave, Some(Command::Stage(StageCommand::Leave))),
+        (Key::Escape, is_what_if, Some(Command::Plan(PlanCommand::DropChange))),
+        (Key::Escape, is_covered, Some(Command::Window(WindowCommand::CloseModal))),
+        (character("e"), is_running, Some(Command::Run(RunCommand::Pause))),
+        (character("e"), calm, Some(Command::Run(RunCommand::Start))),
+        (character("3"), calm, Some(third)),
+    ] {
+        assert_eq!(command(&key, NONE, now), expected, "{key:?} in {now:?}");
+    }
 }
 
 #[test]

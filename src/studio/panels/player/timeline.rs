@@ -120,7 +120,7 @@ impl TimelinePanel {
 
 /// Draws the playback buttons, the speed and the time.
 fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec<Command>) {
-    let play = match playback.is_playing() {
+    let play = match playback.is_playing {
         true => (Icon::Pause, "Pause", PlayerCommand::Toggle),
         false => (Icon::Play, "Play", PlayerCommand::Toggle),
     };

@@ -73,7 +73,7 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
     let mut app = stage_at_moment();
     present(&mut app, what_if(&["0.3"]));
     let moment_s = f64::from(MOMENT) * step_s();
-    assert!(clock(&mut app).is_playing());
+    assert!(clock(&mut app).is_playing);
     assert_eq!(clock(&mut app).time_s(), moment_s);
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
     assert_eq!((first.replay.step(), second.replay.step()), (MOMENT, MOMENT));

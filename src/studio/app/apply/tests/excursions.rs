@@ -29,7 +29,7 @@ fn seen(app: &mut App) -> Seen {
         ("poses", format!("{:?}", poses.collect::<Vec<_>>())),
         ("mode", format!("{:?}", world.resource::<StageMode>())),
         ("time", playback.time_s().to_string()),
-        ("playing", playback.is_playing().to_string()),
+        ("playing", playback.is_playing.to_string()),
         ("camera", format!("{:?}", world.resource::<CameraRig>())),
         ("selection", format!("{:?}", (selection.lane, selection.limb))),
         ("following", world.resource::<Following>().follows_evolution().to_string()),
