@@ -162,7 +162,45 @@ impl StageParams<'_, '_> {
         opening: &OpeningChampions,
         notices: &mut Notices,
     ) -> Result<(), String> {
-        let show = match command {
+        match command {
+            StageCommand::ToggleFollowEvolution if self.following.follows_evolution() => {
+                self.following.stop();
+            }
+            StageCommand::ToggleFollowEvolution => self.following.follow_evolution(),
+            StageCommand::TellStory => self.following.tell_story(run)?,
+            StageCommand::TakeTurn(turn) => self.turns.take(*turn),
+            // The scene comes back when the command is finished.
+            StageCommand::Leave => {}
+            StageCommand::Single => self.leave_single(notices),
+            StageCommand::KeepChange => drop(self.settle()),
+            // The clock continues, because nothing on the stage changes.
+            StageCommand::TryAnother => *self.pending = Some(another_beside(run, self.shown())?),
+            StageCommand::ShowAsFound => {
+                self.present(Some(self.in_place(StagedChampion::as_found)))
+            }
+            StageCommand::Simulate => self.present(Some(self.in_place(StagedChampion::simulated))),
+            StageCommand::Focus(lane) => (self.selection.lane, self.selection.limb) = (*lane, None),
+            StageCommand::Show(_)
+            | StageCommand::Join(_)
+            | StageCommand::ShowGeneration(_)
+            | StageCommand::Sweep(_)
+            | StageCommand::RaceStairs
+            | StageCommand::RaceGenerations
+            | StageCommand::RaceLeaders(_) => {
+                self.present_others(self.chosen(command, run, opening)?, notices);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the other champions that a command chooses for the stage, if there are any.
+    fn chosen(
+        &self,
+        command: &StageCommand,
+        run: &CurrentRun,
+        opening: &OpeningChampions,
+    ) -> Result<Option<Show>, String> {
+        Ok(match command {
             // The individual may have been replaced since the click. Then nothing happens.
             StageCommand::Show(pick) => champion_of(pick, run, opening).map(Show::solo),
             StageCommand::Join(pick) => {
@@ -182,18 +220,6 @@ impl StageParams<'_, '_> {
                     format!("All snakes of generation {number} were disqualified.")
                 })?)
             }
-            StageCommand::ToggleFollowEvolution => {
-                if self.following.follows_evolution() {
-                    self.following.stop();
-                } else {
-                    self.following.follow_evolution();
-                }
-                None
-            }
-            StageCommand::TellStory => {
-                self.following.tell_story(run)?;
-                None
-            }
             StageCommand::Sweep(field) => {
                 let champions = self.to_change().champions;
                 champions.first().map(|champion| sweep(champion, field)).transpose()?
@@ -203,56 +229,27 @@ impl StageParams<'_, '_> {
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
-            StageCommand::TakeTurn(turn) => {
-                self.turns.take(*turn);
-                None
-            }
-            // The scene comes back when the command is finished.
-            StageCommand::Leave => None,
-            StageCommand::Single
-                if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) =>
-            {
-                None
-            }
-            StageCommand::Single => {
-                self.following.stop();
-                let left = self.champions().into_iter().nth(self.selection.lane);
-                if let Some(left) = left.iter().find(|left| left.is_changed()) {
-                    let text = format!(
-                        "The stage keeps {}. The settings in the Change panel do not.",
-                        left.label()
-                    );
-                    let take = Command::Plan(PlanCommand::UseWorldOfLane);
-                    notices.offer("world", text, [("Use this world", take)]);
-                }
-                // The clock goes on, so that the snake is seen at the same moment as among the others.
-                *self.pending = left.map(Show::solo);
-                None
-            }
-            StageCommand::KeepChange => {
-                self.settle();
-                None
-            }
-            StageCommand::TryAnother => {
-                // The clock continues, because nothing on the stage changes.
-                *self.pending = Some(another_beside(run, self.shown())?);
-                None
-            }
-            StageCommand::ShowAsFound => {
-                self.present(Some(self.in_place(StagedChampion::as_found)));
-                None
-            }
-            StageCommand::Simulate => {
-                self.present(Some(self.in_place(StagedChampion::simulated)));
-                None
-            }
-            StageCommand::Focus(lane) => {
-                (self.selection.lane, self.selection.limb) = (*lane, None);
-                None
-            }
-        };
-        self.present_others(show, notices);
-        Ok(())
+            _ => None,
+        })
+    }
+
+    /// Leaves only the selected one of several snakes on the stage, and offers its world for the next run.
+    fn leave_single(&mut self, notices: &mut Notices) {
+        if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) {
+            return;
+        }
+        self.following.stop();
+        let left = self.champions().into_iter().nth(self.selection.lane);
+        if let Some(left) = left.iter().find(|left| left.is_changed()) {
+            let text = format!(
+                "The stage keeps {}. The settings in the Change panel do not.",
+                left.label()
+            );
+            let take = Command::Plan(PlanCommand::UseWorldOfLane);
+            notices.offer("world", text, [("Use this world", take)]);
+        }
+        // The clock goes on, so that the snake is seen at the same moment as among the others.
+        *self.pending = left.map(Show::solo);
     }
 
     /// Executes a command to the clock of the stage.
