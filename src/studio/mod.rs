@@ -32,7 +32,6 @@ use snakes_core::save::{PreferencesFile, shipped_champion};
 
 use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;
-use failure::gpu_loss::Failure;
 use schedule::FrameSet;
 use stage::opening::OpeningChampions;
 use state::current_run::CurrentRun;
@@ -78,8 +77,6 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     let run_folder = Arc::clone(&run.context.run_folder);
     let exit_after = options.exit_after_frames;
     let problems = options.problems.clone();
-    let failure = Failure::default();
-    let failed = failure.clone();
     let exit = failure::panic_guard::guarded(&run_folder, move || {
         let mut app = App::new();
         app.add_plugins(
@@ -99,7 +96,6 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))
         .insert_resource(run)
-        .insert_resource(failure)
         .configure_sets(
             Update,
             (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),
@@ -125,7 +121,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     })?;
     match exit {
         AppExit::Success => Ok(()),
-        AppExit::Error(code) => Err(match failed.message() {
+        AppExit::Error(code) => Err(match failure::gpu_loss::failure() {
             Some(message) => {
                 let run = run_folder.lock().unwrap_or_else(PoisonError::into_inner).take();
                 StudioError::Crashed { message, run }

@@ -121,8 +121,7 @@ impl Shares {
         let held = Arc::clone(&leash);
         let failed = |error| format!("{} could not be written: {error}.", path.display());
         let work = BackgroundTask::start_counted(PARTS, move |control| {
-            let champions: Vec<(String, Champion)> =
-                shared.into_iter().map(SharedChampion::evaluated).collect();
+            let champions: Vec<_> = shared.into_iter().map(|evaluated| evaluated()).collect();
             written((&held, &arguments), &champions, |share| {
                 control.set_done((share * PARTS as f64) as u32);
             })
@@ -227,28 +226,11 @@ fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsStrin
     arguments
 }
 
-/// A champion as the stage shows it, to be written to a file.
-#[derive(Debug, Clone, PartialEq)]
-struct SharedChampion {
-    name: String,
-    champion: Champion,
-    /// Whether the champion's recorded result is from another world or engine, so that it must be evaluated again.
-    is_to_evaluate: bool,
-}
-
-impl SharedChampion {
-    /// Returns the name and the champion, with its result in the world in which it is shown.
-    fn evaluated(self) -> (String, Champion) {
-        let Self { name, mut champion, is_to_evaluate } = self;
-        if is_to_evaluate {
-            champion.evaluation = evaluate(&champion.genome, &champion.trial);
-        }
-        (name, champion)
-    }
-}
-
-/// Converts the champion of a lane for a file. Fails with a reason if no file can represent it.
-fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
+/// Converts the champion of a lane for a file. Returns the work that gives its name and the champion, with its result in the
+/// world in which it is shown. Fails with a reason if no file can represent it.
+fn shared(
+    staged: &StagedChampion,
+) -> Result<impl FnOnce() -> (String, Champion) + Send + use<>, String> {
     let name = staged.label().to_owned();
     if let Some(engine) = staged.other_engine().filter(|_| staged.recording().is_some()) {
         return Err(format!(
@@ -260,8 +242,15 @@ fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
             "{name}: its world changes while it moves, which no file can hold; try the change from the start."
         ));
     }
-    let champion = Champion { trial: staged.trial().clone(), ..staged.champion().clone() };
-    Ok(SharedChampion { name, champion, is_to_evaluate: !staged.must_match_record() })
+    let mut champion = Champion { trial: staged.trial().clone(), ..staged.champion().clone() };
+    // A recorded result from another world or engine does not count here.
+    let is_to_evaluate = !staged.must_match_record();
+    Ok(move || {
+        if is_to_evaluate {
+            champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        }
+        (name, champion)
+    })
 }
 
 fn take_in(mut shares: ResMut<Shares>, mut notices: ResMut<Notices>) {
