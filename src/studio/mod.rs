@@ -21,23 +21,22 @@ mod state;
 mod ui;
 mod workspace;
 
-use std::sync::PoisonError;
+use std::sync::{Arc, PoisonError};
 
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::window::{PresentMode, WindowResolution};
 use bevy::winit::WinitSettings;
 
-use snakes_core::save::shipped_champion;
+use snakes_core::save::{PreferencesFile, shipped_champion};
 
 use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;
-use failure::gpu_loss::Failure;
 use schedule::FrameSet;
-use stage::opening::{NamedChampion, OpeningChampions};
+use stage::opening::OpeningChampions;
+use state::current_run::CurrentRun;
 use state::following::Following;
 use state::options::OpenedComparison;
-use state::run_context::RunContext;
 use state::turns::Turns;
 use ui::notifications::Notices;
 use workspace::Workspace;
@@ -60,27 +59,24 @@ const SHIPPED: &str = "climber (built-in)";
 /// See [`StudioError`].
 pub fn run(options: Options) -> Result<(), StudioError> {
     let has_champions = !options.champions.is_empty();
-    let mut saved: Vec<NamedChampion> =
-        options.champions.clone().into_iter().map(NamedChampion::from).collect();
+    let mut saved = options.champions.clone();
     if saved.is_empty() {
-        saved.push(NamedChampion::from((SHIPPED.to_owned(), shipped_champion()?)));
+        saved.push((SHIPPED.to_owned(), shipped_champion()?));
     }
     let mut remembered = StoredPreferences::read(&options.preferences);
     if options.exit_after_frames.is_some() {
         // Automated runs have no user, so preferences are not saved.
-        remembered = remembered.only_read();
+        remembered.file = PreferencesFile::nowhere();
     }
-    let chosen = remembered.chosen().clone();
+    let chosen = remembered.stored.clone();
     let theme = options.theme.unwrap_or_else(|| chosen.theme.parse().unwrap_or_default());
     let size = options.window_size.or(chosen.window_size).unwrap_or(WINDOW_SIZE);
     // Skip the tour in automated runs.
     let tour_is_over = chosen.tour_is_over || options.exit_after_frames.is_some();
-    let engine = RunContext::new(&options);
-    let run_folder = engine.run_folder();
+    let run = CurrentRun::new(&options);
+    let run_folder = Arc::clone(&run.context.run_folder);
     let exit_after = options.exit_after_frames;
     let problems = options.problems.clone();
-    let failure = Failure::default();
-    let failed = failure.clone();
     let exit = failure::panic_guard::guarded(&run_folder, move || {
         let mut app = App::new();
         app.add_plugins(
@@ -99,17 +95,17 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))
-        .insert_resource(engine)
-        .insert_resource(failure)
+        .insert_resource(run)
         .configure_sets(
             Update,
             (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),
         )
         .add_plugins((
             app::plugin,
-            failure::plugin,
+            failure::gpu_loss::plugin,
+            failure::panic_guard::plugin,
             panels::plugin,
-            pictures::plugin,
+            pictures::screenshot::plugin,
             scene::plugin,
             stage::plugin,
             state::plugin,
@@ -125,7 +121,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
     })?;
     match exit {
         AppExit::Success => Ok(()),
-        AppExit::Error(code) => Err(match failed.message() {
+        AppExit::Error(code) => Err(match failure::gpu_loss::failure() {
             Some(message) => {
                 let run = run_folder.lock().unwrap_or_else(PoisonError::into_inner).take();
                 StudioError::Crashed { message, run }

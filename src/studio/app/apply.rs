@@ -32,7 +32,6 @@ use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoS
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
-use excursions::FrameState;
 use stage::StageParams;
 
 pub(crate) fn plugin(app: &mut App) {
@@ -60,10 +59,9 @@ pub(super) fn apply(
     let notices = &mut *notices;
     for command in commands.read() {
         let before = run.next_plan().clone();
-        let left = stage.scene(&view.rig);
-        let frames = |workspace: &Workspace, lessons: &Lessons| FrameState {
-            is_presenting: workspace.is_presenting(),
-            is_lesson: lessons.view().is_some(),
+        let left = stage.scene(command, &view.rig);
+        let frames = |workspace: &Workspace, lessons: &Lessons| {
+            [workspace.is_presenting(), lessons.view().is_some()]
         };
         let frames_before = frames(&workspace, &lessons);
         let done = match command {
@@ -71,15 +69,20 @@ pub(super) fn apply(
                 Err(LESSON.to_owned())
             }
             Command::Run(command) => {
-                if replaces_run(command, &run) {
+                let is_other = replaces_run(command, &run);
+                if is_other {
                     let takes_change = !matches!(command, RunCommand::Continue(_));
-                    if let Some(change) = stage.tried_change().filter(|_| takes_change) {
+                    if let Some(change) = stage.settle().filter(|_| takes_change) {
                         notices
                             .info(format!("The new run has the change that was tried: {change}."));
                     }
-                    stage.settle();
                 }
-                run.apply(command, notices)
+                run.apply(command, notices).inspect(|()| {
+                    if is_other {
+                        // Nothing leads from the new run back to the scenes of the one before.
+                        stage.way_back.forget();
+                    }
+                })
             }
             Command::Plan(command) => {
                 stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)

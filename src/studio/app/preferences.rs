@@ -21,9 +21,10 @@ use snakes_core::save::{Preferences, PreferencesFile};
 /// The stored preferences and the file in which they are stored.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct StoredPreferences {
-    file: PreferencesFile,
+    /// File in which the preferences are stored.
+    pub file: PreferencesFile,
     /// Last known contents of the preferences file.
-    stored: Preferences,
+    pub stored: Preferences,
     /// Preferences at the last check. A change is written when it has not changed further until the next check.
     seen: Preferences,
     /// Error message from reading the file, until it is displayed.
@@ -53,17 +54,6 @@ impl StoredPreferences {
         };
         let file = file.clone();
         Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0 }
-    }
-
-    /// Returns the preferences without their file, so that changes are not stored.
-    pub fn only_read(mut self) -> Self {
-        self.file = PreferencesFile::nowhere();
-        self
-    }
-
-    /// Returns the stored preferences.
-    pub fn chosen(&self) -> &Preferences {
-        &self.stored
     }
 }
 
@@ -113,14 +103,10 @@ fn restore(
     chosen.workspace.layout = Layout::from_text(&layout);
     for name in overlays {
         let known = Overlay::ALL.into_iter().find(|overlay| overlay.name() == name);
-        if let Some(overlay) = known.filter(|overlay| !chosen.overlays.shows(*overlay)) {
-            chosen.overlays.toggle(overlay);
-        }
+        known.into_iter().for_each(|overlay| chosen.overlays.show(overlay));
     }
     chosen.playback.set_speed(speed);
-    if chosen.playback.loops() != loops {
-        chosen.playback.toggle_loop();
-    }
+    chosen.playback.loops = loops;
     chosen.quality.chosen = quality.and_then(|name| Quality::named(&name));
 }
 
@@ -169,13 +155,13 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         layout: chosen.workspace.layout.to_text(),
         overlays: shown.map(|overlay| overlay.name().to_owned()).collect(),
         speed: chosen.playback.speed(),
-        loops: if presents { before.loops } else { chosen.playback.loops() },
+        loops: if presents { before.loops } else { chosen.playback.loops },
         quality: chosen.quality.chosen.map(|quality| quality.name().to_owned()),
         tour_is_over: chosen.workspace.tour_is_over,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
         finished_lessons: chosen.lessons.finished.iter().cloned().collect(),
-        server: chosen.machines.address().to_owned(),
+        server: chosen.machines.address.clone(),
     };
     // A closing window can have size zero, which is ignored.
     if now.check().is_ok() { now } else { before.clone() }
@@ -211,22 +197,19 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = PreferencesFile::at(&folder.path().join("studio.ron"));
         let mut first = app(&file);
-        first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
-        first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
-        first.world_mut().resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
-        first
-            .world_mut()
-            .resource_mut::<Lessons>()
-            .finished
-            .insert("Friction: how much?".to_owned());
-        first.world_mut().resource_mut::<Overlays>().toggle(Overlay::Trail);
-        first.world_mut().resource_mut::<StageQuality>().chosen = Some(Quality::Beautiful);
-        first.world_mut().resource_mut::<Playback>().set_speed(0.5);
-        *first.world_mut().resource_mut::<Theme>() = Theme::Dark;
+        let world = first.world_mut();
+        world.resource_mut::<Workspace>().scale.choose(1.5);
+        world.resource_mut::<Workspace>().tour_is_over = true;
+        world.resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
+        world.resource_mut::<Lessons>().finished.insert("Friction: how much?".to_owned());
+        world.resource_mut::<Overlays>().toggle(Overlay::Trail);
+        world.resource_mut::<StageQuality>().chosen = Some(Quality::Beautiful);
+        world.resource_mut::<Playback>().set_speed(0.5);
+        *world.resource_mut::<Theme>() = Theme::Dark;
         let recent = RecentFiles::from_texts(&["/saves/mine.ron".to_owned()]);
-        first.world_mut().resource_mut::<Files>().recent = recent.clone();
-        first.world_mut().resource_mut::<MachinesLink>().remember("nats://desk:4222");
-        first.world_mut().write_message(AppExit::Success);
+        world.resource_mut::<Files>().recent = recent.clone();
+        world.resource_mut::<MachinesLink>().remember("nats://desk:4222");
+        world.write_message(AppExit::Success);
         first.update();
         let second = app(&file);
         assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
@@ -236,8 +219,8 @@ mod tests {
         assert_eq!(second.world().resource::<StageQuality>().chosen, Some(Quality::Beautiful));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);
-        assert_eq!(second.world().resource::<MachinesLink>().address(), "nats://desk:4222");
-        let chosen = second.world().resource::<StoredPreferences>().chosen().clone();
+        assert_eq!(second.world().resource::<MachinesLink>().address, "nats://desk:4222");
+        let chosen = second.world().resource::<StoredPreferences>().stored.clone();
         assert!(chosen.theme == "dark" && chosen.tour_is_over);
     }
 
@@ -264,7 +247,7 @@ mod tests {
         workspace.apply(&WindowCommand::TogglePresenting);
         app.world_mut().write_message(AppExit::Success);
         app.update();
-        assert_eq!(StoredPreferences::read(&file).chosen().window_size, None);
+        assert_eq!(StoredPreferences::read(&file).stored.window_size, None);
     }
 
     #[test]
@@ -277,7 +260,7 @@ mod tests {
         app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
         app.world_mut().write_message(AppExit::Success);
         app.update();
-        let chosen = StoredPreferences::read(&file).chosen().clone();
+        let chosen = StoredPreferences::read(&file).stored.clone();
         assert_eq!(chosen.window_size, Some((1280, 720)));
     }
 }

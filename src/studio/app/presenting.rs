@@ -36,12 +36,12 @@ fn present(
     mut turns: ResMut<Turns>,
     mut notices: ResMut<Notices>,
 ) {
-    turns.set_held(workspace.is_black());
+    turns.is_held = workspace.is_black();
     let is_presenting = workspace.is_presenting();
     if is_presenting == before.is_some() {
         return;
     }
-    following.set_repeats(is_presenting);
+    following.repeats = is_presenting;
     turns.set_on(is_presenting);
     notices.set_quiet(is_presenting);
     if let Some(window_mode) = before.take() {
@@ -51,9 +51,7 @@ fn present(
     *before = Some(window.mode);
     window.mode = WindowMode::BorderlessFullscreen(MonitorSelection::Current);
     rig.take(CameraMode::Follow);
-    if !playback.loops() {
-        playback.toggle_loop();
-    }
+    playback.loops = true;
 }
 
 /// Maximum rotation of the slowly swaying camera to each side, in radians. Further round, the stairs would hide the snake.
@@ -73,7 +71,7 @@ fn sway(
         *swayed_s = 0.0;
         return;
     }
-    if playback.is_playing() && rig.camera_mode() == CameraMode::Follow {
+    if playback.is_playing && rig.camera_mode() == CameraMode::Follow {
         let from_s = *swayed_s;
         *swayed_s = (from_s + time.delta_secs()) % SWAY_S;
         rig.turn_by(sway_rad(*swayed_s) - sway_rad(from_s));
@@ -143,14 +141,14 @@ mod tests {
         let mut windows = app.world_mut().query::<&Window>();
         let mode = windows.single(app.world()).expect("one window").mode;
         let world = app.world();
-        (mode, world.resource::<CameraRig>().camera_mode(), world.resource::<Playback>().loops())
+        (mode, world.resource::<CameraRig>().camera_mode(), world.resource::<Playback>().loops)
     }
 
     #[test]
     fn presenting_fills_the_screen_follows_and_loops_and_its_end_restores_the_window() {
         let mut app = app();
         app.world_mut().resource_mut::<CameraRig>().take(CameraMode::Side);
-        app.world_mut().resource_mut::<Playback>().toggle_loop();
+        app.world_mut().resource_mut::<Playback>().loops = false;
         app.update();
         assert_eq!(state(&mut app), (WindowMode::Windowed, CameraMode::Side, false));
         toggle(&mut app);

@@ -58,7 +58,7 @@ fn update(
             format!("{what}{manner}{disturbed}")
         }
     };
-    let stopped = match playback.is_playing() {
+    let stopped = match playback.is_playing {
         true => String::new(),
         false => format!(", stopped at {:.2} s", playback.time_s()),
     };
@@ -66,7 +66,7 @@ fn update(
     let title = format!(
         "Snakes & Stairs - {}, seed {}{from} - {}, {status} - showing {shown}{stopped}",
         run.preset_in_words(),
-        run.seed(),
+        run.plan_now.seed,
         run.generations_in_words(),
     );
     if window.title != title {

@@ -179,167 +179,123 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
-/// Builds the actions of a menu.
-fn in_menu(menu: Menu, rows: impl IntoIterator<Item = ActionRow>) -> Vec<Action> {
-    let action = |(name, keys, command)| Action { menu, name, keys, hint: "", command };
-    rows.into_iter().map(action).collect()
-}
-
-/// Builds the action that writes a file of this format.
-fn file_of(format: ExportFormat) -> Action {
-    let info = format.info();
-    // The list of actions is built once, so its leaked names last as long as the program.
-    let name = format!("{} (.{})…", info.title, info.ending).leak();
-    let command = Share(ShareCommand::Ask(format));
-    Action { menu: Menu::Share, name, keys: &[], hint: info.sentence, command }
-}
-
 /// Returns all actions, grouped by menu.
 pub(crate) fn actions() -> &'static [Action] {
     static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
-        let overlay = |of: Overlay| (of.entry(), of.keys(), View(ViewCommand::ToggleOverlay(of)));
-        let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
-        let view = camera_rows().into_iter().chain(Overlay::ALL.map(overlay)).chain(window_rows());
-        let panels = PanelKind::ALL.map(panel).into_iter().chain(layout_rows());
-        [
-            in_menu(Menu::File, file_rows()),
-            in_menu(Menu::Share, share_rows()),
-            ExportFormat::ALL.map(file_of).into(),
-            in_menu(Menu::Run, run_rows()),
-            in_menu(Menu::Edit, edit_rows()),
-            in_menu(Menu::Stage, stage_rows()),
-            in_menu(Menu::View, view),
-            in_menu(Menu::Panels, panels),
-            in_menu(Menu::Help, help_rows()),
-        ]
-        .concat()
+        let action = |menu, (name, keys, command)| {
+            let hint = match command {
+                Share(ShareCommand::Ask(format)) => format.info().sentence,
+                _ => "",
+            };
+            Action { menu, name, keys, hint, command }
+        };
+        let in_menu = |menu| rows(menu).into_iter().map(move |row| action(menu, row));
+        Menu::ALL.into_iter().flat_map(in_menu).collect()
     });
     &ALL
 }
 
-/// Returns the rows of the file menu.
-fn file_rows() -> [ActionRow; 8] {
-    [
-        ("New run", &["Ctrl N"], Run(RunCommand::New)),
-        ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
-        ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
-        ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
-        ("Show saves folder", &[], File(FileCommand::ShowSaves)),
-        (
-            "Save picture of the stage",
-            &["P"],
-            View(ViewCommand::TakePicture(ScreenshotArea::Stage)),
-        ),
-        (
-            "Save picture of the window",
-            &["Shift P"],
-            View(ViewCommand::TakePicture(ScreenshotArea::Window)),
-        ),
-        ("Quit", &["Ctrl Q"], Command::Quit),
-    ]
-}
-
-/// Returns the rows of the share menu, except those of the file formats.
-fn share_rows() -> [ActionRow; 1] {
-    [("Cancel writing the file", &[], Share(ShareCommand::Cancel))]
-}
-
-/// Returns the rows of the run menu.
-fn run_rows() -> [ActionRow; 12] {
-    [
-        ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
-        ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
-        ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
-        (
-            "Show a generation's champion",
-            &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
-            Stage(StageCommand::Show(Pick::Generation(1))),
-        ),
-        ("Show the saved champion", &["0"], Stage(StageCommand::Show(Pick::Opened(0)))),
-        ("Follow evolution", &["W"], Stage(StageCommand::ToggleFollowEvolution)),
-        ("Story: first, middle and latest generation", &["S"], Stage(StageCommand::TellStory)),
-        ("Whole latest generation", &["I"], Stage(StageCommand::ShowGeneration(None))),
-        ("Race generations", &["N"], Stage(StageCommand::RaceGenerations)),
-        ("Race best 10 of the latest generation", &["M"], Stage(StageCommand::RaceLeaders(None))),
-        ("Race the snake over ten staircases", &[], Stage(StageCommand::RaceStairs)),
-        ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
-    ]
-}
-
-/// Returns the rows of the edit menu.
-fn edit_rows() -> [ActionRow; 6] {
-    [
-        ("Undo", &["Ctrl Z"], Command::Undo),
-        ("Redo", &["Ctrl Shift Z", "Ctrl Y"], Command::Redo),
-        ("Keep this change", &[], Stage(StageCommand::KeepChange)),
-        ("Try another change beside this one", &[], Stage(StageCommand::TryAnother)),
-        ("Only the selected snake", &[], Stage(StageCommand::Single)),
-        ("Back to the earlier scene / Discard change", &["Esc"], Stage(StageCommand::Leave)),
-    ]
-}
-
-/// Returns the rows of the stage menu.
-fn stage_rows() -> [ActionRow; 8] {
-    [
-        ("Pause / Play", &["Space"], Player(PlayerCommand::Toggle)),
-        ("Previous physics step", &["Left"], Player(PlayerCommand::Step { forward: false })),
-        ("Next physics step", &["Right"], Player(PlayerCommand::Step { forward: true })),
-        ("Play from start", &["R"], Player(PlayerCommand::Restart)),
-        ("Go to end", &["End"], Player(PlayerCommand::SeekEnd)),
-        ("Faster", &["+", "="], Player(PlayerCommand::ChangeSpeed { faster: true })),
-        ("Slower", &["-"], Player(PlayerCommand::ChangeSpeed { faster: false })),
-        ("Loop", &["O"], Player(PlayerCommand::ToggleLoop)),
-    ]
-}
-
-/// Returns the rows of the view menu for the camera.
-fn camera_rows() -> [ActionRow; 5] {
-    [
-        ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
-        ("Next camera", &["C"], View(ViewCommand::NextCameraMode)),
-        ("View from the side", &[], View(ViewCommand::SetCamera(CameraMode::Side))),
-        ("View from above", &[], View(ViewCommand::SetCamera(CameraMode::Top))),
-        ("Reset camera", &["Home"], View(ViewCommand::ResetCamera)),
-    ]
-}
-
-/// Returns the other rows of the view menu.
-fn window_rows() -> [ActionRow; 8] {
-    [
-        ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
-        ("Next picture quality", &["A"], View(ViewCommand::NextQuality)),
-        ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
-        (
-            "Larger panels",
-            &["Ctrl +", "Ctrl ="],
-            Window(WindowCommand::ChangeScale { larger: true }),
-        ),
-        ("Smaller panels", &["Ctrl -"], Window(WindowCommand::ChangeScale { larger: false })),
-        ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),
-        ("Show only the stage", &["H"], Window(WindowCommand::TogglePanels)),
-        ("Present on the full screen", &["F11", "F5"], Window(WindowCommand::TogglePresenting)),
-    ]
-}
-
-/// Returns the rows of the panel menu for the layout.
-fn layout_rows() -> [ActionRow; 2] {
-    [
-        ("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)),
-        ("Reset layout", &[], Window(WindowCommand::ResetLayout)),
-    ]
-}
-
-/// Returns the rows of the help menu.
-fn help_rows() -> [ActionRow; 3] {
-    [
-        ("Keyboard shortcuts", &["?", "F1"], Window(WindowCommand::ToggleModal(Modal::Keys))),
-        (
-            "Find a command",
-            &["Ctrl K", "Ctrl P"],
-            Window(WindowCommand::ToggleModal(Modal::CommandPalette)),
-        ),
-        ("Take the tour", &[], Window(WindowCommand::ToggleModal(Modal::Tour(0)))),
-    ]
+/// Returns the actions of a menu, in their order.
+fn rows(menu: Menu) -> Vec<ActionRow> {
+    use StageCommand::{
+        KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration, Single,
+        TellStory, ToggleFollowEvolution, TryAnother,
+    };
+    let overlay = |of: Overlay| View(ViewCommand::ToggleOverlay(of));
+    let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
+    let picture = |of: ScreenshotArea| View(ViewCommand::TakePicture(of));
+    let scale = |larger| Window(WindowCommand::ChangeScale { larger });
+    let modal = |of: Modal| Window(WindowCommand::ToggleModal(of));
+    match menu {
+        Menu::File => vec![
+            ("New run", &["Ctrl N"], Run(RunCommand::New)),
+            ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
+            ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
+            ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
+            ("Show saves folder", &[], File(FileCommand::ShowSaves)),
+            ("Save picture of the stage", &["P"], picture(ScreenshotArea::Stage)),
+            ("Save picture of the window", &["Shift P"], picture(ScreenshotArea::Window)),
+            ("Quit", &["Ctrl Q"], Command::Quit),
+        ],
+        Menu::Share => {
+            let mut rows: Vec<ActionRow> =
+                vec![("Cancel writing the file", &[], Share(ShareCommand::Cancel))];
+            rows.extend(ExportFormat::ALL.map(|format| -> ActionRow {
+                let info = format.info();
+                // The list of actions is built once, so its leaked names last as long as the program.
+                let name = format!("{} (.{})…", info.title, info.ending).leak();
+                (name, &[], Share(ShareCommand::Ask(format)))
+            }));
+            rows
+        }
+        Menu::Run => vec![
+            ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
+            ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
+            ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
+            (
+                "Show a generation's champion",
+                &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
+                Stage(Show(Pick::Generation(1))),
+            ),
+            ("Show the saved champion", &["0"], Stage(Show(Pick::Opened(0)))),
+            ("Follow evolution", &["W"], Stage(ToggleFollowEvolution)),
+            ("Story: first, middle and latest generation", &["S"], Stage(TellStory)),
+            ("Whole latest generation", &["I"], Stage(ShowGeneration(None))),
+            ("Race generations", &["N"], Stage(RaceGenerations)),
+            ("Race best 10 of the latest generation", &["M"], Stage(RaceLeaders(None))),
+            ("Race the snake over ten staircases", &[], Stage(RaceStairs)),
+            ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
+        ],
+        Menu::Edit => vec![
+            ("Undo", &["Ctrl Z"], Command::Undo),
+            ("Redo", &["Ctrl Shift Z", "Ctrl Y"], Command::Redo),
+            ("Keep this change", &[], Stage(KeepChange)),
+            ("Try another change beside this one", &[], Stage(TryAnother)),
+            ("Only the selected snake", &[], Stage(Single)),
+            ("Back to the earlier scene / Discard change", &["Esc"], Stage(Leave)),
+        ],
+        Menu::Stage => vec![
+            ("Pause / Play", &["Space"], Player(PlayerCommand::Toggle)),
+            ("Previous physics step", &["Left"], Player(PlayerCommand::Step { forward: false })),
+            ("Next physics step", &["Right"], Player(PlayerCommand::Step { forward: true })),
+            ("Play from start", &["R"], Player(PlayerCommand::Restart)),
+            ("Go to end", &["End"], Player(PlayerCommand::SeekEnd)),
+            ("Faster", &["+", "="], Player(PlayerCommand::ChangeSpeed { faster: true })),
+            ("Slower", &["-"], Player(PlayerCommand::ChangeSpeed { faster: false })),
+            ("Loop", &["O"], Player(PlayerCommand::ToggleLoop)),
+        ],
+        Menu::View => vec![
+            ("Follow snake", &["F"], View(ViewCommand::ToggleFollow)),
+            ("Next camera", &["C"], View(ViewCommand::NextCameraMode)),
+            ("View from the side", &[], View(ViewCommand::SetCamera(CameraMode::Side))),
+            ("View from above", &[], View(ViewCommand::SetCamera(CameraMode::Top))),
+            ("Reset camera", &["Home"], View(ViewCommand::ResetCamera)),
+            ("Contacts and forces", &["V"], overlay(Overlay::Contacts)),
+            ("Joint torques", &["J"], overlay(Overlay::Torques)),
+            ("Trail", &["B"], overlay(Overlay::Trail)),
+            ("Fitness line", &["L"], overlay(Overlay::FitnessLine)),
+            ("Collision shapes", &["D"], overlay(Overlay::Wireframe)),
+            ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
+            ("Next picture quality", &["A"], View(ViewCommand::NextQuality)),
+            ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
+            ("Larger panels", &["Ctrl +", "Ctrl ="], scale(true)),
+            ("Smaller panels", &["Ctrl -"], scale(false)),
+            ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),
+            ("Show only the stage", &["H"], Window(WindowCommand::TogglePanels)),
+            ("Present on the full screen", &["F11", "F5"], Window(WindowCommand::TogglePresenting)),
+        ],
+        Menu::Panels => {
+            let mut rows = PanelKind::ALL.map(panel).to_vec();
+            rows.push(("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)));
+            rows.push(("Reset layout", &[], Window(WindowCommand::ResetLayout)));
+            rows
+        }
+        Menu::Help => vec![
+            ("Keyboard shortcuts", &["?", "F1"], modal(Modal::Keys)),
+            ("Find a command", &["Ctrl K", "Ctrl P"], modal(Modal::CommandPalette)),
+            ("Take the tour", &[], modal(Modal::Tour(0))),
+        ],
+    }
 }
 
 #[cfg(test)]

@@ -108,8 +108,6 @@ pub(super) enum RunCommand {
 pub(super) enum PlanCommand {
     /// Set the seed of the next run.
     SetSeed(u64),
-    /// Set the population size of the next run.
-    SetPopulation(u32),
     /// Change one setting.
     SetField {
         /// Name of the setting: see [`snakes_core::evolve::with_field`].

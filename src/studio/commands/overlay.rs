@@ -22,25 +22,14 @@ impl Overlay {
     pub const ALL: [Self; 5] =
         [Self::Contacts, Self::Torques, Self::Trail, Self::FitnessLine, Self::Wireframe];
 
-    /// Returns the label of the button, the menu entry, the shortcuts and the tooltip.
-    fn words(self) -> (&'static str, &'static str, &'static [&'static str], &'static str) {
+    /// Returns the label of the button, and its tooltip.
+    fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::Contacts => {
-                ("Contacts", "Contacts and forces", &["V"], "Contact points and forces")
-            }
-            Self::Torques => {
-                ("Torques", "Joint torques", &["J"], "Bend and twist torques of the joints")
-            }
-            Self::Trail => ("Trail", "Trail", &["B"], "Path of the middle block"),
-            Self::FitnessLine => {
-                ("Fitness line", "Fitness line", &["L"], "Distance of the middle block")
-            }
-            Self::Wireframe => (
-                "Collision shapes",
-                "Collision shapes",
-                &["D"],
-                "Shapes that the physics engine uses",
-            ),
+            Self::Contacts => ("Contacts", "Contact points and forces"),
+            Self::Torques => ("Torques", "Bend and twist torques of the joints"),
+            Self::Trail => ("Trail", "Path of the middle block"),
+            Self::FitnessLine => ("Fitness line", "Distance of the middle block"),
+            Self::Wireframe => ("Collision shapes", "Shapes that the physics engine uses"),
         }
     }
 
@@ -49,19 +38,9 @@ impl Overlay {
         self.words().0
     }
 
-    /// Returns the label of the menu entry.
-    pub fn entry(self) -> &'static str {
-        self.words().1
-    }
-
-    /// Returns the shortcuts that show or hide the overlay.
-    pub fn keys(self) -> &'static [&'static str] {
-        self.words().2
-    }
-
     /// Returns the tooltip of the overlay's button, without the shortcut.
     pub fn hint(self) -> &'static str {
-        self.words().3
+        self.words().1
     }
 
     /// Finds the overlay with this one-word, lower-case name.

@@ -8,7 +8,7 @@
 use std::ffi::OsString;
 
 use std::panic::PanicHookInfo;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use bevy::prelude::*;
 use bevy::render::error_handler::{ErrorType, RenderError, RenderErrorHandler, RenderErrorPolicy};
@@ -19,15 +19,12 @@ use crate::studio::state::run_context::RunInProgress;
 use crate::studio::ui::notifications::Notices;
 use snakes_lab::run::headless::say;
 
-/// Reason why drawing ended for good, if it did. `studio::run` reads it after the window is closed.
-#[derive(Resource, Debug, Clone, Default)]
-pub(crate) struct Failure(Arc<Mutex<Option<String>>>);
+/// Reason why drawing ended for good, if it did.
+static FAILURE: Mutex<Option<String>> = Mutex::new(None);
 
-impl Failure {
-    /// Returns the reason why drawing ended, or `None` while drawing works.
-    pub fn message(&self) -> Option<String> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
+/// Returns the reason why drawing ended, or `None` while drawing works.
+pub(crate) fn failure() -> Option<String> {
+    FAILURE.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// Name of the environment variable that counts how often the program has restarted itself.
@@ -118,8 +115,7 @@ fn recover(error: &RenderError, studio: &mut World, _: &mut World) -> RenderErro
     }
     let what = error.description.lines().next().unwrap_or_default();
     let message = format!("the graphics driver failed: {:?} {what}", error.ty);
-    let failure = studio.resource::<Failure>().0.clone();
-    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
+    FAILURE.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(message);
     studio.write_message(AppExit::error());
     RenderErrorPolicy::StopRendering
 }

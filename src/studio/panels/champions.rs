@@ -9,12 +9,12 @@ use bevy_egui::egui;
 use super::shown::{ShownChampion, ShownLane};
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
-use crate::studio::stage::opening::NamedChampion;
 use crate::studio::ui::buttons::{CommandButton, command_box, show_or_join};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Champion;
+use snakes_core::save::LoadedChampion;
 use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, LandingTime};
@@ -34,7 +34,7 @@ pub(super) struct ChampionsPanel {
 /// State that the champions panel shows.
 pub(super) struct ChampionsView<'v> {
     /// Champions with which the studio was opened.
-    pub opening: &'v [NamedChampion],
+    pub opening: &'v [(String, LoadedChampion)],
     /// Reports of the run's finished generations.
     pub reports: &'v [GenerationReport],
     /// Champions of the list that are on the stage.
@@ -136,12 +136,12 @@ impl ChampionsPanel {
         area.show_rows(ui, height, rows, |ui, seen| {
             ui.set_max_width(width);
             for index in seen {
-                if let Some(saved) = view.opening.get(index) {
+                if let Some((name, loaded)) = view.opening.get(index) {
                     let row = ChampionRow {
                         shown: view.lane_of(ShownChampion::Opening(index)),
-                        name: &saved.name,
-                        champion: &saved.loaded.champion,
-                        climb: self.climbs.of_save(&saved.loaded),
+                        name,
+                        champion: &loaded.champion,
+                        climb: self.climbs.of_save(loaded),
                         pick: Pick::Opened(index),
                         race: None,
                     };

@@ -228,7 +228,7 @@ fn draw(
                 Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
                 _ => on_stage.is_on(command, *data.theme),
             };
-            let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.seed());
+            let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.plan_now.seed);
             let share = data.shares.progress();
             let right = (about.as_str(), share.as_ref());
             menu(ui, situation, &is_on, &data.files.recent, right, viewer.commands);
@@ -272,7 +272,7 @@ fn draw(
             let target = highlighted_panel(step)
                 .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
-            let player_commands = on_stage.playback.commands();
+            let player_commands = on_stage.playback.commands;
             panels.tour.ui(&context, step, target, player_commands, &mut commands);
         }
         None => {}

@@ -69,7 +69,7 @@ impl OnStage<'_, '_> {
     /// Returns whether the setting that a command toggles is on, or `None` for other commands.
     pub fn is_on(&self, command: &Command, theme: Theme) -> Option<bool> {
         match command {
-            Command::Player(PlayerCommand::ToggleLoop) => Some(self.playback.loops()),
+            Command::Player(PlayerCommand::ToggleLoop) => Some(self.playback.loops),
             Command::View(ViewCommand::ToggleFollow) => {
                 Some(self.rig.camera_mode() != CameraMode::Free)
             }

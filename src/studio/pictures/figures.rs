@@ -9,6 +9,7 @@ use crate::studio::error::StudioError;
 use crate::studio::scene;
 use crate::studio::scene::camera;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::placed;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::theme::Theme;
 use snakes_core::save::{LoadedChampion, Picture};
@@ -54,7 +55,7 @@ fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
 
     let world = studio.app.world_mut();
     let (cube, faint) = faint_props(world);
-    world.spawn((lane, Transform::default(), Visibility::default())).with_children(|parent| {
+    world.spawn(placed(lane)).with_children(|parent| {
         for poses in moments {
             for (pose, plan) in poses.into_iter().zip(&body.parts) {
                 let size = Vec3::from(plan.size_m());

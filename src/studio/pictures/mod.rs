@@ -5,9 +5,3 @@ pub mod film;
 pub mod offscreen;
 pub mod render;
 pub mod screenshot;
-
-use bevy::prelude::*;
-
-pub(super) fn plugin(app: &mut App) {
-    app.add_plugins(screenshot::plugin);
-}

@@ -32,6 +32,7 @@ use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::{self, camera};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
+use crate::studio::stage::placed;
 use crate::studio::ui::theme::Theme;
 use snakes_core::save::Picture;
 use snakes_lab::plot::NameTag;
@@ -146,8 +147,7 @@ impl Offscreen {
     /// Puts lanes onto the stage, side by side.
     pub fn put_on_stage(&mut self, lanes: Vec<Lane>) {
         for lane in lanes {
-            let place = Transform::from_translation(lane.offset());
-            self.app.world_mut().spawn((lane, place, Visibility::default()));
+            self.app.world_mut().spawn(placed(lane));
         }
     }
 

@@ -11,8 +11,8 @@ use bevy::window::PrimaryWindow;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
 use crate::studio::schedule::FrameSet;
+use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::new_file::offer_picture;
-use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use crate::studio::ui::viewport::StageArea;
@@ -106,11 +106,11 @@ fn take_stage_pictures(
 }
 
 /// Saves a picture, and shows its path to the user.
-fn keep(captured: On<ScreenshotCaptured>, engine: Res<RunContext>, mut notices: ResMut<Notices>) {
+fn keep(captured: On<ScreenshotCaptured>, run: Res<CurrentRun>, mut notices: ResMut<Notices>) {
     let Some(picture) = picture_of(&captured.image) else {
         return notices.problem("The renderer returned no picture.".to_owned());
     };
-    let folder = engine.saves.pictures();
+    let folder = run.context.saves.pictures();
     let kept = folder.prepare().and_then(|()| {
         let path = folder.free_name("snakes-and-stairs", "png");
         store_picture(&path, &picture).map(|()| path)

@@ -139,7 +139,7 @@ fn steer(
     let is_over_stage = cursor.is_some_and(|cursor| area.has_pointer_at(cursor));
     let drag_buttons = [MouseButton::Left, MouseButton::Right, MouseButton::Middle];
     if buttons.any_just_pressed(drag_buttons) {
-        grip.began_on_stage = is_over_stage && !selection.is_holding();
+        grip.began_on_stage = is_over_stage && selection.held.is_none();
     }
     let pinched: f32 = pinches.read().map(|pinch| pinch.0).sum();
     let view = &mut rig.view;
@@ -185,7 +185,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     if count == 0 {
         return;
     }
-    let is_new = lanes().any(|lane| lane.is_added() && !lane.is_back());
+    let is_new = lanes().any(|lane| lane.is_added() && !lane.is_back);
     if is_new && (count > 1) != (rig.lanes > 1) {
         // The view for one lane does not suit several, and the reverse.
         rig.lanes = count;
@@ -242,7 +242,7 @@ fn glide(
     points.clear();
     snakes.clear();
     // If the camera moved aside while the mouse holds a limb, it would pull the limb along.
-    if !selection.is_holding() {
+    if selection.held.is_none() {
         covers.clear();
         covers.extend(area.covers());
     }

@@ -55,7 +55,7 @@ impl Celebration {
             self.lanes.clear();
             return;
         }
-        if playback.is_playing() {
+        if playback.is_playing {
             let new = landings.filter(|(_, landed_s)| *landed_s > before_s && *landed_s <= now_s);
             self.lanes.extend(new.map(|(lane, _)| lane));
         }

@@ -27,18 +27,19 @@ pub(crate) struct Lane {
     /// Index of the lane; the first is 0.
     number: usize,
     /// Offset of the lane's world along x, in metres.
-    offset_x_m: f32,
+    pub offset_x_m: f32,
     /// Whether the lane has the place of another lane and is drawn translucent, without stairs.
     is_ghost: bool,
-    replay: Replay,
-    lookahead: Lookahead,
+    pub(super) replay: Replay,
+    pub(super) lookahead: Lookahead,
     /// Step at which the snake of a recording first stood on the landing; `None` for a simulation.
     recorded_landing: Option<u32>,
     /// Poses of the parts before the last step, from head to tail.
     before: Vec<Pose>,
     /// Displayed fraction of the last step, from 0 to 1, for the interpolation of poses.
     share: f32,
-    step_s: f64,
+    /// Length of a physics step, in seconds.
+    pub step_s: f64,
     /// Contacts, torques and joints after the last step.
     readings: Readings,
     /// Path of the middle limb since the first pull by the mouse, in metres.
@@ -48,7 +49,7 @@ pub(crate) struct Lane {
     /// Whether the final state has been compared with the champion's record.
     is_checked: bool,
     /// Whether the lane came back with an earlier scene, so that camera and selection stay as they were.
-    is_back: bool,
+    pub is_back: bool,
 }
 
 /// Maximum physics steps per frame, as a sum over all lanes (about 60 ms on one core).
@@ -95,12 +96,6 @@ impl Lane {
         }
     }
 
-    /// Places the lane at this offset along x, in metres.
-    pub fn at_x(mut self, offset_x_m: f32) -> Self {
-        self.offset_x_m = offset_x_m;
-        self
-    }
-
     /// Turns the lane into a ghost.
     #[cfg(test)]
     pub fn into_ghost(self) -> Self {
@@ -135,11 +130,6 @@ impl Lane {
     /// Returns the trial that the lane shows.
     pub fn trial(&self) -> &Trial {
         self.staged.trial()
-    }
-
-    /// Returns the length of a physics step, in seconds.
-    pub fn step_s(&self) -> f64 {
-        self.step_s
     }
 
     /// Returns the end of the lane, in simulated seconds: the time of disqualification, if it is known, or else the end of the trial.
@@ -260,17 +250,6 @@ impl Lane {
     /// Returns the rollout after the last step; `None` for a recording.
     pub fn rollout(&self) -> Option<&Rollout> {
         self.replay.rollout()
-    }
-
-    /// Returns the replay of this lane.
-    #[cfg(test)]
-    pub fn replay(&self) -> &Replay {
-        &self.replay
-    }
-
-    /// Receives results of the lookahead, if there are any.
-    pub fn poll_lookahead(&mut self) {
-        self.lookahead.poll();
     }
 
     /// Blocks until the lookahead has finished.

@@ -155,11 +155,10 @@ fn lanes_after(
     let beside_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
     let spacing_m = if is_generation { 0.0 } else { beside_m };
     let middle = (lanes.len().saturating_sub(1)) as f32 / 2.0;
-    let placed = lanes.into_iter().map(|lane| {
-        let offset_m = (middle - lane.number() as f32) * spacing_m;
-        lane.at_x(offset_m)
-    });
-    (placed.collect(), problems)
+    for lane in &mut lanes {
+        lane.offset_x_m = (middle - lane.number() as f32) * spacing_m;
+    }
+    (lanes, problems)
 }
 
 /// Shows the champions with which the studio was opened.
@@ -203,15 +202,17 @@ fn put_on_stage(
         let stays = matches!(*on_stage, StageMode::WhatIf { .. });
         match outdated.iter().position(|(_, earlier)| stays && earlier.is_like(&lane)) {
             Some(index) => *outdated.swap_remove(index).1 = lane,
-            None => spawn(&mut commands, lane),
+            None => {
+                commands.spawn(placed(lane));
+            }
         }
     }
     outdated.into_iter().for_each(|(lane, _)| commands.entity(lane).despawn());
 }
 
-/// Spawns a lane at its offset.
-pub(super) fn spawn(commands: &mut Commands, lane: Lane) {
-    commands.spawn((Transform::from_translation(lane.offset()), Visibility::default(), lane));
+/// Returns the components of a lane at its offset.
+pub(super) fn placed(lane: Lane) -> impl Bundle {
+    (Transform::from_translation(lane.offset()), Visibility::default(), lane)
 }
 
 /// Advances the clock, and brings every lane to the clock's time.
@@ -226,21 +227,21 @@ fn advance(
     let most_steps = MAX_STEPS_PER_FRAME / (lanes.iter().len() as u32).max(1);
     let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
     for (_, lane) in &lanes {
-        steps_per_s += lane.step_s().recip();
+        steps_per_s += lane.step_s.recip();
         end_s = end_s.max(lane.end_s());
     }
     if steps_per_s == 0.0 {
         return;
     }
-    if selection.as_ref().is_some_and(|selection| selection.is_pulling()) {
-        playback.go_on();
+    if selection.as_ref().is_some_and(|of| of.held.is_some_and(|held| held.is_pulling)) {
+        playback.is_playing = true;
     }
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull, most_steps).err();
         notices.problems(failed.map(|message| format!("The simulation failed: {message}")));
-        lane.poll_lookahead();
+        lane.lookahead.poll();
         if lane.has_just_ended() {
             notices.problems(differs_from_record(&lane));
         }

@@ -14,17 +14,19 @@ pub(crate) struct Playback {
     /// Time that the stage displays, in simulated seconds.
     time_s: f64,
     speed: f32,
-    is_playing: bool,
-    loops: bool,
+    /// Whether playback is running.
+    pub is_playing: bool,
+    /// Whether playback restarts after the end.
+    pub loops: bool,
     /// Real time since the clock reached the end, in seconds.
     rested_s: f32,
     /// Whether the time was set by a seek. The next frame then draws exactly this time.
     is_sought: bool,
     /// Time from which changes of the world were last tried, in simulated seconds; `None` if the user has since gone to
     /// another time or shows something else.
-    tried_from_s: Option<f64>,
-    /// Number of commands so far that paused, played or moved the clock.
-    commands: u32,
+    pub tried_from_s: Option<f64>,
+    /// Number of commands so far that paused, played or moved the clock. The studio can also stop the clock without a command.
+    pub commands: u32,
 }
 
 /// Allowed playback speeds, in simulated seconds per real second.
@@ -58,21 +60,6 @@ impl Playback {
         self.time_s
     }
 
-    /// Returns whether playback is running.
-    pub fn is_playing(&self) -> bool {
-        self.is_playing
-    }
-
-    /// Returns how many commands have paused, played or moved the clock. The studio can also stop the clock without a command.
-    pub fn commands(&self) -> u32 {
-        self.commands
-    }
-
-    /// Returns whether playback restarts after the end.
-    pub fn loops(&self) -> bool {
-        self.loops
-    }
-
     /// Returns the playback speed, in simulated seconds per real second.
     pub fn speed(&self) -> f32 {
         self.speed
@@ -94,7 +81,7 @@ impl Playback {
             PlayerCommand::Step { forward } => self.step(*forward, step_s, end_s),
             PlayerCommand::SetSpeed(speed) => self.set_speed(*speed),
             PlayerCommand::ChangeSpeed { faster } => self.change_speed(*faster),
-            PlayerCommand::ToggleLoop => self.toggle_loop(),
+            PlayerCommand::ToggleLoop => self.loops = !self.loops,
         }
     }
 
@@ -111,12 +98,6 @@ impl Playback {
         (self.is_sought, self.tried_from_s) = (true, Some(tried_from_s));
     }
 
-    /// Returns the time from which changes of the world were last tried, in simulated seconds, unless the user has
-    /// since gone to another time.
-    pub fn tried_from_s(&self) -> Option<f64> {
-        self.tried_from_s
-    }
-
     /// Plays from the start at the current speed.
     pub fn restart(&mut self) {
         (self.time_s, self.rested_s, self.is_playing) = (0.0, 0.0, true);
@@ -131,19 +112,9 @@ impl Playback {
         }
     }
 
-    /// Plays from the present time on.
-    pub fn go_on(&mut self) {
-        self.is_playing = true;
-    }
-
     /// Returns to the time and the settings of an earlier clock.
     pub fn restore(&mut self, earlier: &Self) {
         *self = Self { is_sought: true, commands: self.commands, ..earlier.clone() };
-    }
-
-    /// Turns looping on or off.
-    pub fn toggle_loop(&mut self) {
-        self.loops = !self.loops;
     }
 
     /// Sets the playback speed, clamped to the allowed range.
@@ -193,27 +164,25 @@ impl Playback {
     }
 
     /// Advances by `elapsed_s` of real time, but by at most `most_s` of simulated time. `end_s` is the end of the
-    /// longest lane. Returns whether playback restarted.
-    pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) -> bool {
+    /// longest lane.
+    pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) {
         // The known end can move closer while the lookahead is running.
         self.time_s = self.time_s.min(end_s);
         if std::mem::take(&mut self.is_sought) || !self.is_playing {
-            return false;
+            return;
         }
         if self.time_s < end_s {
             let wanted_s = f64::from(elapsed_s.min(MAX_CATCH_UP_S) * self.speed);
             self.time_s = (self.time_s + wanted_s.min(most_s)).min(end_s);
             self.rested_s = 0.0;
-            return false;
+            return;
         }
         self.time_s = end_s;
         self.rested_s += elapsed_s;
         if self.rested_s > REST_S && self.loops {
-            self.restart();
-            return true;
+            return self.restart();
         }
         self.is_playing = self.loops;
-        false
     }
 }
 
@@ -234,7 +203,7 @@ mod tests {
             seen.push(steps(&playback));
         }
         assert_eq!(seen, [2.0, 3.0, 2.0, 1.0, 0.0, 0.0]);
-        assert!(!playback.is_playing());
+        assert!(!playback.is_playing);
     }
 
     #[test]
@@ -242,15 +211,19 @@ mod tests {
         let mut playback = Playback::default();
         playback.set_speed(16.0);
         while playback.time_s() < 2.0 {
-            assert!(!playback.pass(0.1, 1.0, 2.0));
+            playback.pass(0.1, 1.0, 2.0);
         }
-        let rests = (0..40).position(|_| playback.pass(0.1, 1.0, 2.0)).expect("it begins again");
+        let begins_again = |_| {
+            playback.pass(0.1, 1.0, 2.0);
+            playback.time_s() < 2.0
+        };
+        let rests = (0..40).position(begins_again).expect("it begins again");
         assert!((14..17).contains(&rests), "{rests} frames of a tenth of a second");
-        playback.toggle_loop();
-        (0..40).for_each(|_| assert!(!playback.pass(0.1, 1.0, 2.0)));
-        assert_eq!((playback.time_s(), playback.is_playing()), (2.0, false));
+        playback.loops = false;
+        (0..40).for_each(|_| playback.pass(0.1, 1.0, 2.0));
+        assert_eq!((playback.time_s(), playback.is_playing), (2.0, false));
         playback.toggle(2.0);
-        assert_eq!((playback.time_s(), playback.is_playing()), (0.0, true), "play begins anew");
+        assert_eq!((playback.time_s(), playback.is_playing), (0.0, true), "play begins anew");
     }
 
     #[test]

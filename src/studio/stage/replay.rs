@@ -60,11 +60,7 @@ impl Replay {
     pub fn go_to(&mut self, step: u32, staged: &StagedChampion, history: Option<&KeyframeHistory>) {
         match self {
             Self::Simulated(rollout) => {
-                **rollout = match history {
-                    Some(history) => history.rollout_at(step),
-                    None => staged.rollout(),
-                };
-                while rollout.step() < step && rollout.advance() {}
+                **rollout = undisturbed_at(step, staged, history);
             }
             Self::Recorded(recorded) => {
                 recorded.step = step.min(recorded.last_step);
@@ -86,12 +82,7 @@ impl Replay {
         {
             return (**rollout).clone();
         }
-        let mut rollout = match history {
-            Some(history) => return history.rollout_at(step),
-            None => staged.rollout(),
-        };
-        while rollout.step() < step && rollout.advance() {}
-        rollout
+        undisturbed_at(step, staged, history)
     }
 
     /// Sets or clears the pull on a limb. A recording ignores pulls.
@@ -180,4 +171,15 @@ impl Replay {
     pub fn simulation(&self) -> Option<&Simulation> {
         self.rollout().map(Rollout::simulation)
     }
+}
+
+/// Simulates a champion without any pull to the state after `step` steps, at most to the end.
+fn undisturbed_at(
+    step: u32,
+    staged: &StagedChampion,
+    history: Option<&KeyframeHistory>,
+) -> Rollout {
+    let mut rollout = history.map_or_else(|| staged.rollout(), |of| of.rollout_at(step));
+    while rollout.step() < step && rollout.advance() {}
+    rollout
 }

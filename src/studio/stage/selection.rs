@@ -11,7 +11,8 @@ pub(crate) struct Selection {
     pub lane: usize,
     /// Selected limb of the selected lane; the head is 0. `None` if no limb is selected.
     pub limb: Option<usize>,
-    held: Option<HeldLimb>,
+    /// Limb that the mouse holds. A drag then moves the limb instead of the camera.
+    pub held: Option<HeldLimb>,
 }
 
 /// A limb that the mouse holds.
@@ -33,35 +34,10 @@ impl Selection {
         self.held.filter(|held| held.is_pulling && held.lane == lane).map(|held| held.pull)
     }
 
-    /// Returns whether the mouse holds a limb. A drag then moves the limb instead of the camera.
-    pub fn is_holding(&self) -> bool {
-        self.held.is_some()
-    }
-
-    /// Returns whether the mouse pulls a limb.
-    pub fn is_pulling(&self) -> bool {
-        self.held.is_some_and(|held| held.is_pulling)
-    }
-
-    /// Returns the limb that the mouse holds.
-    pub fn held(&self) -> Option<&HeldLimb> {
-        self.held.as_ref()
-    }
-
-    /// Returns the limb that the mouse holds, for dragging it.
-    pub fn held_mut(&mut self) -> Option<&mut HeldLimb> {
-        self.held.as_mut()
-    }
-
     /// Selects a limb of a lane and holds one of its parts.
     pub fn grab(&mut self, lane: usize, limb: usize, held: HeldLimb) {
         (self.lane, self.limb) = (lane, Some(limb));
         self.held = Some(held);
-    }
-
-    /// Releases the limb that the mouse holds.
-    pub fn release(&mut self) {
-        self.held = None;
     }
 
     /// Selects the first lane and no limb.

@@ -117,7 +117,7 @@ impl StagedChampion {
         if *trial == self.champion.trial {
             return self.as_found();
         }
-        self.changed(trial, what_is_other, Beginning::Start)
+        self.changed(trial, what_is_other, Beginning::Start, false)
     }
 
     /// Returns the champion in another world from a state of its rollout on. The other world applies from the start if
@@ -135,50 +135,56 @@ impl StagedChampion {
         };
         let is_own = *trial == self.champion.trial;
         let what = if is_own { "its own world".to_owned() } else { what_is_other };
-        self.changed(trial, what, beginning)
+        self.changed(trial, what, beginning, false)
     }
 
-    fn changed(&self, trial: &Trial, what_is_other: String, beginning: Beginning) -> Self {
-        let trial = trial.clone();
-        let world = ChangedWorld { trial, what_is_other, beginning, is_of_exam: false };
+    fn changed(
+        &self,
+        trial: &Trial,
+        what_is_other: String,
+        beginning: Beginning,
+        is_of_exam: bool,
+    ) -> Self {
+        let world = ChangedWorld { trial: trial.clone(), what_is_other, beginning, is_of_exam };
         Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
+    }
+
+    /// Returns the changed world in which the champion is shown, if it is shown in one.
+    fn world(&self) -> Option<&ChangedWorld> {
+        match &self.shown_as {
+            ShownAs::Changed(world) => Some(world),
+            ShownAs::Found | ShownAs::Simulated => None,
+        }
     }
 
     /// Returns the champion in a trial of its exam. `stairs` describes the trial's stairs in words.
     pub fn on_stairs_of_exam(&self, trial: &Trial, stairs: String) -> Self {
-        let (trial, beginning) = (trial.clone(), Beginning::Start);
-        let world = ChangedWorld { trial, what_is_other: stairs, beginning, is_of_exam: true };
-        Self { shown_as: ShownAs::Changed(Box::new(world)), ..self.clone() }
+        self.changed(trial, stairs, Beginning::Start, true)
     }
 
     /// Returns whether the champion is shown in a trial of its exam.
     pub fn is_on_stairs_of_exam(&self) -> bool {
-        matches!(&self.shown_as, ShownAs::Changed(world) if world.is_of_exam)
+        self.world().is_some_and(|world| world.is_of_exam)
     }
 
     /// Returns the champion in its present world, from the start.
     pub fn shown_from_start(&self) -> Self {
-        match &self.shown_as {
-            ShownAs::Changed(world) => self.in_world(&world.trial, world.what_is_other.clone()),
-            ShownAs::Found | ShownAs::Simulated => self.clone(),
-        }
+        let in_world = |of: &ChangedWorld| self.in_world(&of.trial, of.what_is_other.clone());
+        self.world().map_or_else(|| self.clone(), in_world)
     }
 
     /// Returns the physics step at which the champion's world changes; `None` if it does not change after the start.
     pub fn changes_at_step(&self) -> Option<u32> {
-        match &self.shown_as {
-            ShownAs::Changed(world) => match world.beginning {
-                Beginning::Step(step, _) => Some(step),
-                Beginning::Start | Beginning::StartBecause(_) => None,
-            },
-            ShownAs::Found | ShownAs::Simulated => None,
+        match self.world()?.beginning {
+            Beginning::Step(step, _) => Some(step),
+            Beginning::Start | Beginning::StartBecause(_) => None,
         }
     }
 
     /// Describes the time from which the champion's world is changed: "from 5.20 s on". Returns `None` if nothing has
     /// to be explained.
     pub fn beginning_in_words(&self) -> Option<String> {
-        let ShownAs::Changed(world) = &self.shown_as else { return None };
+        let world = self.world()?;
         match &world.beginning {
             Beginning::Start => None,
             Beginning::StartBecause(reason) => {
@@ -194,7 +200,7 @@ impl StagedChampion {
     /// Returns the champion's rollout at the start. The champion must have passed [`Self::check`].
     pub fn rollout(&self) -> Rollout {
         let genome = &self.champion.genome;
-        if let ShownAs::Changed(world) = &self.shown_as
+        if let Some(world) = self.world()
             && let Beginning::Step(step, earlier) = &world.beginning
             // The state was checked against the changed world when the change was made.
             && let Ok(rollout) =
@@ -240,7 +246,7 @@ impl StagedChampion {
 
     /// Returns whether the champion is shown in a changed world.
     pub fn is_changed(&self) -> bool {
-        matches!(self.shown_as, ShownAs::Changed(_))
+        self.world().is_some()
     }
 
     /// Returns the recording to play instead of a simulation, if any.
@@ -263,12 +269,7 @@ impl StagedChampion {
 
     /// Returns whether the champion is shown otherwise than as it was found, although that is possible.
     pub fn could_be_as_found(&self) -> bool {
-        let is_resimulated = self.shown_as == ShownAs::Simulated && self.has_recording();
-        self.is_changed() || is_resimulated
-    }
-
-    fn has_recording(&self) -> bool {
-        matches!(self.elsewhere, Some((_, Some(_))))
+        self.shown_as != ShownAs::Found
     }
 
     /// Returns the champion as it was found.
@@ -283,10 +284,7 @@ impl StagedChampion {
 
     /// Returns the world in which the champion is shown.
     pub fn trial(&self) -> &Trial {
-        match &self.shown_as {
-            ShownAs::Changed(world) => &world.trial,
-            ShownAs::Found | ShownAs::Simulated => &self.champion.trial,
-        }
+        self.world().map_or(&self.champion.trial, |world| &world.trial)
     }
 
     /// Returns the origin of the champion.
@@ -311,18 +309,15 @@ impl StagedChampion {
 
     /// Returns a label that distinguishes the champion from other lanes: its name, or the difference of its world.
     pub fn label(&self) -> &str {
-        match &self.shown_as {
-            ShownAs::Changed(world) => &world.what_is_other,
-            ShownAs::Found | ShownAs::Simulated => &self.name,
-        }
+        self.world().map_or(&self.name, |world| &world.what_is_other)
     }
 
     /// Describes the champion in one line, with the recorded result.
     pub fn caption(&self) -> String {
         let name = &self.name;
-        let shown_as = match (&self.shown_as, self.other_engine()) {
+        let shown_as = match (self.world(), self.other_engine()) {
             // The recorded score describes a position in the champion's own world.
-            (ShownAs::Changed(world), _) => {
+            (Some(world), _) => {
                 let (what, score) = (&world.what_is_other, self.champion.score());
                 return match self.beginning_in_words() {
                     _ if world.is_of_exam => {

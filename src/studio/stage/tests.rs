@@ -7,21 +7,38 @@ use std::time::Duration;
 
 use bevy::time::TimeUpdateStrategy;
 
-use super::opening::NamedChampion;
 use super::selection::HeldLimb;
 use super::*;
 use snakes_core::evolve::Champion;
 use snakes_core::save::{LoadedChampion, shipped_champion};
-use snakes_core::score::{Recording, evaluate};
+use snakes_core::score::{Recording, Rollout, evaluate};
 use snakes_core::world::{Pose, Pull, Vector};
 
 fn shipped() -> LoadedChampion {
     shipped_champion().expect("well formed")
 }
 
+/// Returns the shipped champion with a recording by another version of the engine.
+fn recorded() -> LoadedChampion {
+    let mut loaded = shipped();
+    let Champion { genome, trial, .. } = &loaded.champion;
+    loaded.recording = Some(Recording::of(genome, trial));
+    loaded.engine.version = 1;
+    loaded
+}
+
+/// Returns the rollout of a champion after this number of steps.
+fn rollout_after(champion: &Champion, steps: u32) -> Rollout {
+    let mut rollout = Rollout::new(&champion.genome, &champion.trial);
+    while rollout.step() < steps {
+        assert!(rollout.advance());
+    }
+    rollout
+}
+
 /// Creates a headless stage on which these champions race.
 fn stage_of(opening: Vec<LoadedChampion>) -> App {
-    let saved = |loaded| NamedChampion { name: "a champion".to_owned(), loaded };
+    let saved = |loaded| ("a champion".to_owned(), loaded);
     let mut app = App::new();
     app.add_plugins(MinimalPlugins)
         .add_message::<Show>()
@@ -71,7 +88,7 @@ fn finish_lookahead(app: &mut App) {
 }
 
 fn is_over(lane: &Lane) -> bool {
-    lane.replay().is_over()
+    lane.replay.is_over()
 }
 
 #[test]
@@ -107,12 +124,9 @@ fn seeking_gives_the_played_state_bit_for_bit() {
     for target in [steps / 2, steps, 3, steps - 1, 0, steps / 2 + 1] {
         clock(&mut app).seek(f64::from(target) * step_s, 1.0e9);
         frame(&mut app, 0.016);
-        let mut played = snakes_core::score::Rollout::new(&champion.genome, &champion.trial);
-        while played.step() < target {
-            assert!(played.advance());
-        }
+        let played = rollout_after(&champion, target);
         let shown = lane(&mut app);
-        assert_eq!(shown.replay().step(), target);
+        assert_eq!(shown.replay.step(), target);
         assert_eq!(shown.last_poses(), played.poses(), "step {target}");
         assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
@@ -123,13 +137,13 @@ fn seeking_gives_the_played_state_bit_for_bit() {
 #[test]
 fn stepping_back_and_forward_visits_the_same_states() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 200);
-    let step_s = lane(&mut app).step_s();
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 200);
+    let step_s = lane(&mut app).step_s;
     let mut seen = Vec::new();
     for forward in [true, true, false, false, true, true] {
         clock(&mut app).step(forward, step_s, 1.0e9);
         frame(&mut app, 0.1);
-        seen.push((lane(&mut app).replay().step(), lane(&mut app).last_poses().to_vec()));
+        seen.push((lane(&mut app).replay.step(), lane(&mut app).last_poses().to_vec()));
     }
     assert_eq!(seen[1], seen[5]);
     assert_eq!(seen[0], seen[2]);
@@ -142,7 +156,7 @@ fn playback_loops_unless_it_is_paused() {
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     play(&mut app, &[0.1], |lane| !is_over(lane));
-    assert!(lane(&mut app).replay().step() < 100, "from the start");
+    assert!(lane(&mut app).replay.step() < 100, "from the start");
     clock(&mut app).hold_at(1.0e9);
     (0..50).for_each(|_| frame(&mut app, 0.1));
     assert!(is_over(lane(&mut app)), "paused at the end");
@@ -163,14 +177,12 @@ fn a_replay_that_differs_from_its_record_is_reported_once() {
 
 #[test]
 fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
-    let mut loaded = shipped();
-    let Champion { genome, trial, .. } = &loaded.champion;
-    let recording = Recording::of(genome, trial);
+    let mut loaded = recorded();
+    let recording = loaded.recording.take().expect("recorded");
     // The recording is shifted sideways by a metre.
     let aside = |pose: &Pose| Pose { translation: pose.translation + Vec3::X, ..*pose };
     let poses = recording.frames().flatten().map(aside).collect();
     loaded.recording = Recording::new(recording.every_steps(), recording.parts(), poses);
-    loaded.engine.version = 1;
     let last = loaded.recording.as_ref().expect("whole frames").at(1.0e9);
     let mut app = stage_of(vec![loaded.clone()]);
     play(&mut app, &[0.1], is_over);
@@ -193,14 +205,14 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
 #[test]
 fn drawn_poses_lie_between_the_last_two_steps() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.0251], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.0251], |lane| lane.replay.step() > 60);
     let time_s = clock(&mut app).time_s();
     let shown = lane(&mut app);
-    let place = time_s / shown.step_s();
+    let place = time_s / shown.step_s;
     let share = (place - place.floor()) as f32;
     assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
     let champion = shown.staged().champion();
-    let mut rollout = snakes_core::score::Rollout::new(&champion.genome, &champion.trial);
+    let mut rollout = Rollout::new(&champion.genome, &champion.trial);
     let mut head = || {
         rollout.advance();
         rollout.poses()[0].translation.y
@@ -217,7 +229,7 @@ fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     let champion = shipped().champion;
     let mut app = stage_of(vec![shipped(); 12]);
     assert_eq!(*app.world().resource::<StageMode>(), StageMode::Race);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     let mut lanes = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
     lanes.sort_by_key(|lane| lane.number());
@@ -253,23 +265,25 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     assert_eq!(lane(&mut app).staged().name(), "a champion");
 }
 
-fn pulled(lane: Entity, pull: Pull) -> HeldLimb {
-    HeldLimb { lane, pull, pressed_at: Vec2::ZERO, is_pulling: true }
+/// Holds the head of the only snake with the mouse, and pulls it this far.
+fn pull(app: &mut App, way_m: Vector) {
+    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
+    let entity = lanes.single(app.world()).expect("one lane");
+    let to_m = lane(app).last_poses()[0].translation + way_m;
+    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
+    let held = HeldLimb { lane: entity, pull, pressed_at: Vec2::ZERO, is_pulling: true };
+    app.world_mut().resource_mut::<Selection>().grab(0, 0, held);
 }
 
 #[test]
 fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record() {
     let mut app = stage_of(vec![shipped()]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
-    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
-    let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, -2.0, 2.0);
-    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
+    pull(&mut app, Vector::new(0.0, -2.0, 2.0));
     (0..20).for_each(|_| frame(&mut app, 0.05));
     assert!(lane(&mut app).is_disturbed());
-    app.world_mut().resource_mut::<Selection>().release();
+    app.world_mut().resource_mut::<Selection>().held = None;
     play(&mut app, &[0.1], is_over);
     (0..10).for_each(|_| frame(&mut app, 0.05));
     assert_eq!(app.world().resource::<Notices>().len(), 0, "the record is not checked");
@@ -290,16 +304,12 @@ fn a8_no_pull_ends_a_trial_and_a_pull_plays_a_paused_stage() {
     loaded.champion.trial.health.speed_m_s = 15.0;
     let mut app = stage_of(vec![loaded]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     clock(&mut app).hold_at(1.0);
     frame(&mut app, 0.1);
-    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
-    let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(60.0, 0.0, 0.0);
-    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
+    pull(&mut app, Vector::new(60.0, 0.0, 0.0));
     (0..80).for_each(|_| frame(&mut app, 0.1));
-    assert!(clock(&mut app).is_playing(), "or nothing would move");
+    assert!(clock(&mut app).is_playing, "or nothing would move");
     let lane = lane(&mut app);
     assert_eq!(lane.evaluation().disqualified, None);
     assert!(lane.is_disturbed() && lane.last_poses()[0].translation.x.abs() > 3.0);
@@ -311,12 +321,8 @@ fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     loaded.champion.trial.physics.steps_per_s = 1000;
     let mut app = stage_of(vec![loaded]);
     finish_lookahead(&mut app);
-    play(&mut app, &[0.1], |lane| lane.replay().step() > 300);
-    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
-    let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(&mut app).last_poses()[0].translation + Vector::new(0.0, 0.0, 2.0);
-    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
+    play(&mut app, &[0.1], |lane| lane.replay.step() > 300);
+    pull(&mut app, Vector::new(0.0, 0.0, 2.0));
     frame(&mut app, 0.1);
     assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
 }
@@ -326,29 +332,21 @@ fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     let mut loaded = shipped();
     loaded.champion.trial.duration_s = 300.0;
     let mut app = stage_of(vec![loaded]);
-    play(&mut app, &[0.05], |lane| lane.replay().step() > 60);
-    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
-    let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(&mut app).last_poses()[0].translation;
-    let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
-    app.world_mut().resource_mut::<Selection>().grab(0, 0, pulled(entity, pull));
+    play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
+    pull(&mut app, Vector::ZERO);
     frame(&mut app, 0.05);
-    app.world_mut().resource_mut::<Selection>().release();
-    let before = lane(&mut app).replay().step();
+    app.world_mut().resource_mut::<Selection>().held = None;
+    let before = lane(&mut app).replay.step();
     clock(&mut app).hold_at(250.0);
     frame(&mut app, 0.05);
-    let after = lane(&mut app).replay().step();
+    let after = lane(&mut app).replay.step();
     assert!(after - before <= MAX_STEPS_PER_FRAME, "{before} to {after}");
-    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay().step() == 15_000);
+    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay.step() == 15_000);
 }
 
 #[test]
 fn a_recording_has_a_landing_time_and_a_trail() {
-    let mut loaded = shipped();
-    let Champion { genome, trial, .. } = &loaded.champion;
-    loaded.recording = Some(Recording::of(genome, trial));
-    loaded.engine.version = 1;
-    let mut app = stage_of(vec![loaded, shipped()]);
+    let mut app = stage_of(vec![recorded(), shipped()]);
     finish_lookahead(&mut app);
     clock(&mut app).hold_at(1.0e9);
     (0..10).for_each(|_| frame(&mut app, 0.1));

@@ -120,7 +120,10 @@ impl BodyEditor {
             _ if is_busy => return Err("The gait is being tuned: wait, or cancel it.".to_owned()),
             BodyCommand::Edit => {}
             BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
-            BodyCommand::MakeRigid { block } => edited.make_rigid(*block),
+            BodyCommand::MakeRigid { block } => {
+                let rigid = edited.with_block(*block, |segment| segment.youngs_modulus_pa = None);
+                rigid.into_iter().for_each(|genome| edited.replace(genome));
+            }
             BodyCommand::Change { block, change } => edited.change(*block, *change)?,
             BodyCommand::Undo => edited.step(true),
             BodyCommand::Redo => edited.step(false),
@@ -211,16 +214,9 @@ impl Edited {
             return false;
         };
         self.evaluation = None;
-        match result.and_then(|champion| champion) {
-            Ok(champion) => {
-                self.ready = Some(champion);
-                true
-            }
-            Err(problem) => {
-                notices.problem(format!("This body cannot be simulated: {problem}"));
-                false
-            }
-        }
+        let failed = |reason| notices.problem(format!("This body cannot be simulated: {reason}"));
+        self.ready = result.flatten().map_err(failed).ok();
+        self.ready.is_some()
     }
 
     fn of(original: &StagedChampion) -> Result<Self, String> {
@@ -255,12 +251,8 @@ impl Edited {
     }
 
     fn set(&mut self, block: usize, size: BlockSize, value: f32) {
-        let mut genome = self.genome.clone();
-        let Some(segment) = genome.body.segments.get_mut(block) else { return };
-        *size.of_mut(segment) = value;
-        if genome == self.genome {
-            return;
-        }
+        let set = |segment: &mut Segment| *size.of_mut(segment) = value;
+        let Some(genome) = self.with_block(block, set) else { return };
         if self.last_set == Some((block, size)) {
             self.genome = genome;
             self.changed_at = Some(Instant::now());
@@ -270,14 +262,11 @@ impl Edited {
         }
     }
 
-    fn make_rigid(&mut self, block: usize) {
+    /// Returns the genome with an edited block; `None` if nothing differs or there is no such block.
+    fn with_block(&self, block: usize, edit: impl FnOnce(&mut Segment)) -> Option<Genome> {
         let mut genome = self.genome.clone();
-        if let Some(segment) = genome.body.segments.get_mut(block) {
-            segment.youngs_modulus_pa = None;
-        }
-        if genome != self.genome {
-            self.replace(genome);
-        }
+        edit(genome.body.segments.get_mut(block)?);
+        (genome != self.genome).then_some(genome)
     }
 
     fn change(&mut self, block: usize, change: BodyChange) -> Result<(), String> {

@@ -17,22 +17,20 @@ pub(crate) fn export(
     let ChartExport { figure, name, format, is_of_run } = export;
     let folder = saves.exports();
     folder.prepare().map_err(|error| error.to_string())?;
-    let (path, stored) = match format {
+    let free = |ending| folder.free_name(name, ending);
+    let stored = match format {
         ChartFormat::Png => {
-            let picture = match is_of_run {
-                true => plot::figure(&titled(figure, &run())),
-                false => plot::figure(figure),
-            };
-            let picture = picture.map_err(|error| error.to_string())?;
-            let path = folder.free_name(name, "png");
-            (path.clone(), store_picture(&path, &picture))
+            let titled = is_of_run.then(|| titled(figure, &run()));
+            let picture = plot::figure(titled.as_ref().unwrap_or(figure));
+            let (picture, path) = (picture.map_err(|error| error.to_string())?, free("png"));
+            store_picture(&path, &picture).map(|()| path)
         }
         ChartFormat::Csv => {
-            let path = folder.free_name(name, "csv");
-            (path.clone(), store_csv(&path, &figure.table()))
+            let path = free("csv");
+            store_csv(&path, &figure.table()).map(|()| path)
         }
     };
-    stored.map(|()| path).map_err(|error| error.to_string())
+    stored.map_err(|error| error.to_string())
 }
 
 /// Adds the name of the run to the figure's title, because in the window the name is outside the chart.

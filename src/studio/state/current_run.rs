@@ -15,10 +15,11 @@ use std::sync::{Arc, OnceLock};
 
 use bevy::prelude::*;
 
-use super::milestones::Milestones;
+use super::milestones::Milestone;
+use super::options::Options;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
-use snakes_core::save::{ExistingRun, RunSummary, settings_in_words};
+use snakes_core::save::{ExistingRun, RunSummary};
 use snakes_core::schema::SettingValue;
 use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
@@ -49,27 +50,28 @@ pub(crate) enum RunStatus {
 /// The current run and its results.
 #[derive(Resource, Debug)]
 pub(crate) struct CurrentRun {
-    context: RunContext,
+    /// What all runs since the start of the program share.
+    pub context: RunContext,
     /// Number of the run since the start of the program; the first is 0.
     number: u32,
     /// Current run, with the plan with which it began.
     source: RunSource,
     /// Plan of the current run after all its changes.
-    plan_now: RunPlan,
+    pub plan_now: RunPlan,
     /// Plan of the next run.
     plan_next: RunPlan,
     /// Requested changes of the current run that take effect with its next generation: full dotted names and values.
     pending: Vec<(String, SettingValue)>,
     background: Option<BackgroundRun>,
     /// Evaluator that also uses other computers, while there is one, and the number of generations that were finished before it was set.
-    shared: Option<(Arc<dyn Evaluator>, usize)>,
+    pub(super) shared: Option<(Arc<dyn Evaluator>, usize)>,
     /// Reason why the previous run was stopped because its results cannot be trusted, until the reason is shown.
-    fault: Option<String>,
+    pub fault: Option<String>,
     /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
-    /// Generations that were better than all earlier ones.
-    milestones: Milestones,
+    /// Generations that were better than all earlier ones, the earliest first.
+    milestones: Vec<Milestone>,
     /// Results besides champions; `None` until the first generation is finished.
     exploration: Option<Box<Exploration>>,
     /// Individuals with descendants, by their place; computed at the first use.
@@ -77,25 +79,21 @@ pub(crate) struct CurrentRun {
     /// Number of updates of `exploration`, part of `Self::version`.
     times_explored: u64,
     /// Other runs that the charts show.
-    others: ComparedRuns,
+    pub others: ComparedRuns,
     /// The ten best snakes of each of the latest generations since the start of the program, the earliest generation first.
     leaders: VecDeque<Vec<Champion>>,
-    run_hash: Option<u64>,
-    /// Whether a lesson uses the stage and the settings: see [`Self::lend`].
-    is_lent: bool,
+    /// Hash of the run; `None` until the run is finished.
+    pub run_hash: Option<u64>,
+    /// Whether a lesson uses the stage and the settings. Edits of settings then do not affect the current run.
+    pub is_lent: bool,
     /// Folder of a run that was reset; its contents are deleted when the run starts again.
     discarded: Option<PathBuf>,
 }
 
-impl FromWorld for CurrentRun {
-    fn from_world(world: &mut World) -> Self {
-        Self::new(world.resource::<RunContext>().clone())
-    }
-}
-
 impl CurrentRun {
     /// Prepares the run with which the studio opens.
-    pub fn new(context: RunContext) -> Self {
+    pub fn new(options: &Options) -> Self {
+        let context = RunContext::new(options);
         Self::prepared(context.first.clone(), context.first.plan.clone(), context)
     }
 
@@ -112,7 +110,7 @@ impl CurrentRun {
             fault: None,
             before: None,
             reports: Vec::new(),
-            milestones: Milestones::default(),
+            milestones: Vec::new(),
             exploration: None,
             ancestors: OnceLock::new(),
             times_explored: 0,
@@ -134,19 +132,9 @@ impl CurrentRun {
         }
     }
 
-    /// Describes the maximum number of generations of the current run, after all its changes: "40" or "at most 40".
-    pub fn most_generations_in_words(&self) -> String {
-        self.plan_now.most_generations_in_words()
-    }
-
     /// Describes the finished generations of the current run: "3 of 40 generations".
     pub fn generations_in_words(&self) -> String {
         self.plan_now.generations_in_words(self.reports.len() as u32, self.run_hash.is_some())
-    }
-
-    /// Returns the maximum number of evaluations of the current run, after all its changes.
-    pub fn budget(&self) -> u64 {
-        self.plan_now.budget()
     }
 
     /// Returns the number of the run since the start of the program; the first is 0.
@@ -154,24 +142,9 @@ impl CurrentRun {
         self.number
     }
 
-    /// Returns the name of the preset with which the current run began.
-    pub fn preset(&self) -> &str {
-        &self.source.plan.preset
-    }
-
-    /// Describes the settings of the current run: see [`settings_in_words`].
-    pub fn settings_in_words(&self) -> String {
-        settings_in_words(&self.plan_now)
-    }
-
     /// Returns the folder in which the current run is saved.
     pub fn folder(&self) -> &Path {
         &self.source.folder
-    }
-
-    /// Returns the seed of the current run.
-    pub fn seed(&self) -> u64 {
-        self.source.plan.seed
     }
 
     /// Returns the settings of the current run after all its changes.
@@ -182,7 +155,8 @@ impl CurrentRun {
     /// Returns the stopped runs that can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
         let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
-        Some(self.others.runs()?.iter().filter(is_other))
+        let runs = self.others.runs.as_ref()?.iter();
+        Some(runs.map(|(run, _)| run).filter(is_other))
     }
 
     /// Returns the reports of the finished generations, the first generation first.
@@ -197,12 +171,7 @@ impl CurrentRun {
 
     /// Returns a value that differs after every change of something that charts show.
     pub fn version(&self) -> (u32, u64, usize, u64) {
-        (self.number, self.times_explored, self.reports.len(), self.others.version())
-    }
-
-    /// Returns the other runs that the charts show.
-    pub fn others(&self) -> &ComparedRuns {
-        &self.others
+        (self.number, self.times_explored, self.reports.len(), self.others.version)
     }
 
     /// Returns the ten best snakes of a generation, or of the latest one, the best first. Empty if the generation is
@@ -238,11 +207,6 @@ impl CurrentRun {
         }
     }
 
-    /// Returns the hash of the run, or `None` until the run is finished.
-    pub fn run_hash(&self) -> Option<u64> {
-        self.run_hash
-    }
-
     /// Returns the champion of a generation; the first generation is 1.
     pub fn champion_of(&self, generation: u32) -> Option<&Champion> {
         let index = (generation as usize).checked_sub(1)?;
@@ -251,7 +215,9 @@ impl CurrentRun {
 
     /// Evolves until paused or finished. If the current run is finished, begins the next one.
     pub fn start(&mut self) -> Result<(), String> {
-        self.begin_next_if_over();
+        if self.status() == RunStatus::Finished {
+            self.prepare_another();
+        }
         self.background()?.resume();
         Ok(())
     }
@@ -317,7 +283,7 @@ impl CurrentRun {
             discarded: self.discarded.take(),
             ..Self::prepared(source, self.plan_next.clone(), self.context.clone())
         };
-        if self.others.runs().is_some() {
+        if self.others.runs.is_some() {
             // The list of runs may be visible, and the replaced run belongs to it. If listing fails, the user can
             // request it again.
             let _ = self.list_runs();
@@ -357,17 +323,6 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Lends the stage and the settings to a lesson, or takes them back. During the lesson, edits of settings do not
-    /// affect the current run.
-    pub fn lend(&mut self, is_lent: bool) {
-        self.is_lent = is_lent;
-    }
-
-    /// Returns whether a lesson uses the stage and the settings.
-    pub fn is_lent(&self) -> bool {
-        self.is_lent
-    }
-
     /// Returns whether the current run will pause after its current generation.
     pub fn is_single_generation(&self) -> bool {
         self.background.as_ref().is_some_and(BackgroundRun::is_single_generation)
@@ -378,13 +333,6 @@ impl CurrentRun {
             self.prepare_next();
         }
         Ok(())
-    }
-
-    /// If the current run is finished, prepares the next one: with the plan that was set meanwhile, or with the next seed.
-    fn begin_next_if_over(&mut self) {
-        if self.status() == RunStatus::Finished {
-            self.prepare_another();
-        }
     }
 
     /// Prepares a run that differs from the current one. If nothing else differs, takes the next seed for which there is
@@ -420,6 +368,6 @@ impl CurrentRun {
 mod fixtures;
 #[cfg(test)]
 pub(crate) use fixtures::{
-    bodies_run, climber, compared_run, explored_run, landed_run, prepared_run, small_run,
-    species_run,
+    bodies_run, climber, compared_run, evolve, explored_run, landed_run, prepared_run, run_in,
+    small_run, species_run,
 };

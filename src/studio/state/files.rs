@@ -153,7 +153,12 @@ impl Files {
         });
         match self.copying.poll() {
             None => {}
-            Some((copied, Ok(()))) => notices.update(COPIED, copied.message().to_owned()),
+            Some((Copied::Picture(_), Ok(()))) => {
+                notices.update(COPIED, "The picture is in the clipboard.".to_owned());
+            }
+            Some((Copied::Path(_), Ok(()))) => {
+                notices.update(COPIED, "The path is in the clipboard.".to_owned());
+            }
             Some((Copied::Picture(path), Err(reason))) => notices.offer(
                 COPIED,
                 format!("The picture could not be copied: {reason}."),

@@ -25,8 +25,8 @@ pub(crate) struct Following {
     holds: bool,
     /// Number of the run that is followed.
     run: u32,
-    /// Whether a story is repeated after its end.
-    repeats: bool,
+    /// Whether a story is repeated after its end. This does not change what the stage shows.
+    pub repeats: bool,
     /// Whether the shown generation is the first to land. It stays until all its snakes have ended, so that the landing
     /// can be watched.
     is_landing: bool,
@@ -76,10 +76,8 @@ impl Following {
 
     /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
     pub fn story_part(&self) -> Option<(usize, usize)> {
-        match &self.plan {
-            FollowPlan::Story { generations, next } => Some((*next, generations.len())),
-            FollowPlan::Nothing | FollowPlan::Evolution => None,
-        }
+        let FollowPlan::Story { generations, next } = &self.plan else { return None };
+        Some((*next, generations.len()))
     }
 
     /// Shows each better generation from now on, beginning with the latest of them.
@@ -93,9 +91,11 @@ impl Following {
         (self.plan, self.holds) = (FollowPlan::Nothing, false);
     }
 
-    /// Sets whether a story is repeated after its end. This does not change what the stage shows.
-    pub fn set_repeats(&mut self, repeats: bool) {
-        self.repeats = repeats;
+    /// Follows again what an earlier scene followed, unless another run has begun since. No generation is announced twice.
+    pub fn restore(&mut self, earlier: Self) {
+        if earlier.run == self.run {
+            *self = Self { announced: self.announced, repeats: self.repeats, ..earlier };
+        }
     }
 
     /// Shows the first, a middle and the latest of the better generations in turn.
@@ -188,7 +188,7 @@ fn follow(
     time: Res<Time<Real>>,
     mut show: MessageWriter<Show>,
 ) {
-    if run.is_lent() {
+    if run.is_lent {
         // A lesson uses the stage.
         return;
     }
@@ -198,14 +198,14 @@ fn follow(
         following.follow_evolution();
         following.is_new = true;
     }
-    if following.holds && (playback.is_playing() || run.status() != RunStatus::Running) {
+    if following.holds && (playback.is_playing || run.status() != RunStatus::Running) {
         // The user plays the present champion, or evolution is not running.
         following.holds = false;
-        if !playback.is_playing() {
+        if !playback.is_playing {
             playback.restart();
         }
     }
-    if playback.is_playing() {
+    if playback.is_playing {
         following.shown_for += time.delta();
     } else if !following.holds {
         // The user is looking at the paused stage.
@@ -316,6 +316,22 @@ mod tests {
     }
 
     #[test]
+    fn a_generation_is_announced_once_even_if_an_earlier_scene_comes_back() {
+        let mut app = App::new();
+        app.insert_resource(explored_run())
+            .init_resource::<Following>()
+            .init_resource::<Notices>()
+            .add_systems(Update, announce);
+        let earlier = app.world().resource::<Following>().clone();
+        app.update();
+        assert_eq!(app.world().resource::<Notices>().len(), 1);
+        app.insert_resource(Notices::default());
+        app.world_mut().resource_mut::<Following>().restore(earlier);
+        app.update();
+        assert_eq!(app.world().resource::<Notices>().len(), 0, "it was announced before");
+    }
+
+    #[test]
     fn a_story_shows_first_and_latest_in_turn_and_ends() {
         let run = explored_run();
         let mut following = Following::default();
@@ -335,18 +351,17 @@ mod tests {
     #[test]
     fn a_repeated_story_begins_again_until_repeating_ends() {
         let run = explored_run();
-        let mut following = Following::default();
-        following.set_repeats(true);
+        let mut following = Following { repeats: true, ..Following::default() };
         assert_eq!(following.due(&run, true), None, "what was chosen stays");
         following.tell_story(&run).expect("two better generations");
         let parts = following.story_part().expect("a story").1;
         let told: Vec<_> = (0..2 * parts).map(|_| following.due(&run, true)).collect();
         assert!(told[0].is_some());
         assert_eq!(told[..parts], told[parts..]);
-        following.set_repeats(false);
+        following.repeats = false;
         let left: Vec<_> = (0..=parts).map(|_| following.due(&run, true)).collect();
         assert_eq!(left.last(), Some(&None), "it ends");
-        following.set_repeats(true);
+        following.repeats = true;
         assert_eq!(following.due(&run, true), None, "it stays over");
     }
 }

@@ -167,7 +167,7 @@ impl Lessons {
                     RunStatus::Ready | RunStatus::Paused | RunStatus::Finished => Pace::Held,
                 };
                 run.pause()?;
-                run.lend(true);
+                run.is_lent = true;
                 let (next, history) = (run.next_plan().clone(), history.lend());
                 Own { next, history, pace }
             }
@@ -213,7 +213,7 @@ impl Lessons {
     pub fn leave(&mut self, run: &mut CurrentRun, history: &mut UndoHistory) -> Result<(), String> {
         let Some(Current { own, .. }) = self.current.take() else { return Ok(()) };
         run.set_next_plan(own.next)?;
-        run.lend(false);
+        run.is_lent = false;
         history.give_back(own.history);
         match own.pace {
             Pace::Running if run.status() == RunStatus::Paused => run.start()?,
@@ -367,7 +367,7 @@ fn take_in(
     }
     let end_s = end_s(lanes.iter().copied());
     let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
-    if is_over && playback.is_playing() && playback.time_s() >= end_s {
+    if is_over && playback.is_playing && playback.time_s() >= end_s {
         // The finish stays in sight until the reader plays again.
         playback.hold_at(end_s);
     }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 
-use super::run_context::RunContext;
+use super::current_run::CurrentRun;
 use super::undo::{UndoHistory, UndoStep};
 use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
@@ -67,7 +67,7 @@ pub(crate) struct Library {
 
 impl FromWorld for Library {
     fn from_world(world: &mut World) -> Self {
-        Self::new(world.resource::<RunContext>().saves.clone())
+        Self::new(world.resource::<CurrentRun>().context.saves.clone())
     }
 }
 

@@ -17,8 +17,9 @@ use snakes_core::save::LONGEST_ADDRESS;
 #[derive(Resource, Debug, Default)]
 pub(crate) struct MachinesLink {
     /// Address that was used last; empty if there was none.
-    address: String,
-    state: LinkState,
+    pub address: String,
+    /// State of the connection.
+    pub state: LinkState,
     watch: Option<ServerWatch>,
     /// Number of the run for which a coordinator was requested, and the request.
     asked: Option<(u32, WatchedRun)>,
@@ -61,16 +62,6 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 impl MachinesLink {
-    /// Returns the address that was used last; empty if there was none.
-    pub fn address(&self) -> &str {
-        &self.address
-    }
-
-    /// Returns the state of the connection.
-    pub fn state(&self) -> &LinkState {
-        &self.state
-    }
-
     /// Sets the address that was stored in the preferences, if it is valid.
     pub fn remember(&mut self, address: &str) {
         self.address = checked(address).unwrap_or_default();
@@ -107,15 +98,7 @@ impl MachinesLink {
         (self.watch, self.asked, self.state) = (None, None, LinkState::Off);
     }
 
-    /// Processes the news from the watch of the server.
-    fn take_in(&mut self, run: &mut CurrentRun, notices: &mut Notices) {
-        let Some(watch) = &self.watch else { return };
-        let news: Vec<WatchNews> = std::iter::from_fn(|| watch.poll()).collect();
-        for news in news {
-            self.take_in_news(news, run, notices);
-        }
-    }
-
+    /// Processes a piece of news from the watch of the server.
     fn take_in_news(&mut self, news: WatchNews, run: &mut CurrentRun, notices: &mut Notices) {
         match (news, &mut self.state) {
             (WatchNews::Connected { proof }, state) => {
@@ -197,12 +180,13 @@ fn take_in(
     mut notices: ResMut<Notices>,
 ) {
     // Workers whose results were wrong get no more work from this window until the user connects again.
-    if let Some(reason) = run.take_fault() {
+    if let Some(reason) = run.fault.take() {
         link.disconnect(&mut run);
         link.state = LinkState::Failed(reason);
     }
-    if link.watch.is_some() {
-        link.take_in(&mut run, &mut notices);
+    if let Some(watch) = &link.watch {
+        let news: Vec<WatchNews> = std::iter::from_fn(|| watch.poll()).collect();
+        news.into_iter().for_each(|news| link.take_in_news(news, &mut run, &mut notices));
         link.follow(&mut run);
     }
 }

@@ -35,10 +35,6 @@ pub(crate) struct GenerationMember {
     pub evaluation: Evaluation,
 }
 
-/// Milestones of a run, the earliest first.
-#[derive(Debug, Default)]
-pub(crate) struct Milestones(Vec<Milestone>);
-
 /// Maximum number of milestones whose snakes are kept. Of older ones, only the champion can be shown.
 const MAX_WHOLE: usize = 64;
 
@@ -49,41 +45,38 @@ impl Milestone {
     }
 }
 
-impl Milestones {
-    /// Returns all milestones, the earliest first.
-    pub fn all(&self) -> &[Milestone] {
-        &self.0
+/// Adds a finished generation to the milestones of a run if it is better than all earlier ones. `snakes` are all its snakes, if they are kept.
+pub(crate) fn note(
+    milestones: &mut Vec<Milestone>,
+    report: &GenerationReport,
+    snakes: Option<&Generation>,
+) {
+    let Some(champion) = &report.champion else { return };
+    let fitness = champion.evaluation.fitness;
+    let stairs_m = champion.trial.stairs.highest_m();
+    // On a ladder, higher stairs rank before greater fitness. Where stairs evolve, all recorded champions are better ones.
+    let is_no_better = |last: &Milestone| [stairs_m, fitness] <= [last.stairs_m, last.fitness];
+    if report.stairs.is_none() && milestones.last().is_some_and(is_no_better) {
+        return;
     }
-
-    /// Records a finished generation if it is better than all earlier ones. `snakes` are all its snakes, if they are kept.
-    pub fn note(&mut self, report: &GenerationReport, snakes: Option<&Generation>) {
-        let Some(champion) = &report.champion else { return };
-        let fitness = champion.evaluation.fitness;
-        let stairs_m = champion.trial.stairs.highest_m();
-        // On a ladder, higher stairs rank before greater fitness. Where stairs evolve, all recorded champions are better ones.
-        let is_no_better = |last: &Milestone| [stairs_m, fitness] <= [last.stairs_m, last.fitness];
-        if report.stairs.is_none() && self.0.last().is_some_and(is_no_better) {
-            return;
-        }
-        self.0.push(Milestone {
-            generation: report.generation,
-            stairs_m,
-            fitness,
-            // On a ladder, only a landing on its final stairs counts.
-            is_landed: report.on_landing > 0
-                && champion.evaluation.is_on_landing(&champion.trial.stairs),
-            // Where stairs evolve, the members have different stairs and could not be shown on the same ones.
-            members: match report.stairs {
-                Some(_) => Arc::default(),
-                None => snakes.map_or_else(Arc::default, members_to_show),
-            },
-            size: report.evaluations,
-        });
-        if self.0.iter().filter(|milestone| milestone.is_whole()).count() > MAX_WHOLE {
-            // The first milestone keeps its snakes, because every story begins with it.
-            let oldest = self.0.iter_mut().skip(1).find(|milestone| milestone.is_whole());
-            oldest.into_iter().for_each(|oldest| oldest.members = Arc::default());
-        }
+    milestones.push(Milestone {
+        generation: report.generation,
+        stairs_m,
+        fitness,
+        // On a ladder, only a landing on its final stairs counts.
+        is_landed: report.on_landing > 0
+            && champion.evaluation.is_on_landing(&champion.trial.stairs),
+        // Where stairs evolve, the members have different stairs and could not be shown on the same ones.
+        members: match report.stairs {
+            Some(_) => Arc::default(),
+            None => snakes.map_or_else(Arc::default, members_to_show),
+        },
+        size: report.evaluations,
+    });
+    if milestones.iter().filter(|milestone| milestone.is_whole()).count() > MAX_WHOLE {
+        // The first milestone keeps its snakes, because every story begins with it.
+        let oldest = milestones.iter_mut().skip(1).find(|milestone| milestone.is_whole());
+        oldest.into_iter().for_each(|oldest| oldest.members = Arc::default());
     }
 }
 

@@ -47,10 +47,9 @@ pub(crate) fn apply_to_plan(
     stage: ChangedStage,
     notices: &mut Notices,
 ) -> Result<Option<Show>, String> {
-    let ChangedStage { on_show, mode, .. } = stage;
+    let on_show = &stage.show.champions;
     match command {
         PlanCommand::SetSeed(seed) => run.set_seed(*seed)?,
-        PlanCommand::SetPopulation(population) => run.set_population(*population)?,
         PlanCommand::SetField { field, text } => {
             let mut fields = vec![(field.as_str(), text.as_str())];
             // Without the changes of the partners, the strategy, the controller and the bodies would not suit each
@@ -95,7 +94,7 @@ pub(crate) fn apply_to_plan(
             run.begin_next()?;
             notices.info(format!("A run started from {name}."));
             // The new run uses the changed world of a what-if.
-            return Ok(kept(on_show, mode));
+            return Ok(kept(stage.show));
         }
         PlanCommand::ForgetFounder => run.forget_founder()?,
         PlanCommand::UseWorldOfLane => {
@@ -104,8 +103,8 @@ pub(crate) fn apply_to_plan(
             run.set_fields(&texts.collect::<Vec<_>>())?;
             notices.info("The next run uses this world.".to_owned());
         }
-        PlanCommand::KeepLane(lane) => return kept_lane(run, on_show, mode, *lane),
-        PlanCommand::DropChange => return dropped(run, on_show, mode),
+        PlanCommand::KeepLane(lane) => return kept_lane(run, stage.show, *lane),
+        PlanCommand::DropChange => return dropped(run, stage.show),
     }
     Ok(None)
 }

@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use bevy::prelude::*;
-
 use super::options::Options;
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
 use snakes_lab::run::{Evaluator, RunSource};
 
 /// What all runs since the start of the program share.
-#[derive(Resource, Debug, Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct RunContext {
     /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,
@@ -24,7 +22,8 @@ pub(crate) struct RunContext {
     pub presets: Arc<KnownFiles<Preset>>,
     /// Stairs that the user can choose.
     pub stairs: Arc<KnownFiles<NamedStairs>>,
-    run_folder: RunInProgress,
+    /// Shared cell with the folder of the run in progress.
+    pub run_folder: RunInProgress,
 }
 
 impl RunContext {
@@ -38,11 +37,6 @@ impl RunContext {
             stairs: Arc::new(KnownFiles::read(&options.saves)),
             run_folder: RunInProgress::default(),
         }
-    }
-
-    /// Returns the shared cell with the folder of the run in progress.
-    pub fn run_folder(&self) -> RunInProgress {
-        Arc::clone(&self.run_folder)
     }
 
     /// Sets the folder of the run in progress, which could be resumed after a crash; `None` without a run.

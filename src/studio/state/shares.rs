@@ -26,7 +26,7 @@ use snakes_core::score::evaluate;
 use snakes_lab::export::ExportFormat;
 use snakes_lab::run::BackgroundTask;
 
-use writer::{Leash, Writer, written};
+use writer::{Leash, written};
 
 /// The file that is being written, if any.
 #[derive(Resource, Debug, Default)]
@@ -117,14 +117,12 @@ impl Shares {
             return Err(format!("{} exists already; choose another name.", name_of(&named)));
         }
         let path = named;
-        let leash = Arc::new(Leash::default());
-        let writer =
-            Writer { leash: Arc::clone(&leash), arguments: arguments(format, &path, look) };
+        let (leash, arguments) = (Arc::new(Leash::default()), arguments(format, &path, look));
+        let held = Arc::clone(&leash);
         let failed = |error| format!("{} could not be written: {error}.", path.display());
         let work = BackgroundTask::start_counted(PARTS, move |control| {
-            let champions: Vec<(String, Champion)> =
-                shared.into_iter().map(SharedChampion::evaluated).collect();
-            written(&writer, &champions, |share| {
+            let champions: Vec<_> = shared.into_iter().map(|evaluated| evaluated()).collect();
+            written((&held, &arguments), &champions, |share| {
                 control.set_done((share * PARTS as f64) as u32);
             })
         });
@@ -206,12 +204,7 @@ fn name_of(path: &Path) -> String {
 fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
     let ending = format.info().ending;
     let has_it = path.extension().is_some_and(|of| of.eq_ignore_ascii_case(ending));
-    if has_it {
-        return path.to_owned();
-    }
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{ending}"));
-    PathBuf::from(name)
+    if has_it { path.to_owned() } else { path.with_added_extension(ending) }
 }
 
 /// Returns the arguments of the program that writes the file, apart from the champions.
@@ -233,28 +226,11 @@ fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsStrin
     arguments
 }
 
-/// A champion as the stage shows it, to be written to a file.
-#[derive(Debug, Clone, PartialEq)]
-struct SharedChampion {
-    name: String,
-    champion: Champion,
-    /// Whether the champion's recorded result is from another world or engine, so that it must be evaluated again.
-    is_to_evaluate: bool,
-}
-
-impl SharedChampion {
-    /// Returns the name and the champion, with its result in the world in which it is shown.
-    fn evaluated(self) -> (String, Champion) {
-        let Self { name, mut champion, is_to_evaluate } = self;
-        if is_to_evaluate {
-            champion.evaluation = evaluate(&champion.genome, &champion.trial);
-        }
-        (name, champion)
-    }
-}
-
-/// Converts the champion of a lane for a file. Fails with a reason if no file can represent it.
-fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
+/// Converts the champion of a lane for a file. Returns the work that gives its name and the champion, with its result in the
+/// world in which it is shown. Fails with a reason if no file can represent it.
+fn shared(
+    staged: &StagedChampion,
+) -> Result<impl FnOnce() -> (String, Champion) + Send + use<>, String> {
     let name = staged.label().to_owned();
     if let Some(engine) = staged.other_engine().filter(|_| staged.recording().is_some()) {
         return Err(format!(
@@ -266,8 +242,15 @@ fn shared(staged: &StagedChampion) -> Result<SharedChampion, String> {
             "{name}: its world changes while it moves, which no file can hold; try the change from the start."
         ));
     }
-    let champion = Champion { trial: staged.trial().clone(), ..staged.champion().clone() };
-    Ok(SharedChampion { name, champion, is_to_evaluate: !staged.must_match_record() })
+    let mut champion = Champion { trial: staged.trial().clone(), ..staged.champion().clone() };
+    // A recorded result from another world or engine does not count here.
+    let is_to_evaluate = !staged.must_match_record();
+    Ok(move || {
+        if is_to_evaluate {
+            champion.evaluation = evaluate(&champion.genome, &champion.trial);
+        }
+        (name, champion)
+    })
 }
 
 fn take_in(mut shares: ResMut<Shares>, mut notices: ResMut<Notices>) {

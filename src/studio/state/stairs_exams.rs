@@ -19,14 +19,8 @@ use snakes_lab::run::{BackgroundTask, Cancelled, LocalPool, available_cores};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct StairsExams {
     /// Finished exams, the latest last.
-    finished: Vec<FinishedExam>,
+    finished: Vec<(Champion, Vec<StairsGrid>)>,
     under_way: Option<ExamUnderWay>,
-}
-
-#[derive(Debug)]
-struct FinishedExam {
-    champion: Champion,
-    grids: Vec<StairsGrid>,
 }
 
 /// An exam that is being simulated. Dropping the value cancels the exam.
@@ -35,17 +29,6 @@ struct ExamUnderWay {
     champion: Champion,
     name: String,
     work: BackgroundTask<Result<Vec<StairsGrid>, Cancelled>>,
-}
-
-/// Progress of the exam that is being simulated.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ExamProgress {
-    /// Name of the champion.
-    pub name: String,
-    /// Number of trials of the exam that are finished.
-    pub done: u32,
-    /// Number of all trials of the exam.
-    pub trials: u32,
 }
 
 /// Maximum number of champions whose exams are kept.
@@ -72,15 +55,12 @@ impl StairsExams {
         let selected = selected.ok_or("There is no snake on the stage.");
         match command {
             ExamCommand::Examine => self.examine(selected?)?,
-            ExamCommand::Cancel => {
-                if let Some(under_way) = &self.under_way {
-                    under_way.work.cancel();
-                }
-            }
+            ExamCommand::Cancel => self.under_way.iter().for_each(|exam| exam.work.cancel()),
             ExamCommand::Watch { suite, cell } => {
                 let selected = selected?;
-                let cell =
-                    self.grid(selected.champion(), *suite).and_then(|of| of.cells.get(*cell));
+                let mut grids = self.of(selected.champion()).unwrap_or_default().iter();
+                let grid = grids.find(|grid| grid.suite == *suite);
+                let cell = grid.and_then(|grid| grid.cells.get(*cell));
                 // The selected champion may have changed since the click. Then nothing happens.
                 return Ok(cell.map(|cell| {
                     Show::solo(
@@ -122,20 +102,15 @@ impl StairsExams {
     /// Returns the finished exam of a champion, if any: on other stairs and, if the champion has senses, also without senses.
     pub fn of(&self, champion: &Champion) -> Option<&[StairsGrid]> {
         let mut finished = self.finished.iter();
-        finished.find(|exam| is_same(&exam.champion, champion)).map(|exam| exam.grids.as_slice())
+        let is_it = |of: &Champion| of.genome == champion.genome && of.trial == champion.trial;
+        finished.find(|(of, _)| is_it(of)).map(|(_, grids)| grids.as_slice())
     }
 
-    fn grid(&self, champion: &Champion, suite: ExamSuite) -> Option<&StairsGrid> {
-        self.of(champion)?.iter().find(|grid| grid.suite == suite)
-    }
-
-    /// Returns the progress of the exam that is being simulated, if any.
-    pub fn progress(&self) -> Option<ExamProgress> {
-        self.under_way.as_ref().map(|exam| ExamProgress {
-            name: exam.name.clone(),
-            done: exam.work.done().min(exam.work.total()) as u32,
-            trials: exam.work.total() as u32,
-        })
+    /// Returns the champion's name in the exam that is being simulated, if any, and the numbers of its finished and of all
+    /// its trials.
+    pub fn progress(&self) -> Option<(&str, [usize; 2])> {
+        let ExamUnderWay { name, work, .. } = self.under_way.as_ref()?;
+        Some((name, [work.done().min(work.total()), work.total()]))
     }
 
     /// Processes the result of a finished exam.
@@ -160,7 +135,7 @@ impl StairsExams {
 
     /// Keeps a finished exam, and removes the oldest ones if there are too many.
     pub(in crate::studio) fn keep(&mut self, champion: Champion, grids: Vec<StairsGrid>) {
-        self.finished.push(FinishedExam { champion, grids });
+        self.finished.push((champion, grids));
         let too_many = self.finished.len().saturating_sub(MOST_KEPT);
         self.finished.drain(..too_many);
     }
@@ -210,11 +185,6 @@ fn stairs_in_words(suite: ExamSuite, cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, .. } = cell;
     let frozen = if suite == ExamSuite::Lesion { ", without its senses" } else { "" };
     format!("rise {rise_m} m, tread {tread_m} m{frozen}")
-}
-
-/// Returns whether two champions behave alike in all trials.
-fn is_same(one: &Champion, other: &Champion) -> bool {
-    one.genome == other.genome && one.trial == other.trial
 }
 
 fn take_in(mut exams: ResMut<StairsExams>, mut notices: ResMut<Notices>) {

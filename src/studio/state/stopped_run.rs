@@ -4,7 +4,6 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use crate::studio::commands::{Command, RunCommand};
-use crate::studio::state::run_context::RunContext;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::RunSummary;
 
@@ -13,21 +12,16 @@ pub(super) fn plugin(app: &mut App) {
 }
 
 /// Lists the runs, unless the user has named a run.
-fn list(mut run: ResMut<CurrentRun>, context: Res<RunContext>, mut notices: ResMut<Notices>) {
-    if context.offers_stopped_run {
+fn list(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
+    if run.context.offers_stopped_run {
         notices.problems(run.list_runs().err());
     }
 }
 
 /// Opens the run that was stopped last, paused, once the runs are listed. If the program was started with other settings,
 /// starts its own run and offers the stopped one.
-fn open(
-    mut run: ResMut<CurrentRun>,
-    context: Res<RunContext>,
-    mut notices: ResMut<Notices>,
-    mut is_done: Local<bool>,
-) {
-    if *is_done || !context.offers_stopped_run {
+fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: Local<bool>) {
+    if *is_done || !run.context.offers_stopped_run {
         return;
     }
     // A list that cannot be read is reported, and the own run starts.
@@ -38,7 +32,7 @@ fn open(
         return;
     }
     let own = run.next_plan();
-    let is_plain = run.presets().settings_of(&own.preset) == Some(&own.settings);
+    let is_plain = run.context.presets.settings_of(&own.preset) == Some(&own.settings);
     let is_alike = |of: &RunSummary| {
         of.plan.preset == own.preset && (is_plain || of.plan.settings == own.settings)
     };
@@ -66,27 +60,19 @@ fn offer_text(run: &RunSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::state::current_run::small_run;
+    use crate::studio::state::current_run::{evolve, small_run};
     use crate::studio::state::options::Options;
     use snakes_core::save::SavesFolder;
-    use snakes_lab::run::{LocalPool, RunControl};
     use std::path::Path;
 
     /// Keeps a stopped run of seed 1 in this folder, starts the studio with another run, and waits until `is_ready`.
     fn started(folder: &Path, own: (u64, u32), is_ready: impl Fn(&World) -> bool) -> App {
         let saves = SavesFolder::find(Some(folder));
-        let mut earlier = small_run(&saves, 1, 10_000).open("a test").expect("opened");
-        let pool = LocalPool::new(1).expect("threads");
-        let report = earlier.experiment.run_generation(&pool, &RunControl::default());
-        let report = report.expect("not cancelled");
-        earlier.recorder.record_generation(&earlier.experiment, &report).expect("kept");
-        drop(earlier);
+        evolve(small_run(&saves, 1, 10_000), 1);
         let run = small_run(&saves, own.0, own.1);
         let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
-        let context = RunContext::new(&options);
         let mut app = App::new();
-        app.insert_resource(CurrentRun::new(context.clone()))
-            .insert_resource(context)
+        app.insert_resource(CurrentRun::new(&options))
             .init_resource::<Notices>()
             .add_plugins(bevy::time::TimePlugin)
             .add_plugins((crate::studio::state::current_run::events::plugin, plugin));
@@ -107,7 +93,7 @@ mod tests {
         assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 10000."));
         assert_eq!(notices.len(), 1);
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running));
+        assert_eq!((run.plan_now.seed, run.status()), (2, RunStatus::Running));
     }
 
     #[test]
@@ -116,11 +102,15 @@ mod tests {
         let is_open = |world: &World| world.resource::<CurrentRun>().reports().len() == 1;
         let mut app = started(folder.path(), (2, 10_000), is_open);
         let mut run = app.world_mut().resource_mut::<CurrentRun>();
-        assert_eq!((run.seed(), run.number(), run.reports().len()), (1, 0, 1));
+        assert_eq!((run.plan_now.seed, run.number(), run.reports().len()), (1, 0, 1));
         assert_eq!(run.status(), RunStatus::Paused);
         assert!(!run.milestones().is_empty(), "its best snake can be shown");
         let mut notices = Notices::default();
         run.apply(&RunCommand::New, &mut notices).expect("allowed");
-        assert_eq!((run.seed(), run.status()), (2, RunStatus::Running), "the next unused seed");
+        assert_eq!(
+            (run.plan_now.seed, run.status()),
+            (2, RunStatus::Running),
+            "the next unused seed"
+        );
     }
 }

@@ -82,12 +82,7 @@ fn values(range: &NumberRange, now: f32) -> Vec<f32> {
 
 /// Rounds a value to three significant digits, which fit into a label.
 fn rounded(value: f32) -> f32 {
-    if value == 0.0 {
-        return value;
-    }
-    let digits = 2 - libm::floorf(libm::log10f(value.abs())) as i32;
-    let scale = libm::powf(10.0, digits as f32);
-    (value * scale).round() / scale
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Returns the settings in which a lane's world differs from the one in which its champion was found: full dotted names

@@ -24,8 +24,8 @@ use snakes_core::save::library::shipped_champions;
 pub(crate) struct Turns {
     /// Whether the presenting mode is on.
     is_on: bool,
-    /// Whether the stage is prevented from going on automatically.
-    is_held: bool,
+    /// Whether the stage is prevented from going on automatically, for example while the screen is black.
+    pub is_held: bool,
     /// Whether champions with which the studio was opened stay on the stage.
     keeps_opened: bool,
     /// Whether the presenter has gone on by hand, so that the stage always goes on afterwards.
@@ -50,11 +50,6 @@ impl Turns {
     /// Begins or ends showing champions one after another.
     pub fn set_on(&mut self, is_on: bool) {
         (self.is_on, self.is_led, self.asked, self.rested) = (is_on, false, None, Duration::ZERO);
-    }
-
-    /// Sets whether the stage is prevented from going on automatically, for example while the screen is black.
-    pub fn set_held(&mut self, is_held: bool) {
-        self.is_held = is_held;
     }
 
     /// Requests a step that the presenter makes by hand.
@@ -127,13 +122,13 @@ fn take_turns(
     mut show: MessageWriter<Show>,
     mut notices: ResMut<Notices>,
 ) {
-    if !turns.is_on || run.is_lent() {
+    if !turns.is_on || run.is_lent {
         return;
     }
     let first = lanes.iter().min_by_key(|lane| lane.number());
     let on_stage = first.map(Lane::staged);
     let end_s = end_s(lanes);
-    let is_over = playback.is_playing() && end_s > 0.0 && playback.time_s() >= end_s;
+    let is_over = playback.is_playing && end_s > 0.0 && playback.time_s() >= end_s;
     turns.rested = if is_over { turns.rested + time.delta() } else { Duration::ZERO };
     let goes_on = turns.rested >= REST && turns.goes_on(&run, &following, (&mode, on_stage));
     let asked = turns.asked.take();
@@ -201,9 +196,9 @@ mod tests {
         assert!(!goes_on(&Turns::new(false), &StageMode::Race));
         turns.take(Turn::Next);
         assert!(goes_on(&turns, &StageMode::Solo));
-        turns.set_held(true);
+        turns.is_held = true;
         assert!(!goes_on(&turns, &StageMode::Solo), "nothing is visible");
-        turns.set_held(false);
+        turns.is_held = false;
         turns.set_on(false);
         assert!(!goes_on(&turns, &StageMode::Solo), "the next presentation begins afresh");
     }

@@ -210,7 +210,6 @@ fn words_of(command: &Command, before: &RunPlan, after: &RunPlan) -> Option<(Str
         Command::Plan(command) => match command {
             PlanCommand::SetField { field, .. } => return Some((field.clone(), changes())),
             PlanCommand::SetFields(_) | PlanCommand::UseWorldOfLane => ("several", changes()),
-            PlanCommand::SetPopulation(_) => ("evolution.population", changes()),
             PlanCommand::SetSeed(seed) => ("seed", format!("seed {seed}")),
             PlanCommand::SetPreset(name) | PlanCommand::StorePreset(name) => {
                 ("preset", format!("preset {name}"))
@@ -297,10 +296,7 @@ mod tests {
     }
 
     fn set(text: &str) -> Command {
-        Command::Plan(PlanCommand::SetField {
-            field: "trial.surface.friction".to_owned(),
-            text: text.to_owned(),
-        })
+        Command::Plan(PlanCommand::set("trial.surface.friction", text))
     }
 
     /// Returns the plans before and after a step.

@@ -26,10 +26,8 @@ pub(crate) enum WorldChange<'a> {
 /// The champions on the stage, and the state from which a change of their world is tried.
 #[derive(Clone, Copy)]
 pub(crate) struct ChangedStage<'a> {
-    /// Champions by lane; the first is the original.
-    pub on_show: &'a [StagedChampion],
-    /// Relation between the lanes.
-    pub mode: &'a StageMode,
+    /// Champions by lane, of which the first is the original, and the relation between them.
+    pub show: &'a Show,
     /// Rollout of the original at the time of the change; `None` for its start.
     pub moment: Option<&'a Rollout>,
 }
@@ -37,9 +35,9 @@ pub(crate) struct ChangedStage<'a> {
 impl ChangedStage<'_> {
     /// Returns the champion whose world the next run has: that of the current lane in a what-if, or else the original.
     pub fn current(&self) -> Option<&StagedChampion> {
-        match self.mode {
-            StageMode::WhatIf { current, .. } => self.on_show.get(*current),
-            _ => self.on_show.first(),
+        match self.show.mode {
+            StageMode::WhatIf { current, .. } => self.show.champions.get(current),
+            _ => self.show.champions.first(),
         }
     }
 
@@ -54,12 +52,13 @@ impl ChangedStage<'_> {
         trial: &Trial,
         label: String,
     ) -> Result<Show, String> {
-        let (before, beside) = match self.mode {
+        let (before, beside) = match &self.show.mode {
             StageMode::WhatIf { before, beside, .. } => (before.clone(), beside.clone()),
             _ => (Box::new(before.clone()), Vec::new()),
         };
         // All lanes are simulated, so that their only difference is the change.
-        let staying = self.on_show.iter().take(1 + beside.len()).map(StagedChampion::simulated);
+        let staying =
+            self.show.champions.iter().take(1 + beside.len()).map(StagedChampion::simulated);
         let mut champions: Vec<StagedChampion> = staying.collect();
         let Some(original) = champions.first().cloned() else {
             return Err("There is no snake on the stage.".to_owned());
@@ -107,7 +106,7 @@ pub(crate) fn what_if(
         WorldChange::Fields(changes) => run.set_fields(changes)?,
         WorldChange::Preset(name) => run.set_preset(name)?,
     }
-    let Some(original) = stage.on_show.first() else { return Ok(None) };
+    let Some(original) = stage.show.champions.first() else { return Ok(None) };
     // The change is added to those of the current lane.
     let so_far = stage.current().unwrap_or(original);
     let next = run.next_settings();
@@ -146,18 +145,14 @@ pub(crate) fn what_if(
 ///
 /// # Errors
 /// No copy can be kept; the error states the reason.
-pub(crate) fn another_beside(
-    run: &CurrentRun,
-    on_show: Vec<StagedChampion>,
-    mode: &StageMode,
-) -> Result<Show, String> {
-    match mode {
-        StageMode::WhatIf { before, beside, current } if mode.can_try_another() => {
-            let (before, mut beside) = (before.clone(), beside.clone());
+pub(crate) fn another_beside(run: &CurrentRun, show: Show) -> Result<Show, String> {
+    let can_try_another = show.mode.can_try_another();
+    match show.mode {
+        StageMode::WhatIf { before, mut beside, current } if can_try_another => {
             beside.push(run.next_plan().clone());
-            Ok(what_if_of(on_show, before, beside, *current))
+            Ok(what_if_of(show.champions, before, beside, current))
         }
-        StageMode::WhatIf { beside, current, .. } if *current > beside.len() => {
+        StageMode::WhatIf { beside, current, .. } if current > beside.len() => {
             Err("There is no room for another copy: discard one first.".to_owned())
         }
         _ => Err("Change a setting of the Change panel first.".to_owned()),
@@ -165,37 +160,32 @@ pub(crate) fn another_beside(
 }
 
 /// Discards the latest copy. The next run gets the world of the previous lane.
-pub(crate) fn dropped(
-    run: &mut CurrentRun,
-    on_show: &[StagedChampion],
-    mode: &StageMode,
-) -> Result<Option<Show>, String> {
-    let StageMode::WhatIf { before, beside, .. } = mode else { return Ok(None) };
-    let current = on_show.len().saturating_sub(2);
+pub(crate) fn dropped(run: &mut CurrentRun, show: &Show) -> Result<Option<Show>, String> {
+    let StageMode::WhatIf { before, beside, .. } = &show.mode else { return Ok(None) };
+    let current = show.champions.len().saturating_sub(2);
     let mut beside = beside.clone();
     beside.truncate(current);
     run.undo_world(beside.last().unwrap_or(before))?;
-    Ok(Some(what_if_of(on_show[..=current].to_vec(), before.clone(), beside, current)))
+    Ok(Some(what_if_of(show.champions[..=current].to_vec(), before.clone(), beside, current)))
 }
 
 /// Returns the lane of a what-if whose world the next run has, alone and from the start.
-pub(crate) fn kept(on_show: &[StagedChampion], mode: &StageMode) -> Option<Show> {
-    let StageMode::WhatIf { current, .. } = mode else { return None };
-    on_show.get(*current).map(|staged| Show::solo(staged.shown_from_start()))
+pub(crate) fn kept(show: &Show) -> Option<Show> {
+    let StageMode::WhatIf { current, .. } = show.mode else { return None };
+    show.champions.get(current).map(|staged| Show::solo(staged.shown_from_start()))
 }
 
 /// Keeps only one changed lane of a what-if, from the start. The next run gets its world.
 pub(crate) fn kept_lane(
     run: &mut CurrentRun,
-    on_show: &[StagedChampion],
-    mode: &StageMode,
+    show: &Show,
     lane: usize,
 ) -> Result<Option<Show>, String> {
-    let StageMode::WhatIf { beside, .. } = mode else { return Ok(None) };
+    let StageMode::WhatIf { beside, .. } = &show.mode else { return Ok(None) };
     if let Some(plan) = lane.checked_sub(1).and_then(|index| beside.get(index)) {
         run.undo_world(plan)?;
     }
-    Ok(on_show.get(lane).map(|staged| Show::solo(staged.shown_from_start())))
+    Ok(show.champions.get(lane).map(|staged| Show::solo(staged.shown_from_start())))
 }
 
 #[cfg(test)]

@@ -1,9 +1,7 @@
 //! Effect of each command on the way back to earlier scenes of the stage.
 
 use super::stage::StageParams;
-use crate::studio::commands::{
-    BodyCommand, Command, ExamCommand, PlanCommand, RunCommand, StageCommand,
-};
+use crate::studio::commands::{BodyCommand, Command, ExamCommand, PlanCommand, StageCommand};
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::way_back::{Excursion, LeftScene, WayBack};
 use crate::studio::stage::StageMode;
@@ -23,12 +21,8 @@ enum Effect {
     Forget,
 }
 
-/// Whether the stage is presented and whether a lesson is open, before a command or after it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FrameState {
-    pub is_presenting: bool,
-    pub is_lesson: bool,
-}
+/// Excursions that last from a command that begins them to one that ends them, whatever the commands between show.
+const FRAMES: [Excursion; 2] = [Excursion::Presenting, Excursion::Lesson];
 
 /// Returns the effect of a command that shows `shown`, if anything, on a stage in the mode `from`.
 fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &WayBack) -> Effect {
@@ -49,7 +43,9 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
         Command::Exam(ExamCommand::BackToOwnStairs) => Effect::Leave(Excursion::Exam),
         Command::Body(BodyCommand::Close) => Effect::Leave(Excursion::Body),
         _ if shown.is_none() => Effect::None,
-        Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) => Effect::Settle,
+        Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) | Command::Run(_) => {
+            Effect::Settle
+        }
         Command::Plan(_) | Command::Undo | Command::Redo => match shown.map(is_what_if) {
             Some(true) if !is_what_if(from) => Effect::Enter(Excursion::WhatIf),
             Some(false) if is_what_if(from) => Effect::Leave(Excursion::WhatIf),
@@ -71,69 +67,63 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
         Command::Exam(_) => Effect::Enter(Excursion::Exam),
         Command::Body(_) => Effect::Enter(Excursion::Body),
         Command::Stage(ShowGeneration(_)) | Command::Lesson(_) => Effect::Forget,
-        Command::Run(
-            RunCommand::Start | RunCommand::New | RunCommand::Reset | RunCommand::Continue(_),
-        ) => Effect::Forget,
         _ => Effect::None,
     }
 }
 
+/// Returns whether a command may begin an excursion, so that the scene before it has to be copied.
+fn may_begin(command: &Command) -> bool {
+    use Command::{Machines, Notify, Player, Quit, Run, Share, View};
+    !matches!(command, Run(_) | Player(_) | View(_) | Share(_) | Machines(_) | Notify(_) | Quit)
+}
+
 impl StageParams<'_, '_> {
-    /// Returns the present scene without its lanes, which are copied only when an excursion begins.
-    pub(super) fn scene(&self, camera: &CameraRig) -> LeftScene {
-        LeftScene {
+    /// Returns the scene before a command, if the command may begin an excursion. The lanes are copied only when it does.
+    pub(super) fn scene(&self, command: &Command, camera: &CameraRig) -> Option<LeftScene> {
+        may_begin(command).then(|| LeftScene {
             mode: self.mode.clone(),
             lanes: Vec::new(),
             playback: self.playback.clone(),
             camera: camera.clone(),
             selected: (self.selection.lane, self.selection.limb),
             following: self.following.clone(),
-        }
+        })
     }
 
     /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
-    /// is the scene before the command.
+    /// is the scene before the command: see [`Self::scene`]. `before` and `after` tell which of [`FRAMES`] were open
+    /// before and after the command.
     pub(super) fn finish(
         &mut self,
         command: &Command,
-        left: LeftScene,
-        (before, after): (FrameState, FrameState),
+        left: Option<LeftScene>,
+        (before, after): ([bool; 2], [bool; 2]),
         camera: &mut CameraRig,
     ) {
         let shown = self.pending.take();
         let mode = shown.as_ref().map(|show| &show.mode);
-        let (presents, teaches) = (Excursion::Presenting, Excursion::Lesson);
-        let effect = match (before, after) {
+        let changed =
+            FRAMES.into_iter().enumerate().find(|(index, _)| before[*index] != after[*index]);
+        let effect = match changed {
             // A lesson ends a presentation, and returns to the scene before it.
-            (
-                FrameState { is_presenting: true, is_lesson: false },
-                FrameState { is_presenting: false, is_lesson: true },
-            ) => {
-                self.way_back.turn(presents, teaches);
+            Some((_, frame)) if (before, after) == ([true, false], [false, true]) => {
+                self.way_back.turn(frame, Excursion::Lesson);
                 Effect::None
             }
-            (FrameState { is_presenting: false, .. }, FrameState { is_presenting: true, .. }) => {
-                Effect::Enter(presents)
-            }
-            (FrameState { is_presenting: true, .. }, FrameState { is_presenting: false, .. }) => {
-                Effect::Leave(presents)
-            }
-            (FrameState { is_lesson: false, .. }, FrameState { is_lesson: true, .. }) => {
-                Effect::Enter(teaches)
-            }
-            (FrameState { is_lesson: true, .. }, FrameState { is_lesson: false, .. }) => {
-                Effect::Leave(teaches)
-            }
-            _ => effect(command, &left.mode, mode, &self.way_back),
+            Some((index, frame)) if after[index] => Effect::Enter(frame),
+            Some((_, frame)) => Effect::Leave(frame),
+            None => effect(command, &self.mode, mode, &self.way_back),
         };
         match effect {
             Effect::None => {}
             Effect::Enter(excursion) => {
-                let lanes = &self.lanes;
-                self.way_back.enter(excursion, || {
-                    let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
-                    LeftScene { lanes, ..left }
-                });
+                if let Some(left) = left {
+                    let lanes = &self.lanes;
+                    self.way_back.enter(excursion, || {
+                        let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
+                        LeftScene { lanes, ..left }
+                    });
+                }
             }
             Effect::Leave(excursion) => {
                 if let Some(scene) = self.way_back.leave(excursion) {

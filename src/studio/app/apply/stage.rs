@@ -13,7 +13,7 @@ use crate::studio::stage::opening::OpeningChampions;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{Show, StageMode, end_s, spawn};
+use crate::studio::stage::{Show, StageMode, end_s, placed};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
@@ -72,14 +72,19 @@ impl StageParams<'_, '_> {
         lanes.into_iter().map(|lane| lane.staged().clone()).collect()
     }
 
-    /// Returns the champions on the stage. In a race, the champion of the selected lane is first, because a change of
-    /// the world applies to the first.
-    pub fn champions_to_change(&self) -> Vec<StagedChampion> {
-        let mut champions = self.champions();
-        if *self.mode == StageMode::Race && self.selection.lane < champions.len() {
-            champions.swap(0, self.selection.lane);
+    /// Returns a request for what is on the stage.
+    fn shown(&self) -> Show {
+        Show { champions: self.champions(), mode: self.mode.clone() }
+    }
+
+    /// Returns a request for what is on the stage. In a race, the champion of the selected lane is first, because a change
+    /// of the world applies to the first.
+    fn to_change(&self) -> Show {
+        let mut shown = self.shown();
+        if shown.mode == StageMode::Race && self.selection.lane < shown.champions.len() {
+            shown.champions.swap(0, self.selection.lane);
         }
-        champions
+        shown
     }
 
     /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
@@ -113,12 +118,12 @@ impl StageParams<'_, '_> {
             self.commands.entity(entity).despawn();
         }
         for lane in scene.lanes {
-            spawn(&mut self.commands, lane.back());
+            self.commands.spawn(placed(lane.back()));
         }
         *self.mode = scene.mode;
         self.playback.restore(&scene.playback);
         (self.selection.lane, self.selection.limb) = scene.selected;
-        *self.following = scene.following;
+        self.following.restore(scene.following);
         *camera = scene.camera;
     }
 
@@ -132,24 +137,21 @@ impl StageParams<'_, '_> {
 
     /// Returns a request for the present champions, with that of the selected lane replaced.
     fn in_place(&self, replace: impl Fn(&StagedChampion) -> StagedChampion) -> Show {
-        let mut champions = self.champions();
-        if let Some(focused) = champions.get_mut(self.selection.lane) {
+        let mut shown = self.shown();
+        if let Some(focused) = shown.champions.get_mut(self.selection.lane) {
             *focused = replace(focused);
         }
-        Show { champions, mode: self.mode.clone() }
+        shown
     }
 
-    /// Keeps the change of a what-if when a run starts, because the run uses it.
-    pub fn settle(&mut self) {
-        let kept = kept(&self.champions(), &self.mode);
-        self.present_for_now(kept);
-    }
-
-    /// Describes the change of the what-if on the stage; returns `None` if there is none.
-    pub fn tried_change(&self) -> Option<String> {
-        let kept = kept(&self.champions(), &self.mode)?;
+    /// Keeps the change of a what-if, for example when a run that uses it starts. Describes the change; returns `None`
+    /// if there is none.
+    pub fn settle(&mut self) -> Option<String> {
+        let kept = kept(&self.shown())?;
         let changed = kept.champions.iter().find(|staged| staged.is_changed());
-        changed.map(|staged| staged.label().to_owned())
+        let change = changed.map(|staged| staged.label().to_owned());
+        self.present_for_now(Some(kept));
+        change
     }
 
     /// Executes a command to the lanes of the stage.
@@ -160,7 +162,45 @@ impl StageParams<'_, '_> {
         opening: &OpeningChampions,
         notices: &mut Notices,
     ) -> Result<(), String> {
-        let show = match command {
+        match command {
+            StageCommand::ToggleFollowEvolution if self.following.follows_evolution() => {
+                self.following.stop();
+            }
+            StageCommand::ToggleFollowEvolution => self.following.follow_evolution(),
+            StageCommand::TellStory => self.following.tell_story(run)?,
+            StageCommand::TakeTurn(turn) => self.turns.take(*turn),
+            // The scene comes back when the command is finished.
+            StageCommand::Leave => {}
+            StageCommand::Single => self.leave_single(notices),
+            StageCommand::KeepChange => drop(self.settle()),
+            // The clock continues, because nothing on the stage changes.
+            StageCommand::TryAnother => *self.pending = Some(another_beside(run, self.shown())?),
+            StageCommand::ShowAsFound => {
+                self.present(Some(self.in_place(StagedChampion::as_found)))
+            }
+            StageCommand::Simulate => self.present(Some(self.in_place(StagedChampion::simulated))),
+            StageCommand::Focus(lane) => (self.selection.lane, self.selection.limb) = (*lane, None),
+            StageCommand::Show(_)
+            | StageCommand::Join(_)
+            | StageCommand::ShowGeneration(_)
+            | StageCommand::Sweep(_)
+            | StageCommand::RaceStairs
+            | StageCommand::RaceGenerations
+            | StageCommand::RaceLeaders(_) => {
+                self.present_others(self.chosen(command, run, opening)?, notices);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the other champions that a command chooses for the stage, if there are any.
+    fn chosen(
+        &self,
+        command: &StageCommand,
+        run: &CurrentRun,
+        opening: &OpeningChampions,
+    ) -> Result<Option<Show>, String> {
+        Ok(match command {
             // The individual may have been replaced since the click. Then nothing happens.
             StageCommand::Show(pick) => champion_of(pick, run, opening).map(Show::solo),
             StageCommand::Join(pick) => {
@@ -180,84 +220,42 @@ impl StageParams<'_, '_> {
                     format!("All snakes of generation {number} were disqualified.")
                 })?)
             }
-            StageCommand::ToggleFollowEvolution => {
-                if self.following.follows_evolution() {
-                    self.following.stop();
-                } else {
-                    self.following.follow_evolution();
-                }
-                None
-            }
-            StageCommand::TellStory => {
-                self.following.tell_story(run)?;
-                None
-            }
             StageCommand::Sweep(field) => {
-                let on_show = self.champions_to_change();
-                on_show.first().map(|champion| sweep(champion, field)).transpose()?
+                let champions = self.to_change().champions;
+                champions.first().map(|champion| sweep(champion, field)).transpose()?
             }
             StageCommand::RaceStairs => {
-                let on_show = self.champions_to_change();
-                on_show.first().map(stairs_race).transpose()?
+                self.to_change().champions.first().map(stairs_race).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
-            StageCommand::TakeTurn(turn) => {
-                self.turns.take(*turn);
-                None
-            }
-            // The scene comes back when the command is finished.
-            StageCommand::Leave => None,
-            StageCommand::Single
-                if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) =>
-            {
-                None
-            }
-            StageCommand::Single => {
-                self.following.stop();
-                let left = self.champions().into_iter().nth(self.selection.lane);
-                if let Some(left) = left.iter().find(|left| left.is_changed()) {
-                    let text = format!(
-                        "The stage keeps {}. The settings in the Change panel do not.",
-                        left.label()
-                    );
-                    let take = Command::Plan(PlanCommand::UseWorldOfLane);
-                    notices.offer("world", text, [("Use this world", take)]);
-                }
-                // The clock goes on, so that the snake is seen at the same moment as among the others.
-                *self.pending = left.map(Show::solo);
-                None
-            }
-            StageCommand::KeepChange => {
-                self.settle();
-                None
-            }
-            StageCommand::TryAnother => {
-                // The clock continues, because nothing on the stage changes.
-                *self.pending = Some(another_beside(run, self.champions(), &self.mode)?);
-                None
-            }
-            StageCommand::ShowAsFound => {
-                self.present(Some(self.in_place(StagedChampion::as_found)));
-                None
-            }
-            StageCommand::Simulate => {
-                self.present(Some(self.in_place(StagedChampion::simulated)));
-                None
-            }
-            StageCommand::Focus(lane) => {
-                (self.selection.lane, self.selection.limb) = (*lane, None);
-                None
-            }
-        };
-        self.present_others(show, notices);
-        Ok(())
+            _ => None,
+        })
+    }
+
+    /// Leaves only the selected one of several snakes on the stage, and offers its world for the next run.
+    fn leave_single(&mut self, notices: &mut Notices) {
+        if matches!(*self.mode, StageMode::Solo | StageMode::WhatIf { .. }) {
+            return;
+        }
+        self.following.stop();
+        let left = self.champions().into_iter().nth(self.selection.lane);
+        if let Some(left) = left.iter().find(|left| left.is_changed()) {
+            let text = format!(
+                "The stage keeps {}. The settings in the Change panel do not.",
+                left.label()
+            );
+            let take = Command::Plan(PlanCommand::UseWorldOfLane);
+            notices.offer("world", text, [("Use this world", take)]);
+        }
+        // The clock goes on, so that the snake is seen at the same moment as among the others.
+        *self.pending = left.map(Show::solo);
     }
 
     /// Executes a command to the clock of the stage.
     pub fn apply_to_player(&mut self, command: &PlayerCommand) {
         let focused = self.all_lanes().find(|lane| lane.number() == self.selection.lane);
-        let step_s = focused.map_or(1.0, Lane::step_s);
+        let step_s = focused.map_or(1.0, |lane| lane.step_s);
         let end_s = end_s(self.all_lanes());
         self.playback.apply(command, step_s, end_s);
     }

@@ -11,7 +11,6 @@ use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::opening::NamedChampion;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::{Show, StageMode};
@@ -31,10 +30,7 @@ fn app() -> App {
         .add_message::<ScreenshotArea>()
         .init_resource::<QuitRequest>()
         .insert_resource(prepared_run())
-        .insert_resource(OpeningChampions(vec![NamedChampion {
-            name: "climber".to_owned(),
-            loaded,
-        }]))
+        .insert_resource(OpeningChampions(vec![("climber".to_owned(), loaded)]))
         .insert_resource(Library::new(snakes_core::save::SavesFolder::find(None)))
         .init_resource::<Files>()
         .init_resource::<Notices>()
@@ -60,8 +56,7 @@ fn app() -> App {
 
 /// Creates a command that sets the friction of the next run.
 fn set(friction: &str) -> Command {
-    let (field, text) = ("trial.surface.friction".to_owned(), friction.to_owned());
-    Command::Plan(PlanCommand::SetField { field, text })
+    Command::Plan(PlanCommand::set("trial.surface.friction", friction))
 }
 
 /// Sends one command per frame and returns the friction of the next run.
@@ -105,7 +100,7 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
         let step = current.changes_at_step();
         *app.world_mut().resource_mut::<StageMode>() = mode;
         let playback = app.world().resource::<Playback>();
-        assert!(playback.is_playing(), "or there would be nothing to see");
+        assert!(playback.is_playing, "or there would be nothing to see");
         (step, playback.time_s())
     };
     let goes_to = |time_s| {
@@ -115,9 +110,7 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
     };
     assert_eq!(tried("0.3", &|playback| playback.hold_at(5.0)), (Some(300), 5.0));
     let plays_on = |playback: &mut Playback| {
-        (0..8).for_each(|_| {
-            playback.pass(0.5, 1.0, 15.0);
-        })
+        (0..8).for_each(|_| playback.pass(0.5, 1.0, 15.0));
     };
     assert_eq!(tried("0.4", &plays_on), (Some(300), 5.0));
     assert_eq!(tried("0.5", &goes_to(3.0)), (Some(180), 3.0));
@@ -135,7 +128,7 @@ fn a_preset_a_seed_and_a_group_of_settings_are_one_undo_step_each() {
     for command in [
         Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
         Command::Plan(PlanCommand::SetSeed(77)),
-        Command::Plan(PlanCommand::SetPopulation(9)),
+        Command::Plan(PlanCommand::set("evolution.population", "9")),
         Command::Plan(PlanCommand::SetFields(back.to_vec())),
     ] {
         friction_after(&mut app, &[command]);
@@ -189,7 +182,7 @@ fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
     app.world_mut().write_message_batch(commands);
     app.update();
     assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
-    assert!(!app.world().resource::<Playback>().is_playing(), "and paused");
+    assert!(!app.world().resource::<Playback>().is_playing, "and paused");
 }
 
 #[test]

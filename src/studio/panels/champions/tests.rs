@@ -10,7 +10,7 @@ use snakes_core::schema::PerPart;
 use snakes_core::score::Fitness;
 
 /// Creates the panel with these champions. Two snakes can race in each generation.
-fn panel<'a>(opening: &'a [NamedChampion], reports: &'a [GenerationReport]) -> Sent<'a> {
+fn panel<'a>(opening: &'a [(String, LoadedChampion)], reports: &'a [GenerationReport]) -> Sent<'a> {
     let mut panel = ChampionsPanel::default();
     testing::panel([360.0, 400.0], move |ui, commands| {
         let shown = &[ShownLane { champion: ShownChampion::Opening(0), lane: None }];
@@ -50,7 +50,7 @@ fn the_summary_is_updated_after_a_report_and_in_another_run() {
 #[test]
 fn a_click_on_a_generation_shows_its_champion() {
     let loaded = shipped_champion().expect("well formed");
-    let opening = [NamedChampion { name: "climber".to_owned(), loaded }];
+    let opening = [("climber".to_owned(), loaded)];
     let reports = [report(1, 1.0), report(2, 2.0)];
     let mut panel = panel(&opening, &reports);
     panel.get_by_label_contains("Generation 2").click();

@@ -11,6 +11,7 @@ use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{GenerationRecord, RunPlan, Statistics};
+use snakes_core::save::settings_in_words;
 use snakes_lab::plot::{Chart, Figure, Role, Series, Shape};
 
 /// Colours of the other runs, in the order of their selection.
@@ -33,10 +34,11 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
         Some([f64::from(record.generation), best, median])
     };
     let own = run.reports().iter().filter_map(|report| point(&report.record));
-    let name = format!("this run ({}, seed {})", run.settings_in_words(), run.seed());
+    let name =
+        format!("this run ({}, seed {})", settings_in_words(&run.plan_now), run.plan_now.seed);
     let mut curves = vec![Curves { name: name.into(), role: Role::First, points: own.collect() }];
     let mut rewards_differ = false;
-    for (compared, role) in run.others().compared().iter().zip(ROLES) {
+    for (compared, role) in run.others.compared.iter().zip(ROLES) {
         let Some(Ok(other)) = &compared.read else { continue };
         rewards_differ |= other.plan.settings.trial.fitness != fitness;
         let points = other.records.iter().filter_map(point);
@@ -87,8 +89,8 @@ fn title(settings: &str, plan: &RunPlan) -> String {
 
 /// Draws the list of runs to select, and the errors of runs that cannot be read.
 pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    let others = run.others();
-    for compared in others.compared() {
+    let others = &run.others;
+    for compared in &others.compared {
         let name = compared.folder.file_name().unwrap_or_default().display();
         match &compared.read {
             None => explain(ui, &format!("Loading {name}…")),
@@ -101,9 +103,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             Some(Ok(_)) => {}
         }
     }
-    let Some(runs) = others.runs() else { return explain(ui, "Loading the list of runs…") };
-    let listed = runs.iter().zip(others.settings());
-    let mut choices = listed.filter(|(other, _)| other.folder != run.folder()).peekable();
+    let Some(runs) = &others.runs else { return explain(ui, "Loading the list of runs…") };
+    let mut choices = runs.iter().filter(|(other, _)| other.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
@@ -115,10 +116,10 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
     });
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
         for (other, settings) in choices {
-            let mut is_shown = others.compared().iter().any(|of| of.folder == other.folder);
+            let mut is_shown = others.compared.iter().any(|of| of.folder == other.folder);
             let name = other.name.clone().unwrap_or_else(|| title(settings, &other.plan));
             let name = format!("{name}, {}", other.generations_in_words());
-            let is_on = is_shown || others.compared().len() < MOST_COMPARED;
+            let is_on = is_shown || others.compared.len() < MOST_COMPARED;
             let response = ui.add_enabled(is_on, egui::Checkbox::new(&mut is_shown, name));
             let hint = format!("Add this run to the chart: {}", other.folder.display());
             let refusal = format!("{MOST_COMPARED} runs are selected; deselect one of them first");

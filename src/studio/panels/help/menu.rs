@@ -82,13 +82,13 @@ const BEFORE_RECENT: &str = "Open…";
 
 /// Draws the submenu of recent files: names, with full paths as tooltips.
 fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Command>) {
-    ui.add_enabled_ui(recent.paths().len() > 0, |ui| {
+    ui.add_enabled_ui(!recent.0.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(theme::MENU_WIDTH);
-            for path in recent.paths() {
+            for path in &recent.0 {
                 let button = egui::Button::new(short_name(path)).truncate();
                 if ui.add(button).on_hover_text(path.display().to_string()).clicked() {
-                    let paths = vec![path.to_owned()];
+                    let paths = vec![path.clone()];
                     commands.push(Command::File(FileCommand::Answer(FileQuestion::Open, paths)));
                     ui.close();
                 }

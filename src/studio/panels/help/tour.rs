@@ -263,7 +263,7 @@ mod tests {
         let player = std::cell::RefCell::new(crate::studio::stage::playback::Playback::default());
         let mut cards = Tour::default();
         let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui(|ui| {
-            let player_commands = player.borrow().commands();
+            let player_commands = player.borrow().commands;
             cards.ui(&ui.ctx().clone(), 0, None, player_commands, &mut Vec::new());
         });
         // At the first start, the stage is paused until the first generation is finished.

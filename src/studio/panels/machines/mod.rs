@@ -46,7 +46,7 @@ impl MachinesPanel {
             "Other computers can evaluate snakes of your run, too. No result depends on it.",
         );
         self.address(ui, link, commands);
-        match link.state() {
+        match &link.state {
             LinkState::Off => {
                 state(ui, theme::of(ui).text_weak, "Not connected");
                 first_steps(ui, commands);
@@ -54,7 +54,7 @@ impl MachinesPanel {
             LinkState::Connecting(reason) => {
                 ui.horizontal(|ui| {
                     ui.spinner();
-                    ui.label(format!("Connecting to {}…", link.address()));
+                    ui.label(format!("Connecting to {}…", link.address));
                 });
                 reason.iter().for_each(|reason| problem(ui, reason));
             }
@@ -69,14 +69,14 @@ impl MachinesPanel {
 
     /// Draws the address field and the button beside it.
     fn address(&mut self, ui: &mut egui::Ui, link: &MachinesLink, commands: &mut Vec<Command>) {
-        let is_off = matches!(link.state(), LinkState::Off | LinkState::Failed(_));
-        let mut text = self.text.clone().unwrap_or_else(|| link.address().to_owned());
+        let is_off = matches!(link.state, LinkState::Off | LinkState::Failed(_));
+        let mut text = self.text.clone().unwrap_or_else(|| link.address.to_owned());
         let (mut is_asked, mut is_left) = (false, false);
         ui.add_space(theme::GAP / 2.0);
         ui.horizontal(|ui| {
             let name = ui.label("Server");
             at_right(ui, |ui| {
-                let (label, hint) = match link.state() {
+                let (label, hint) = match &link.state {
                     LinkState::Connected(_) => {
                         ("Disconnect", "Compute on this computer only, from the next generation on")
                     }
@@ -182,7 +182,7 @@ fn connected(
         }
         title(ui, heading);
         explain(ui, &format!("Type this on {other}, where this program is installed:"));
-        worker_command(ui, link.address(), commands);
+        worker_command(ui, &link.address, commands);
         queues(ui, link.address(), known, machines, commands);
     }
 }

@@ -169,7 +169,7 @@ pub(crate) fn around_stage(
         let at = limb_place(context, (stage, &others), on_stage, (lanes, focused), (limb, size));
         // The card ignores the pointer, because a snake may be behind the card.
         let place = card(LIMB_CARD, egui::Align2::LEFT_TOP, at.min).interactable(false);
-        let is_playing = on_stage.playback.is_playing();
+        let is_playing = on_stage.playback.is_playing;
         let shown = place.show(context, |ui| {
             frame.show(ui, |ui| limb_card(ui, focused, limb, is_playing, size));
         });

@@ -46,7 +46,7 @@ impl ClimbEvent {
 /// Returns the events of a lane's rollout in the order of time, as far as they are known. For a recording, only the landing is known.
 pub(super) fn events(lane: &Lane) -> Vec<ClimbEvent> {
     match lane.history() {
-        Some(history) => of_history(history, &lane.trial().stairs, lane.step_s()),
+        Some(history) => of_history(history, &lane.trial().stairs, lane.step_s),
         None => {
             let landed_s = lane.landed_s(f64::INFINITY);
             let landed = landed_s.map(|time_s| ClimbEvent { time_s, kind: ClimbEventKind::Landed });

@@ -34,7 +34,7 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     let stairs = &lane.trial().stairs;
     let history = lane.history().filter(|_| !lane.is_disturbed());
     let splits_s =
-        history.map(|history| splits_s(stairs, history, lane.step_s(), time_s)).unwrap_or_default();
+        history.map(|history| splits_s(stairs, history, lane.step_s, time_s)).unwrap_or_default();
     if splits_s.is_empty() {
         ui.label("No step climbed so far.");
         return;

@@ -143,10 +143,10 @@ impl PresentedCaption {
 
 /// Describes the state of the current run; returns `None` during a lesson, or if the run has not begun.
 fn evolution(run: &CurrentRun) -> Option<String> {
-    if run.is_lent() {
+    if run.is_lent {
         return None;
     }
-    let (done, all) = (run.reports().len(), run.most_generations_in_words());
+    let (done, all) = (run.reports().len(), run.plan_now.most_generations_in_words());
     match run.status() {
         RunStatus::Running => Some(format!("Evolution: generation {} of {all}", done + 1)),
         RunStatus::Paused => Some(format!("Evolution paused after generation {done}")),

@@ -120,7 +120,7 @@ impl TimelinePanel {
 
 /// Draws the playback buttons, the speed and the time.
 fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec<Command>) {
-    let play = match playback.is_playing() {
+    let play = match playback.is_playing {
         true => (Icon::Pause, "Pause", PlayerCommand::Toggle),
         false => (Icon::Play, "Play", PlayerCommand::Toggle),
     };
@@ -131,7 +131,7 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
         (Icon::StepForward, "Next physics step", PlayerCommand::Step { forward: true }),
         (Icon::Loop, "Loop: start again at the end", PlayerCommand::ToggleLoop),
     ] {
-        let (is_on, command) = (icon == Icon::Loop && playback.loops(), Command::Player(command));
+        let (is_on, command) = (icon == Icon::Loop && playback.loops, Command::Player(command));
         let button = icon_button(ui, icon, is_on);
         if hint_of_command(button, hint, &command).clicked() {
             commands.push(command);

@@ -238,7 +238,7 @@ fn shapes(
 ) -> Vec<Shape> {
     let samples: Vec<&[JointTorque]> = history.torques().collect();
     let joints = &lane.body().joints;
-    let sample_s = lane.step_s() * f64::from(history.sample_steps());
+    let sample_s = lane.step_s * f64::from(history.sample_steps());
     let row_height = plot.height() / joints.len().max(1) as f32;
     let columns = (plot.width() / COLUMN_WIDTH).max(1.0) as usize;
     let mut shapes = Vec::new();
@@ -280,7 +280,7 @@ fn shapes(
 fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
     let mut text = format!("{time_s:.2} s: click or drag to go there");
     let Some(history) = lane.history().filter(|_| is_known) else { return text };
-    let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
+    let sample = (time_s / (lane.step_s * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
         for (joint, torque) in (1..).zip(torques) {
             // Turns -0.0 into 0.0.

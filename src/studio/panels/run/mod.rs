@@ -119,7 +119,7 @@ impl EvolutionPanel {
         preset_switch(ui, run, commands);
         ui.horizontal(|ui| {
             let hint = "The same seed and settings always give the same run, bit for bit";
-            let seed = self.seed.ui(ui, "Seed", hint, run.next_seed(), 0..=u64::MAX);
+            let seed = self.seed.ui(ui, "Seed", hint, run.next_plan().seed, 0..=u64::MAX);
             commands.extend(seed.map(|seed| Command::Plan(PlanCommand::SetSeed(seed))));
             let hint = "Number of snakes evaluated at the same time. More threads than processor cores are no \
                         faster. The result does not depend on it";
@@ -238,7 +238,7 @@ fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
 
 /// Draws how many settings were changed during the current run, and lists the latest changes in a tooltip.
 fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
-    let changes = run.changes();
+    let changes = run.plan_now.changes.made();
     let text = match changes.len() {
         0 => return,
         1 => "1 setting changed during the run".to_owned(),

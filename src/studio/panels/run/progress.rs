@@ -21,7 +21,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let (text, share) = match run.status() {
         // The number of evaluations is fixed, so larger generations reduce the number of generations.
         RunStatus::Finished if finished < generations as usize => {
-            (finished_early(finished, generations, run.budget()), 1.0)
+            (finished_early(finished, generations, run.plan_now.budget()), 1.0)
         }
         RunStatus::Finished => (format!("Finished after generation {finished}"), 1.0),
         status => {
@@ -30,13 +30,13 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
                 RunStatus::Paused => ", paused",
                 RunStatus::Running | RunStatus::Finished => "",
             };
-            let most = run.most_generations_in_words();
+            let most = run.plan_now.most_generations_in_words();
             let text = format!("Generation {} of {most}{suffix}", finished + 1);
             (text, done as f32 / population.max(1) as f32)
         }
     };
     ui.label(text);
-    let inside = match (run.run_hash(), random_first) {
+    let inside = match (run.run_hash, random_first) {
         (Some(_), _) => "finished".to_owned(),
         (None, Some(random)) => format!("{done} of {random} random snakes first"),
         (None, None) => evaluated(done, population, run.settings().evolution.population),
@@ -50,7 +50,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text(hint);
-    if let Some(hash) = run.run_hash() {
+    if let Some(hash) = run.run_hash {
         let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
                     on every computer with an x86-64 processor";
         ui.label(weak(ui, format!("Run hash {hash:016x}"))).on_hover_text(hint);
@@ -123,7 +123,7 @@ fn evaluations_per_s(reports: &[GenerationReport]) -> Option<f64> {
 /// Returns the evaluations left in the run's budget. `done` evaluations of the current generation are finished.
 fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
     let made: u64 = run.reports().iter().map(|report| u64::from(report.evaluations)).sum();
-    run.budget().saturating_sub(made + u64::from(done))
+    run.plan_now.budget().saturating_sub(made + u64::from(done))
 }
 
 /// Describes the reasons for disqualification, the most frequent first.

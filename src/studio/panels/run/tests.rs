@@ -149,7 +149,7 @@ fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
 fn typed_population_and_threads_are_sent() {
     let run = run();
     for (label, commands) in [
-        ("Population", Command::Plan(PlanCommand::SetPopulation(40))),
+        ("Population", set("evolution.population", "40")),
         ("Generations", set("evolution.generations", "40")),
         ("Threads", Command::Run(RunCommand::SetThreads(40))),
     ] {

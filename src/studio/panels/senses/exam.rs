@@ -61,10 +61,10 @@ fn invitation(
 
 /// Draws the progress of the exam in progress, of any snake, and a button that cancels it.
 fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>) {
-    let Some(progress) = exams.progress() else { return };
-    explain(ui, &format!("Examining {}", progress.name));
-    let share = progress.done as f32 / progress.trials.max(1) as f32;
-    let words = format!("{} of {} trials", progress.done, progress.trials);
+    let Some((name, [done, trials])) = exams.progress() else { return };
+    explain(ui, &format!("Examining {name}"));
+    let share = done as f32 / trials.max(1) as f32;
+    let words = format!("{done} of {trials} trials");
     if cancellable_progress(ui, "Stop the exam", share, &words) {
         commands.push(Command::Exam(ExamCommand::Cancel));
     }

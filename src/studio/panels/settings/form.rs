@@ -260,10 +260,7 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
 
 /// Returns the command that sets a setting to a new value.
 fn set(field: &str, text: &str) -> Command {
-    Command::Plan(match text.parse() {
-        Ok(population) if field == "evolution.population" => PlanCommand::SetPopulation(population),
-        _ => PlanCommand::set(field, text),
-    })
+    Command::Plan(PlanCommand::set(field, text))
 }
 
 #[cfg(test)]

@@ -212,7 +212,6 @@ fn every_control_sends_the_value_that_was_entered() {
         panel.run();
         let sent = match &panel.state()[..] {
             [Command::Plan(PlanCommand::SetField { field, text })] => (field.clone(), text.clone()),
-            [Command::Plan(PlanCommand::SetPopulation(size))] => (full.clone(), size.to_string()),
             other => panic!("{full}: {other:?}"),
         };
         assert_eq!(sent, (full.clone(), expected.clone()));

@@ -34,7 +34,7 @@ pub(in crate::studio::panels) fn stairs_choice(
         .width(theme::COMBO_WIDTH)
         .height(theme::list_height(ui))
         .show_ui(ui, |ui| {
-            let known = run.known_stairs();
+            let known = &run.context.stairs;
             chosen = known_files(ui, known, "Your stairs", present, |named| &named.about);
         });
     let list = named(list.response, egui::WidgetType::ComboBox, "Known stairs");
@@ -50,7 +50,7 @@ pub(in crate::studio::panels) fn stairs_choice(
 
 /// Returns the name of stairs, if they are known.
 pub(super) fn name_of<'r>(run: &'r CurrentRun, stairs: &Stairs) -> Option<&'r str> {
-    let known = run.known_stairs();
+    let known = &run.context.stairs;
     let own = known.own().iter().filter_map(|own| own.content.as_ref().ok());
     let mut all = known.built_in().iter().chain(own);
     all.find(|named| named.stairs == *stairs).map(|named| named.name.as_str())
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn a_choice_sets_all_that_differs_and_is_shown_afterwards() {
         let mut run = prepared_run();
-        let all: Vec<NamedStairs> = run.known_stairs().built_in().to_vec();
+        let all: Vec<NamedStairs> = run.context.stairs.built_in().to_vec();
         assert!(all.len() >= 9);
         for NamedStairs { name, stairs, .. } in &all {
             let changes = changes(run.next_settings(), stairs);

@@ -18,6 +18,7 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, problem, title_and};
+use snakes_core::save::NamedStairs;
 use snakes_core::schema::check;
 use snakes_core::world::Stairs;
 
@@ -119,10 +120,10 @@ impl StairsPanel {
             let hint = "Save these stairs as a file, to use them again and to pass them on";
             let suggestion = || {
                 let copied = name_of(run, stairs).unwrap_or("stairs");
-                run.known_stairs().name_for_copy(copied)
+                run.context.stairs.name_for_copy(copied)
             };
             self.name.button(ui, ("Save as…", hint), suggestion);
-            let folder = run.stairs_folder();
+            let folder = run.context.saves.own_folder::<NamedStairs>();
             let refusal = Some("Save stairs first").filter(|_| !folder.is_dir());
             let hint = "Show the files of your stairs. File > Import adds the stairs of others";
             let show = Command::File(FileCommand::OpenFolder(folder));
@@ -133,7 +134,7 @@ impl StairsPanel {
                 CommandButton::new("Use those on the stage", hint, use_it).show(ui, commands);
             }
         });
-        if let Some(name) = self.name.field(ui, run.known_stairs()) {
+        if let Some(name) = self.name.field(ui, &run.context.stairs) {
             commands.push(Command::Plan(PlanCommand::StoreStairs(name)));
         }
     }

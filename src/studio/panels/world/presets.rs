@@ -23,7 +23,7 @@ pub(super) fn preset_choice(
             .selected_text(in_words(run))
             .width(theme::COMBO_WIDTH)
             .height(theme::list_height(ui))
-            .show_ui(ui, |ui| presets(ui, run.presets(), run.next_preset(), commands));
+            .show_ui(ui, |ui| presets(ui, &run.context.presets, run.next_preset(), commands));
         let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
         if list.clicked() {
             // The folder may contain new files.
@@ -31,10 +31,10 @@ pub(super) fn preset_choice(
         }
         list.on_hover_text("Replaces all settings of the next run");
         let hint = "Save the settings of the next run under a name, to use them again later";
-        let suggestion = || run.presets().name_for_copy(run.next_preset());
+        let suggestion = || run.context.presets.name_for_copy(run.next_preset());
         name.button(ui, ("Save as preset…", hint), suggestion);
     });
-    if let Some(name) = name.field(ui, run.presets()) {
+    if let Some(name) = name.field(ui, &run.context.presets) {
         commands.push(Command::Plan(PlanCommand::StorePreset(name)));
     }
 }
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn the_open_list_shows_all_presets_of_the_program_and_a_click_selects_one() {
         let run = prepared_run();
-        let last = run.presets().built_in().last().expect("shipped").name.clone();
+        let last = run.context.presets.built_in().last().expect("shipped").name.clone();
         // A click on an entry that is scrolled out of view would have no effect.
         for name in ["ice".to_owned(), last] {
             let mut panel = panel(&run);
@@ -189,7 +189,7 @@ mod tests {
     fn every_preset_of_the_program_is_in_one_group_under_a_title_of_its_own() {
         let run = prepared_run();
         let mut built_in: Vec<&str> =
-            run.presets().built_in().iter().map(|preset| preset.name.as_str()).collect();
+            run.context.presets.built_in().iter().map(|preset| preset.name.as_str()).collect();
         let listed = || GROUPS.iter().flat_map(|(_, presets)| presets.iter());
         let mut names: Vec<&str> = listed().map(|(name, _)| *name).collect();
         built_in.sort_unstable();
@@ -216,7 +216,7 @@ mod tests {
             let mut panel = panel(&run);
             clicked(&mut panel, "Save as preset…");
             assert!(panel.get_by_label("Name").is_focused());
-            let suggestion = run.presets().name_for_copy(run.next_preset());
+            let suggestion = run.context.presets.name_for_copy(run.next_preset());
             assert!(suggestion.starts_with("my-"), "{suggestion}");
             assert_eq!(panel.get_by_label("Name").value(), Some(suggestion.clone()));
             press(&mut panel, key);

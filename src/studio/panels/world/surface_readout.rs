@@ -130,7 +130,7 @@ impl<'l> ReadLanes<'l> {
             }
         };
         let are_named = matches!(*on_stage.mode, StageMode::WhatIf { .. } | StageMode::Race);
-        Self { lanes, are_named, is_playing: on_stage.playback.is_playing() }
+        Self { lanes, are_named, is_playing: on_stage.playback.is_playing }
     }
 
     /// Draws the readings of a surface. Draws nothing without lanes, or for a ground that shares the surface of the stairs.

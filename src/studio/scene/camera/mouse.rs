@@ -102,7 +102,7 @@ fn drag(
     lanes: Query<&Lane>,
     mut notices: ResMut<Notices>,
 ) {
-    let Some(held) = selection.held_mut() else { return };
+    let Some(held) = selection.held.as_mut() else { return };
     let Some(cursor) = window.cursor_position() else { return };
     if !held.is_pulling && held.pressed_at.distance(cursor) < CLICK_PIXELS {
         return;
@@ -131,8 +131,8 @@ fn release(
     lanes: Query<&Lane>,
 ) {
     let is_up = !buttons.pressed(MouseButton::Left);
-    if selection.held().is_some_and(|held| is_up || !lanes.contains(held.lane)) {
-        selection.release();
+    if selection.held.is_some_and(|held| is_up || !lanes.contains(held.lane)) {
+        selection.held = None;
     }
     if is_up && let Some(pressed_at) = earlier.beside.take() {
         let is_click =
@@ -151,7 +151,7 @@ fn clear_selection(
     added: Query<&Lane, Added<Lane>>,
 ) {
     // An earlier scene comes back with its selection.
-    if added.iter().all(Lane::is_back) {
+    if added.iter().all(|lane| lane.is_back) {
         return;
     }
     if matches!(*mode, StageMode::WhatIf { .. }) {

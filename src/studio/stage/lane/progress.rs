@@ -10,7 +10,7 @@ impl Lane {
             let history = self.history()?;
             let ways_m = history.middles_m().iter().map(|middle| middle.y).enumerate();
             let (sample, _) = ways_m.max_by(|a, b| a.1.total_cmp(&b.1))?;
-            Some(f64::from(history.sample_steps()) * sample as f64 * self.step_s())
+            Some(f64::from(history.sample_steps()) * sample as f64 * self.step_s)
         };
         self.landed_s(f64::INFINITY).or_else(furthest).unwrap_or_else(|| self.end_s())
     }

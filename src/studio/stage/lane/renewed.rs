@@ -58,11 +58,6 @@ impl Lane {
         Self { lookahead: Lookahead::of(self.staged.rollout()), ..self }
     }
 
-    /// Returns whether the lane came back with an earlier scene.
-    pub fn is_back(&self) -> bool {
-        self.is_back
-    }
-
     /// Returns the undisturbed rollout after `step` steps, simulated by this engine.
     pub fn rollout_at(&self, step: u32) -> Rollout {
         self.replay.rollout_at(step, &self.staged, self.history().map(Arc::as_ref))

@@ -23,7 +23,7 @@ fn shipped_in(engine: PhysicsEngine) -> LoadedChampion {
 fn a_context_holds_what_the_engine_sees_at_the_place_of_its_lane() {
     for engine in ENGINES {
         let mut app = stage_of(vec![shipped_in(engine); 2]);
-        play(&mut app, &[0.1], |lane| lane.replay().step() > 60);
+        play(&mut app, &[0.1], |lane| lane.replay.step() > 60);
         let world = app.world_mut();
         let mut worlds = world.query::<StagedWorld>();
         worlds.iter_mut(world).for_each(|mut held| held.hold_last_step());
@@ -59,13 +59,9 @@ fn a_context_holds_what_the_engine_sees_at_the_place_of_its_lane() {
 
 #[test]
 fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
-    let mut recorded = shipped();
-    let Champion { genome, trial, .. } = &recorded.champion;
-    recorded.recording = Some(Recording::of(genome, trial));
-    recorded.engine.version = 1;
-    for loaded in [shipped_in(PhysicsEngine::Rapier), shipped_in(PhysicsEngine::Lanes), recorded] {
+    for loaded in ENGINES.map(shipped_in).into_iter().chain([recorded()]) {
         let mut app = stage_of(vec![loaded; 2]);
-        play(&mut app, &[0.1, 0.0137], |lane| lane.replay().step() > 60);
+        play(&mut app, &[0.1, 0.0137], |lane| lane.replay.step() > 60);
         let world = app.world_mut();
         let mut worlds = world.query::<StagedWorld>();
         for mut world in worlds.iter_mut(world) {
@@ -94,7 +90,7 @@ fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
 #[test]
 fn a16_lines_show_the_shapes_of_no_ghost_even_after_a_ray_was_cast() {
     let mut app = stage_of(vec![shipped()]);
-    play(&mut app, &[0.1], |lane| lane.replay().step() > 6);
+    play(&mut app, &[0.1], |lane| lane.replay.step() > 6);
     let ghost = Lane::ghost(lane(&mut app).staged().clone(), 1);
     app.world_mut().spawn(ghost);
     let world = app.world_mut();

@@ -2,7 +2,7 @@
 
 use super::*;
 use snakes_core::evolve::{Settings, with_field};
-use snakes_core::score::{Rollout, Trial};
+use snakes_core::score::Trial;
 
 /// Physics step at which the world of the copies changes.
 const MOMENT: u32 = 312;
@@ -11,24 +11,22 @@ fn original() -> StagedChampion {
     StagedChampion::from_file(&shipped(), 0, "climber")
 }
 
-fn with_friction(text: &str) -> Trial {
-    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
-    with_field(&settings, "surface.friction", text).expect("allowed").trial
+/// Returns the trial of a champion with another value of a setting.
+fn changed(loaded: &LoadedChampion, field: &str, text: &str) -> Trial {
+    let settings = Settings { trial: loaded.champion.trial.clone(), ..Settings::default() };
+    with_field(&settings, field, text).expect("allowed").trial
 }
 
 /// Returns the original's rollout after this number of steps.
 fn original_at(step: u32) -> Rollout {
-    let mut rollout = original().rollout();
-    while rollout.step() < step {
-        assert!(rollout.advance());
-    }
-    rollout
+    rollout_after(&shipped().champion, step)
 }
 
 /// Returns a copy with this friction from [`MOMENT`] on.
 fn copy(friction: &str) -> StagedChampion {
+    let trial = changed(&shipped(), "surface.friction", friction);
     let label = format!("friction {friction}");
-    original().in_world_from(Some(&original_at(MOMENT)), &with_friction(friction), label)
+    original().in_world_from(Some(&original_at(MOMENT)), &trial, label)
 }
 
 /// Returns a what-if of the original and copies with these frictions, of which the latest is not kept.
@@ -75,23 +73,22 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
     let mut app = stage_at_moment();
     present(&mut app, what_if(&["0.3"]));
     let moment_s = f64::from(MOMENT) * step_s();
-    assert!(clock(&mut app).is_playing());
+    assert!(clock(&mut app).is_playing);
     assert_eq!(clock(&mut app).time_s(), moment_s);
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
-    assert_eq!((first.replay().step(), second.replay().step()), (MOMENT, MOMENT));
+    assert_eq!((first.replay.step(), second.replay.step()), (MOMENT, MOMENT));
     assert_eq!(first.last_poses(), original_at(MOMENT).poses());
     assert_eq!(second.last_poses(), first.last_poses());
     (0..40).for_each(|_| frame(&mut app, 0.05));
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
-    assert_eq!(first.last_poses(), original_at(first.replay().step()).poses());
+    assert_eq!(first.last_poses(), original_at(first.replay.step()).poses());
     let apart_m = first.drawn_middle().distance(second.drawn_middle());
     assert!(apart_m > 0.1, "{apart_m} m apart after two seconds on ice");
 }
 
 #[test]
 fn a_copy_in_the_other_engine_goes_on_with_the_same_motion() {
-    let settings = Settings { trial: shipped().champion.trial, ..Settings::default() };
-    let trial = with_field(&settings, "physics.engine", "lanes").expect("allowed").trial;
+    let trial = changed(&shipped(), "physics.engine", "lanes");
     let copy = original().in_world_from(Some(&original_at(MOMENT)), &trial, "lanes".to_owned());
     assert!(copy.is_changed());
     let (mut in_rapier, mut in_lanes) = (original().rollout(), copy.rollout());
@@ -129,7 +126,7 @@ fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
             frame(&mut app, 0.0);
             let lanes = lanes_of(&mut app);
             let shown = lanes[1].1;
-            assert_eq!(shown.replay().step(), step);
+            assert_eq!(shown.replay.step(), step);
             assert_eq!(shown.last_poses(), expected[step as usize - 1], "step {step}");
             if step <= MOMENT {
                 assert_eq!(shown.last_poses(), original_at(step).poses(), "step {step}");
@@ -154,7 +151,7 @@ fn while_a_copy_starts_over_the_other_lanes_stay() {
     assert_ne!(third, entities[2]);
     assert_eq!(changed.staged().label(), "friction 3");
     for lane in [original, fixed, changed] {
-        assert_eq!(lane.replay().step(), MOMENT);
+        assert_eq!(lane.replay.step(), MOMENT);
         assert_eq!(lane.last_poses(), original_at(MOMENT).poses());
     }
     assert!(original.history().is_some() && fixed.history().is_some(), "not computed again");
@@ -187,11 +184,10 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
     clock(&mut app).hold_at(moment_s);
     frame(&mut app, 0.0);
     let original = StagedChampion::from_file(&long, 0, "a champion");
-    let step = lane(&mut app).replay().step();
+    let step = lane(&mut app).replay.step();
     let moment = lane(&mut app).rollout_at(step);
-    let settings = Settings { trial: long.champion.trial, ..Settings::default() };
     let copies = ["0.3", "0.4", "0.5"].map(|friction| {
-        let trial = with_field(&settings, "surface.friction", friction).expect("allowed").trial;
+        let trial = changed(&long, "surface.friction", friction);
         let copy = original.in_world_from(Some(&moment), &trial, friction.to_owned());
         let mode = StageMode::what_if(RunPlan::new("climb", 1, Settings::default()));
         Show { champions: vec![original.clone(), copy], mode }
@@ -201,7 +197,7 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
         clock(&mut app).play_change(moment_s, moment_s);
         frame(&mut app, 0.0);
         let lanes = lanes_of(&mut app);
-        let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay().step()).collect();
+        let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay.step()).collect();
         assert_eq!(steps, [step; 2], "both are there within one frame");
     }
 }

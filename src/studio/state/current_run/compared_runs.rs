@@ -9,14 +9,14 @@ use snakes_lab::run::BackgroundTask;
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<(Vec<RunSummary>, Vec<String>)>>,
-    /// All runs in the saves folder; `None` until they are listed.
-    runs: Option<Vec<RunSummary>>,
-    /// Description of the settings of each listed run.
-    settings: Vec<String>,
-    compared: Vec<ComparedCurve>,
+    listing: Option<BackgroundTask<Vec<(RunSummary, String)>>>,
+    /// All runs in the saves folder, and the description of the settings of each (see [`settings_in_words`]); `None`
+    /// until they are listed.
+    pub runs: Option<Vec<(RunSummary, String)>>,
+    /// Runs that are compared with the current one.
+    pub compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
-    version: u64,
+    pub version: u64,
 }
 
 /// Learning curve of another run, drawn in the chart of the current run.
@@ -47,9 +47,11 @@ impl ComparedRuns {
     /// Starts to list all runs.
     pub fn list(&mut self, saves: SavesFolder) -> Result<(), String> {
         let listing = BackgroundTask::start(move || {
-            let runs = saves.runs();
-            let settings = runs.iter().map(|run| settings_in_words(&run.plan)).collect();
-            (runs, settings)
+            let described = |run: RunSummary| {
+                let words = settings_in_words(&run.plan);
+                (run, words)
+            };
+            saves.runs().into_iter().map(described).collect()
         });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);
@@ -80,8 +82,7 @@ impl ComparedRuns {
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
         if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
-            let (runs, settings) = runs.unwrap_or_default();
-            (self.runs, self.settings, self.listing) = (Some(runs), settings, None);
+            (self.runs, self.listing) = (Some(runs.unwrap_or_default()), None);
             self.version += 1;
         }
         for run in &mut self.compared {
@@ -91,25 +92,5 @@ impl ComparedRuns {
                 self.version += 1;
             }
         }
-    }
-
-    /// Returns all runs in the saves folder, or `None` until they are listed.
-    pub fn runs(&self) -> Option<&[RunSummary]> {
-        self.runs.as_deref()
-    }
-
-    /// Returns the description of the settings of each listed run: see [`settings_in_words`].
-    pub fn settings(&self) -> &[String] {
-        &self.settings
-    }
-
-    /// Returns the runs that are compared with the current one.
-    pub fn compared(&self) -> &[ComparedCurve] {
-        &self.compared
-    }
-
-    /// Returns the version number, which every change increments.
-    pub fn version(&self) -> u64 {
-        self.version
     }
 }

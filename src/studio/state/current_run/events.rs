@@ -9,9 +9,7 @@ use snakes_core::save::ExistingRun;
 use snakes_lab::run::{OpenedRun, RunEvent};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<CurrentRun>()
-        .add_systems(Startup, start_at_once)
-        .add_systems(FixedUpdate, take_in);
+    app.add_systems(Startup, start_at_once).add_systems(FixedUpdate, take_in);
 }
 
 /// Starts evolution together with the program, unless a stopped run may be opened instead.
@@ -98,9 +96,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
 mod tests {
     use super::*;
     use crate::studio::schedule::RESULTS_HZ;
-    use crate::studio::state::current_run::{prepared_run, small_run};
-    use crate::studio::state::options::Options;
-    use crate::studio::state::run_context::RunContext;
+    use crate::studio::state::current_run::{prepared_run, run_in, small_run};
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
     use snakes_core::schema::SettingValue;
@@ -109,9 +105,8 @@ mod tests {
 
     /// Creates a studio without a window, whose run is saved in this folder.
     fn studio(saves: &SavesFolder) -> App {
-        let options = Options::of_test(small_run(saves, 1, 3), saves.clone());
         let mut app = App::new();
-        app.insert_resource(CurrentRun::new(RunContext::new(&options)))
+        app.insert_resource(run_in(saves, small_run(saves, 1, 3)))
             .init_resource::<Notices>()
             .add_systems(Update, take_in);
         app
@@ -177,7 +172,7 @@ mod tests {
         let before = act(&mut app, |run| {
             let before = run.next_plan().clone();
             run.set_preset("report")?;
-            run.set_population(9)?;
+            run.set_field("evolution.population", "9")?;
             assert!(run.takes_changes().is_err());
             assert_eq!(run.requested_settings().evolution.population, 6);
             // Undo makes the same change.
@@ -189,7 +184,7 @@ mod tests {
             // Undo of a resumption makes the same change: another plan was set before.
             let mut other = before;
             other.settings.evolution.population = 5;
-            run.set_next_plan_alone(other)?;
+            run.replace_next(other, false)?;
             run.set_field("halving.parents", "3")?;
             let requested = run.requested_settings().into_owned().evolution;
             assert_eq!((requested.population, requested.halving.parents), (6, 4));
@@ -203,8 +198,8 @@ mod tests {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
             run.reset()?;
-            run.set_population(5)?;
-            run.set_population(6)?;
+            run.set_field("evolution.population", "5")?;
+            run.set_field("evolution.population", "6")?;
             run.single_generation()
         });
         wait_until(&mut app, |run| !run.reports().is_empty());
@@ -220,15 +215,15 @@ mod tests {
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.seed(), run.reports().len()), (1, 3));
+        assert_eq!((run.plan_now.seed, run.reports().len()), (1, 3));
     }
 
     #[test]
     fn the_budget_counts_generations_before_a_change_at_their_size() {
         let (_folder, mut app) = paused_studio();
-        act(&mut app, |run| run.set_population(4));
-        wait_until(&mut app, |run| run.changes().len() == 1);
-        assert_eq!(app.world().resource::<CurrentRun>().budget(), 6 + 4 + 4);
+        act(&mut app, |run| run.set_field("evolution.population", "4"));
+        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 1);
+        assert_eq!(app.world().resource::<CurrentRun>().plan_now.budget(), 6 + 4 + 4);
     }
 
     #[test]
@@ -241,7 +236,7 @@ mod tests {
                 .request_changes([("evolution.strategy".to_owned(), SettingValue::Name("ga"))]);
             run.change_running("evolution.halving.parents", SettingValue::Whole(2))
         });
-        wait_until(&mut app, |run| run.changes().len() == 2);
+        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 2);
         let run = app.world().resource::<CurrentRun>();
         assert_eq!(run.pending, []);
     }
@@ -251,7 +246,7 @@ mod tests {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.begin_next());
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.number(), run.seed()), (1, 2));
+        assert_eq!((run.number(), run.plan_now.seed), (1, 2));
     }
 
     #[test]
@@ -260,15 +255,15 @@ mod tests {
         act(&mut app, |run| {
             run.change_running("evolution.halving.parents", SettingValue::Whole(2))
         });
-        wait_until(&mut app, |run| run.changes().len() == 1);
+        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 1);
         act(&mut app, |run| {
             run.open_again();
-            assert_eq!((run.status(), run.changes().len()), (RunStatus::Ready, 0));
+            assert_eq!((run.status(), run.plan_now.changes.made().len()), (RunStatus::Ready, 0));
             run.start()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.reports().len(), run.changes().len()), (3, 1));
+        assert_eq!((run.reports().len(), run.plan_now.changes.made().len()), (3, 1));
     }
 
     #[test]
@@ -280,19 +275,19 @@ mod tests {
         wait_until(&mut app, |run| run.reports().len() == 1);
         act(&mut app, |run| {
             run.set_field("halving.parents", "2")?;
-            run.set_population(4)?;
+            run.set_field("evolution.population", "4")?;
             run.set_field("surface.friction", "0.5")?;
             assert!(run.next_run_differs(), "in its friction");
             run.set_field("surface.friction", "1")?;
             assert!(!run.next_run_differs(), "the run will soon be like the next");
             run.change_running("evolution.generations", SettingValue::Whole(4))
         });
-        wait_until(&mut app, |run| run.changes().len() == 3);
+        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 3);
         act(&mut app, |run| {
             let (now, next) = (&run.settings().evolution, &run.next_settings().evolution);
             assert_eq!((now.halving.parents, now.population, now.generations), (2, 4, 4));
             assert_eq!((next.halving.parents, next.population, next.generations), (2, 4, 3));
-            assert!(run.changes().iter().all(|change| change.generation == 2));
+            assert!(run.plan_now.changes.made().iter().all(|change| change.generation == 2));
             assert!(run.run_allows("trial.surface.friction").is_err());
             run.start()
         });
@@ -301,13 +296,13 @@ mod tests {
         let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
         // When the run is resumed after a restart of the program, it has the same hash and changes.
-        let (hash, folder) = (run.run_hash(), run.source.folder.clone());
+        let (hash, folder) = (run.run_hash, run.source.folder.clone());
         drop(app);
         let mut app = studio(&saves);
         act(&mut app, |run| run.go_on_with(&folder));
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);
         let run = app.world().resource::<CurrentRun>();
-        assert_eq!((run.run_hash(), run.changes().len()), (hash, 3));
+        assert_eq!((run.run_hash, run.plan_now.changes.made().len()), (hash, 3));
         assert_eq!(run.settings().evolution.generations, 4);
         assert!(!run.next_run_differs(), "the next run is like this one");
     }

@@ -3,7 +3,6 @@
 use super::*;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::state::options::Options;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::{RunPlan, Rung, StrategyKind};
 use snakes_core::genome::ControllerKind;
@@ -86,6 +85,17 @@ pub fn landed_run() -> CurrentRun {
     run
 }
 
+/// Evolves a run for this number of generations, and saves them in its folder.
+pub fn evolve(run: RunSource, generations: u32) {
+    let mut run = run.open("a test").expect("opened");
+    let pool = LocalPool::new(1).expect("threads");
+    for _ in 0..generations {
+        let report = run.experiment.run_generation(&pool, &RunControl::default());
+        let report = report.expect("not cancelled");
+        run.recorder.record_generation(&run.experiment, &report).expect("kept");
+    }
+}
+
 /// Creates the run of `explored_run`, compared with another run of two generations in this folder. The log of the other
 /// run can be damaged.
 pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
@@ -95,22 +105,14 @@ pub fn compared_run(saves: &Path, is_damaged: bool) -> CurrentRun {
     let plan = RunPlan::new("other", 7, settings);
     let source = RunSource::in_saves(&SavesFolder::find(Some(saves)), plan, ExistingRun::Keep);
     let folder = source.folder.clone();
-    let mut other = source.open("a test").expect("opened");
-    let pool = LocalPool::new(1).expect("threads");
-    for _ in 0..2 {
-        let report = other.experiment.run_generation(&pool, &RunControl::default());
-        other
-            .recorder
-            .record_generation(&other.experiment, &report.expect("not cancelled"))
-            .expect("kept");
-    }
+    evolve(source, 2);
     if is_damaged {
         let nonsense = [vec!["no log".to_owned()]];
         store_csv(&folder.join("log.jsonl"), &nonsense).expect("written");
     }
     let mut run = explored_run();
     run.others.toggle(&folder).expect("a thread");
-    while run.others.compared().iter().any(|compared| compared.read.is_none()) {
+    while run.others.compared.iter().any(|compared| compared.read.is_none()) {
         run.others.take_in();
     }
     run
@@ -121,23 +123,26 @@ fn a_run_is_added_to_the_comparison_and_removed_again() {
     let saves = tempfile::tempdir().expect("a folder");
     let mut run = compared_run(saves.path(), false);
     let version = run.version();
-    let folder = run.others.compared()[0].folder.clone();
+    let folder = run.others.compared[0].folder.clone();
     for name in ["a", "b"] {
         run.others.toggle(&saves.path().join(name)).expect("a thread");
     }
     let refusal = run.others.toggle(&saves.path().join("c")).expect_err("full");
     assert!(refusal.contains("room for 3"), "{refusal}");
     run.others.toggle(&folder).expect("taken away");
-    assert_eq!(run.others.compared().len(), 2);
+    assert_eq!(run.others.compared.len(), 2);
     assert_ne!(run.version(), version);
 }
 
 fn run_of(plan: RunPlan) -> CurrentRun {
     let folder = std::env::temp_dir().join("snakes-and-stairs-panel-test");
     let saves = SavesFolder::find(Some(&folder));
-    let run = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
-    let options = Options::of_test(run, saves);
-    CurrentRun::new(RunContext::new(&options))
+    run_in(&saves, RunSource::in_saves(&saves, plan, ExistingRun::Keep))
+}
+
+/// Prepares a run in the studio that saves in this folder, without starting it.
+pub fn run_in(saves: &SavesFolder, run: RunSource) -> CurrentRun {
+    CurrentRun::new(&Options::of_test(run, saves.clone()))
 }
 
 #[test]

@@ -58,7 +58,7 @@ impl CurrentRun {
             None => caught(|| evaluate(&genome, &trial)).ok()?,
         };
         let IndividualId { generation, individual } = place;
-        let (preset, seed) = (self.preset().to_owned(), self.seed());
+        let (preset, seed) = (self.plan_now.preset.clone(), self.plan_now.seed);
         let origin = Origin { preset, seed, generation, individual };
         Some(Champion { genome, trial, evaluation, chosen_by: None, origin })
     }

@@ -53,11 +53,6 @@ impl CurrentRun {
         Ok(())
     }
 
-    /// Returns the changes that were made in the current run, in order.
-    pub fn changes(&self) -> &[SettingChange] {
-        self.plan_now.changes.made()
-    }
-
     /// Returns the settings of the current run with its pending changes.
     pub(super) fn requested_settings(&self) -> Cow<'_, Settings> {
         // Panels call this function for each of their rows in every frame, and changes are rarely pending.
@@ -148,22 +143,18 @@ impl CurrentRun {
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
     let setting = setting_of(field);
+    let name = setting.map_or_else(|| field.clone(), |setting| setting.short_name());
     let unit = setting.map(|setting| setting.shown_unit()).filter(|unit| !unit.is_empty());
     let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
     let value = setting.map_or_else(|| value.to_string(), |setting| setting.shown_value(value));
     let value = value.replace('_', " ");
-    format!("From generation {generation}: {} {value}{unit}", name_of(field))
+    format!("From generation {generation}: {name} {value}{unit}")
 }
 
 /// Describes why a requested change was not made: "Population was not changed in the current run: ...".
 pub(super) fn refusal_in_words(field: &str, reason: &str) -> String {
     let name = setting_of(field).map_or(field, |setting| setting.label);
     format!("{name} was not changed in the current run: {reason}")
-}
-
-/// Returns the name of the setting with this full dotted name, in the form for a sentence.
-fn name_of(field: &str) -> String {
-    setting_of(field).map_or_else(|| field.to_owned(), |setting| setting.short_name())
 }
 
 /// Returns the declaration of the setting with this full dotted name.
@@ -197,7 +188,7 @@ mod tests {
         let nine = SettingValue::Whole(9);
         let reason = run.change_running("evolution.generations", nine).expect_err("refused");
         assert!(reason.starts_with("No run is in progress"), "{reason}");
-        assert_eq!(run.changes(), []);
+        assert_eq!(run.plan_now.changes.made(), []);
     }
 
     #[test]

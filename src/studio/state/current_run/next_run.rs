@@ -1,6 +1,5 @@
 //! The plan of the next run: edits, presets, undo.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::CurrentRun;
@@ -10,11 +9,6 @@ use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_eng
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
-    /// Returns the seed of the next run.
-    pub fn next_seed(&self) -> u64 {
-        self.plan_next.seed
-    }
-
     /// Returns the settings of the next run.
     pub fn next_settings(&self) -> &Settings {
         &self.plan_next.settings
@@ -46,20 +40,14 @@ impl CurrentRun {
         self.take_over_if_ready()
     }
 
-    /// Sets the population of the next run. It also applies to a run that has not started and, from the next generation
-    /// on, to a run in progress whose strategy allows this.
-    pub fn set_population(&mut self, population: u32) -> Result<(), String> {
-        self.set_field("evolution.population", &population.to_string())
-    }
-
-    /// Sets one setting of the next run, by its name. It also applies to a run that has not started and, from the next
-    /// generation on, to a run in progress if the setting may change.
+    /// Sets one setting of the next run, by its name: see [`Self::set_fields`].
+    #[cfg(test)]
     pub fn set_field(&mut self, field: &str, text: &str) -> Result<(), String> {
         self.set_fields(&[(field, text)])
     }
 
-    /// Sets several settings of the next run at once, as [`Self::set_field`] does. Also selects the engine rapier if
-    /// the bodies require it.
+    /// Sets settings of the next run at once, by their names. They also apply to a run that has not started and, from the
+    /// next generation on, to a run in progress if they may change. Also selects the engine rapier if the bodies require it.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
         let settings = with_fields_and_engine(&next.settings, changes)
@@ -74,12 +62,8 @@ impl CurrentRun {
         self.replace_next(plan, true)
     }
 
-    /// Replaces the next run's plan without changing a run in progress.
-    pub fn set_next_plan_alone(&mut self, plan: RunPlan) -> Result<(), String> {
-        self.replace_next(plan, false)
-    }
-
-    fn replace_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
+    /// Replaces the next run's plan. Only an edit also changes a run in progress.
+    pub fn replace_next(&mut self, plan: RunPlan, is_edit: bool) -> Result<(), String> {
         plan.check_founder().map_err(|error| {
             format!("The champion from which the next run starts does not fit: {error}")
         })?;
@@ -107,29 +91,14 @@ impl CurrentRun {
         next.settings == *requested || (is_same_preset && is_same_search)
     }
 
-    /// Returns the presets that the user can choose.
-    pub fn presets(&self) -> &KnownFiles<Preset> {
-        &self.context.presets
-    }
-
     /// Rereads the user's presets.
     pub fn list_presets(&mut self) {
         self.context.presets = Arc::new(KnownFiles::read(&self.context.saves));
     }
 
-    /// Returns the stairs that the user can choose.
-    pub fn known_stairs(&self) -> &KnownFiles<NamedStairs> {
-        &self.context.stairs
-    }
-
     /// Rereads the user's stairs.
     pub fn list_stairs(&mut self) {
         self.context.stairs = Arc::new(KnownFiles::read(&self.context.saves));
-    }
-
-    /// Returns the folder with the user's stairs.
-    pub fn stairs_folder(&self) -> PathBuf {
-        self.context.saves.own_folder::<NamedStairs>()
     }
 
     /// Stores the next run's stairs among the user's own.
@@ -149,7 +118,7 @@ impl CurrentRun {
 
     /// Describes the preset of the current run: "climb", or "climb, changed" if the run has other settings.
     pub fn preset_in_words(&self) -> String {
-        self.in_words(self.preset(), self.settings())
+        self.in_words(&self.plan_now.preset, self.settings())
     }
 
     /// Describes the preset of the next run, like [`Self::preset_in_words`].
@@ -204,7 +173,7 @@ impl CurrentRun {
     /// Sets the preset of the next run, a built-in preset or one of the user's own, and its settings.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
         let preset = self.preset_named(name)?;
-        let seed = self.next_seed();
+        let seed = self.next_plan().seed;
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 

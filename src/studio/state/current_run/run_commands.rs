@@ -7,12 +7,13 @@ use crate::studio::state::chart_export;
 use crate::studio::state::new_file::{offer_path, offer_picture};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::{SavePlace, read_notes};
+use snakes_core::save::settings_in_words;
 
 impl CurrentRun {
     /// Returns the run's name for the user: the user's own name for it, if any, with its preset and seed.
     fn name(&self) -> String {
         let notes = read_notes(&SavePlace::Run(self.source.folder.clone())).unwrap_or_default();
-        let plan = format!("{}, seed {}", self.settings_in_words(), self.source.plan.seed);
+        let plan = format!("{}, seed {}", settings_in_words(&self.plan_now), self.source.plan.seed);
         notes.own_name().map_or(plan.clone(), |own| format!("{own}: {plan}"))
     }
 

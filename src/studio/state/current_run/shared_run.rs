@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{CurrentRun, RunStatus};
+use super::CurrentRun;
 use snakes_core::save::{ExistingRun, run_name};
 use snakes_lab::run::{Evaluator, RunSource};
 
@@ -22,12 +22,6 @@ impl CurrentRun {
         }
     }
 
-    /// Returns whether other computers take part in the evaluation of the next generation.
-    #[cfg(test)]
-    pub fn is_shared(&self) -> bool {
-        self.shared.is_some()
-    }
-
     /// Returns whether other computers take part in the evaluation of the generation in progress.
     pub fn is_shared_by_now(&self) -> bool {
         self.shared.as_ref().is_some_and(|(_, before)| self.reports.len() > *before)
@@ -35,8 +29,7 @@ impl CurrentRun {
 
     /// Returns the name of the run in progress, if there is one that other computers could evaluate.
     pub fn to_share(&self) -> Option<String> {
-        let is_open = matches!(self.status(), RunStatus::Running | RunStatus::Paused);
-        is_open.then(|| run_name(&self.source.plan))
+        self.is_under_way().then(|| run_name(&self.source.plan))
     }
 
     /// Stops the run because its results cannot be trusted, and holds it before its first generation. The saved
@@ -54,10 +47,5 @@ impl CurrentRun {
     /// Stops the run and releases its evaluator, because the window closes.
     pub fn stop_at_the_end(&mut self) {
         (self.background, self.before) = (None, None);
-    }
-
-    /// Returns the reason why results of other computers cannot be trusted, if there is one. Reports it only once.
-    pub fn take_fault(&mut self) -> Option<String> {
-        self.fault.take()
     }
 }

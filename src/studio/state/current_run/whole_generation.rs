@@ -5,21 +5,22 @@ use std::sync::Arc;
 use super::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
-use crate::studio::state::milestones::{GenerationMember, Milestone, members_to_show};
+use crate::studio::state::milestones::{GenerationMember, Milestone, members_to_show, note};
 use snakes_core::evolve::IndividualId;
 use snakes_lab::run::GenerationReport;
 
 impl CurrentRun {
     /// Returns the generations that were better than all earlier ones, the earliest first.
     pub fn milestones(&self) -> &[Milestone] {
-        self.milestones.all()
+        &self.milestones
     }
 
     /// Records a finished generation as a milestone if it is better than all earlier ones.
     pub(super) fn note_milestone(&mut self, report: &GenerationReport) {
         let explored = self.exploration.as_deref();
         let latest = explored.and_then(|explored| explored.generation.as_deref());
-        self.milestones.note(report, latest.filter(|of| of.number == report.generation));
+        let snakes = latest.filter(|of| of.number == report.generation);
+        note(&mut self.milestones, report, snakes);
     }
 
     /// Returns a generation to show on the stage: all its snakes if they are kept, or else its champion alone. `None`

@@ -18,16 +18,6 @@ pub enum Copied {
     Path(PathBuf),
 }
 
-impl Copied {
-    /// Returns the message for the user after the content was copied.
-    pub fn message(&self) -> &'static str {
-        match self {
-            Self::Picture(_) => "The picture is in the clipboard.",
-            Self::Path(_) => "The path is in the clipboard.",
-        }
-    }
-}
-
 /// The clipboard, which must be kept: on X11 the copied content is lost when the clipboard is dropped.
 type KeptClipboard = SyncCell<Option<Clipboard>>;
 

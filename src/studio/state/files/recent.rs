@@ -1,13 +1,13 @@
 //! Files that were opened or imported recently, for the menu.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::studio::commands::files::FileQuestion;
 use snakes_core::save::MAX_RECENT;
 
 /// Files that were opened or imported recently, the latest first.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct RecentFiles(Vec<PathBuf>);
+pub(crate) struct RecentFiles(pub Vec<PathBuf>);
 
 impl RecentFiles {
     /// Restores the files from their stored paths.
@@ -18,11 +18,6 @@ impl RecentFiles {
     /// Returns the paths as texts to store. Paths that are not valid Unicode are left out.
     pub fn to_texts(&self) -> Vec<String> {
         self.0.iter().filter_map(|path| path.to_str().map(str::to_owned)).collect()
-    }
-
-    /// Returns the paths of the files, the latest first.
-    pub fn paths(&self) -> impl ExactSizeIterator<Item = &Path> {
-        self.0.iter().map(PathBuf::as_path)
     }
 
     /// Adds the files that answer a question, and removes files that do not exist any more.
@@ -57,11 +52,11 @@ mod tests {
         }
         recent.note(&FileQuestion::Export(Vec::new()), &[folder.path().to_owned()]);
         let expected: Vec<PathBuf> = [5, 11, 10, 9, 8, 7, 6, 4, 3, 2].map(path).into();
-        assert_eq!(recent.paths().collect::<Vec<_>>(), expected);
+        assert_eq!(recent.0, expected);
         assert_eq!(RecentFiles::from_texts(&recent.to_texts()), recent);
         std::fs::remove_file(path(9)).expect("removed");
         recent.note(&FileQuestion::Import, &[path(9), path(1)]);
         let expected: Vec<PathBuf> = [1, 5, 11, 10, 8, 7, 6, 4, 3, 2].map(path).into();
-        assert_eq!(recent.paths().collect::<Vec<_>>(), expected);
+        assert_eq!(recent.0, expected);
     }
 }

@@ -52,12 +52,12 @@ fn a_file_is_opened_on_the_stage_without_being_imported_and_is_remembered() {
     let open = FileCommand::Answer(FileQuestion::Open, paths.clone());
     let show = tried.apply(&open).expect("read").expect("shown");
     assert_eq!(show.champions[0].name(), "mine");
-    assert_eq!(tried.files.recent.paths().collect::<Vec<_>>(), paths);
+    assert_eq!(tried.files.recent.0, paths);
     assert!(!tried.library.folder().exists(), "nothing was copied");
     std::fs::remove_file(&tried.champion).expect("removed");
     let error = tried.apply(&open).expect_err("gone");
     assert!(error.contains("mine.ron: cannot be read"), "{error}");
-    assert_eq!(tried.files.recent.paths().len(), 0, "it is no longer offered");
+    assert_eq!(tried.files.recent.0.len(), 0, "it is no longer offered");
 }
 
 #[test]

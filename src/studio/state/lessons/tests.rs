@@ -368,9 +368,9 @@ fn a29_the_race_of_a_lesson_stops_at_its_finish_until_the_reader_plays_again() {
     app.insert_resource(playback).add_systems(Update, take_in);
     app.update();
     let mut playback = app.world_mut().resource_mut::<Playback>();
-    assert_eq!((playback.is_playing(), playback.time_s()), (false, end_s));
+    assert_eq!((playback.is_playing, playback.time_s()), (false, end_s));
     playback.toggle(end_s);
     app.update();
     let playback = app.world().resource::<Playback>();
-    assert_eq!((playback.is_playing(), playback.time_s()), (true, 0.0));
+    assert_eq!((playback.is_playing, playback.time_s()), (true, 0.0));
 }

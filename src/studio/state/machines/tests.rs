@@ -1,9 +1,7 @@
 //! The states of the connection, and their effect on the run.
 
 use super::*;
-use crate::studio::state::current_run::small_run;
-use crate::studio::state::options::Options;
-use crate::studio::state::run_context::RunContext;
+use crate::studio::state::current_run::{run_in, small_run};
 use snakes_cluster::RunQueue;
 use snakes_core::save::SavesFolder;
 use snakes_lab::run::LocalPool;
@@ -13,8 +11,7 @@ use std::sync::Arc;
 fn held_run() -> (tempfile::TempDir, CurrentRun) {
     let folder = tempfile::tempdir().expect("a folder");
     let saves = SavesFolder::find(Some(folder.path()));
-    let options = Options::of_test(small_run(&saves, 1, 3), saves);
-    let mut run = CurrentRun::new(RunContext::new(&options));
+    let mut run = run_in(&saves, small_run(&saves, 1, 3));
     run.start().and_then(|()| run.pause()).expect("started");
     (folder, run)
 }
@@ -29,7 +26,7 @@ fn connecting() -> MachinesLink {
 }
 
 fn known(link: &MachinesLink) -> &KnownServer {
-    let LinkState::Connected(known) = link.state() else { panic!("{:?}", link.state()) };
+    let LinkState::Connected(known) = &link.state else { panic!("{:?}", link.state) };
     known
 }
 
@@ -43,7 +40,7 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     link.follow(&mut run);
     let (number, asked) = link.asked.clone().expect("asked");
     assert_eq!((number, asked.local_threads), (run.number(), 1));
-    assert!(asked.name.starts_with("test-seed1-") && !run.is_shared());
+    assert!(asked.name.starts_with("test-seed1-") && run.shared.is_none());
 
     let evaluator = || Arc::new(LocalPool::new(2).expect("threads"));
     let coordinates = |run: &WatchedRun| WatchNews::Coordinates {
@@ -53,27 +50,27 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     };
     let other = WatchedRun { name: "other".to_owned(), local_threads: 1 };
     link.take_in_news(coordinates(&other), &mut run, &mut notices);
-    assert!(!run.is_shared(), "another run was asked for");
+    assert!(run.shared.is_none(), "another run was asked for");
     link.take_in_news(coordinates(&asked), &mut run, &mut notices);
-    assert!(run.is_shared());
+    assert!(run.shared.is_some());
     assert_eq!(known(&link).own_run.as_deref(), Some("n"));
 
     // Another number of threads needs another coordinator. Until it is ready, only this computer evaluates.
     run.set_threads(2).expect("allowed");
     link.follow(&mut run);
-    assert!(!run.is_shared());
+    assert!(run.shared.is_none());
     assert_eq!(link.asked.as_ref().map(|(_, run)| run.local_threads), Some(2));
     link.take_in_news(coordinates(&link.asked.clone().expect("asked").1), &mut run, &mut notices);
-    assert!(run.is_shared());
+    assert!(run.shared.is_some());
 
     // Another run needs another coordinator as well.
     run.reset().expect("allowed");
-    assert!(!run.is_shared());
+    assert!(run.shared.is_none());
     link.follow(&mut run);
     assert_eq!(link.asked, None, "it has not begun");
 
     link.apply(&MachinesCommand::Disconnect, &mut run).expect("allowed");
-    assert_eq!((link.state(), link.address()), (&LinkState::Off, "nats://127.0.0.1:1"));
+    assert_eq!((&link.state, link.address.as_str()), (&LinkState::Off, "nats://127.0.0.1:1"));
     assert_eq!(notices.len(), 0);
 }
 
@@ -101,7 +98,7 @@ fn f3_a_server_without_room_is_still_being_connected_and_the_latest_reason_is_ke
     let (_folder, mut run) = held_run();
     let (mut link, mut notices) = (connecting(), Notices::default());
     link.take_in_news(WatchNews::Trouble("full".to_owned()), &mut run, &mut notices);
-    assert_eq!(link.state(), &LinkState::Connecting(Some("full".to_owned())));
+    assert_eq!(link.state, LinkState::Connecting(Some("full".to_owned())));
     link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
     assert_eq!(known(&link).problem, None);
 }
@@ -111,9 +108,9 @@ fn a_server_that_cannot_be_used_is_reported_and_its_address_stays() {
     let (_folder, mut run) = held_run();
     let (mut link, mut notices) = (connecting(), Notices::default());
     link.take_in_news(WatchNews::Failed("no server".to_owned()), &mut run, &mut notices);
-    assert_eq!(link.state(), &LinkState::Failed("no server".to_owned()));
+    assert_eq!(link.state, LinkState::Failed("no server".to_owned()));
     assert_eq!(notices.last(), Some("Other computers are not connected: no server"));
-    assert_eq!(link.address(), "nats://127.0.0.1:1");
+    assert_eq!(link.address, "nats://127.0.0.1:1");
     assert!(link.watch.is_none());
 }
 
@@ -129,8 +126,8 @@ fn wrong_results_end_the_connection() {
         .add_systems(Update, take_in);
     app.update();
     let link = app.world().resource::<MachinesLink>();
-    assert_eq!(link.state(), &LinkState::Failed("w lies".to_owned()));
-    assert!(!app.world().resource::<CurrentRun>().is_shared());
+    assert_eq!(link.state, LinkState::Failed("w lies".to_owned()));
+    assert!(app.world().resource::<CurrentRun>().shared.is_none());
 }
 
 #[test]
@@ -148,5 +145,5 @@ fn an_address_is_completed_and_one_with_a_password_is_refused_without_repeating_
     }
     let mut link = MachinesLink::default();
     link.remember("nats://ann:secret@a:4222");
-    assert_eq!(link.address(), "");
+    assert_eq!(link.address, "");
 }

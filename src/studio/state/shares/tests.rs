@@ -31,12 +31,12 @@ fn the_ending_is_added_if_it_is_missing() {
 #[test]
 fn a_champion_in_a_changed_world_is_shared_with_its_result_there() {
     let found = climber(0);
-    let (name, champion) = shared(&found).expect("shared").evaluated();
+    let (name, champion) = shared(&found).expect("shared")();
     assert_eq!((name.as_str(), &champion), ("climber", found.champion()));
     let mut icy = found.trial().clone();
     icy.surface.friction = 0.05;
     let changed = found.in_world(&icy, "friction 0.05".to_owned());
-    let (name, champion) = shared(&changed).expect("shared").evaluated();
+    let (name, champion) = shared(&changed).expect("shared")();
     assert_eq!((name.as_str(), &champion.trial), ("friction 0.05", &icy));
     assert_eq!(champion.evaluation, evaluate(&champion.genome, &icy));
     assert_ne!(champion.evaluation, found.champion().evaluation);

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{ChildStdin, Command, Stdio};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use snakes_core::evolve::Champion;
@@ -71,18 +71,10 @@ impl Leash {
     }
 }
 
-/// What the process has to write.
-#[derive(Debug)]
-pub struct Writer {
-    /// Handle that cancels the process.
-    pub leash: Arc<Leash>,
-    /// Arguments of `snakes export`, apart from the champions.
-    pub arguments: Vec<OsString>,
-}
-
-/// Writes champions to a file. Passes the finished share, from 0 to 1, to `show`. Returns the path of the written file or folder.
+/// Writes champions to a file. `arguments` are those of `snakes export`, apart from the champions. Passes the finished
+/// share, from 0 to 1, to `show`. Returns the path of the written file or folder.
 pub fn written(
-    writer: &Writer,
+    (leash, arguments): (&Leash, &[OsString]),
     champions: &[(String, Champion)],
     show: impl Fn(f64),
 ) -> Result<PathBuf, String> {
@@ -92,14 +84,14 @@ pub fn written(
     let mut process = Command::new(program)
         .arg("export")
         .args(copies.paths())
-        .args(&writer.arguments)
+        .args(arguments)
         .args(["--json", "--until-input-ends"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .map_err(failed)?;
-    writer.leash.hold(process.stdin.take());
+    leash.hold(process.stdin.take());
     // Errors are read at the same time as the output. A process whose errors fill the pipe, such as those of a driver,
     // would otherwise block for ever.
     let errors = process.stderr.take().map(BackgroundTask::start_reading).transpose();
@@ -107,7 +99,7 @@ pub fn written(
     let lines = process.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines());
     for line in lines.map_while(Result::ok) {
         let said = said(&line);
-        said.iter().for_each(|said| writer.leash.note(said));
+        said.iter().for_each(|said| leash.note(said));
         match said {
             Some(Said::Progress(share)) => show(share),
             Some(Said::Saved(path)) => saved = Some(path),

@@ -17,9 +17,9 @@ pub(crate) fn followed(
     from: &RunPlan,
     to: &RunPlan,
 ) -> Result<Option<Show>, String> {
-    let Some(first) = stage.on_show.first() else { return Ok(None) };
+    let Some(first) = stage.show.champions.first() else { return Ok(None) };
     let shown = stage.current().unwrap_or(first);
-    let (original, begins) = match stage.mode {
+    let (original, begins) = match &stage.show.mode {
         // In a race, no lane belongs to a change.
         StageMode::Race => return Ok(None),
         StageMode::WhatIf { before, .. } => (first.clone(), Some(&**before)),
@@ -126,7 +126,7 @@ mod tests {
         let mut run = prepared_run();
         let start = run.next_plan().clone();
         let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
-        let fixed = another_beside(&run, tried.champions, &tried.mode).expect("there is a copy");
+        let fixed = another_beside(&run, tried).expect("there is a copy");
         let one = run.next_plan().clone();
         let three = changed(&mut run, &fixed, "surface.friction", "2");
         assert_eq!(labels(&three), ["climber", "friction 0.3", "friction 2"]);
@@ -161,7 +161,7 @@ mod tests {
         let mut run = prepared_run();
         let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
         let with_change = run.next_plan().clone();
-        let alone = dropped(&mut run, &tried.champions, &tried.mode).expect("allowed");
+        let alone = dropped(&mut run, &tried).expect("allowed");
         let again = step(&alone.expect("the original"), run.next_plan(), &with_change);
         assert_eq!(again.champions[1].label(), "friction 0.3");
     }
@@ -192,7 +192,7 @@ mod tests {
     fn races_and_changes_of_the_search_do_not_affect_the_stage() {
         let mut run = prepared_run();
         let before = run.next_plan().clone();
-        run.set_population(9).expect("allowed");
+        run.set_field("evolution.population", "9").expect("allowed");
         let shown = followed(stage(&solo()), &before, run.next_plan());
         assert!(shown.expect("fits").is_none());
         run.set_field("surface.friction", "0.3").expect("allowed");

@@ -12,7 +12,7 @@ pub(in crate::studio::state) fn solo() -> Show {
 
 /// Returns a stage on which changes are tried from the start.
 pub(in crate::studio::state) fn stage(show: &Show) -> ChangedStage<'_> {
-    ChangedStage { on_show: &show.champions, mode: &show.mode, moment: None }
+    ChangedStage { show, moment: None }
 }
 
 fn field<'a>(field: &'a str, text: &'a str) -> WorldChange<'a> {
@@ -68,18 +68,18 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
     assert_eq!(labels(&third)[1], "separate ground, rise 0.7 and 1 more");
     assert_eq!(copy.trial().surface.friction, 0.3);
     assert_eq!(copy.trial().duration_s, original.trial().duration_s, "nothing else");
-    let kept = kept(&second.champions, &second.mode).expect("kept");
+    let kept = kept(&second).expect("kept");
     assert_eq!(kept.champions[0].trial(), copy.trial());
-    let shown = dropped(&mut run, &second.champions, &second.mode);
+    let shown = dropped(&mut run, &second);
     let shown = shown.expect("allowed").expect("the original");
     assert_eq!(shown.champions[0].trial(), original.trial());
     assert_eq!(*run.next_plan(), plan, "as it was before the first change");
     // Other settings that were changed meanwhile are kept.
     changed(&mut run, &solo(), "surface.friction", "0.3");
     run.set_seed(77).expect("allowed");
-    run.set_population(9).expect("allowed");
-    dropped(&mut run, &second.champions, &second.mode).expect("allowed");
-    assert_eq!((run.next_seed(), run.next_settings().evolution.population), (77, 9));
+    run.set_field("evolution.population", "9").expect("allowed");
+    dropped(&mut run, &second).expect("allowed");
+    assert_eq!((run.next_plan().seed, run.next_settings().evolution.population), (77, 9));
     assert_eq!(run.next_settings().trial, plan.settings.trial);
 }
 
@@ -87,7 +87,7 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
 fn a_second_change_names_the_first_one_that_was_kept() {
     let mut run = prepared_run();
     let first = changed(&mut run, &solo(), "surface.friction", "0.3");
-    let kept = kept(&first.champions, &first.mode).expect("kept");
+    let kept = kept(&first).expect("kept");
     let second = changed(&mut run, &kept, "stairs.rise_m", "0.7");
     assert_eq!(labels(&second), ["friction 0.3", "rise 0.7, friction 0.3"]);
 }
@@ -114,7 +114,7 @@ fn the_engine_of_a_champion_changes_only_where_its_body_demands_it() {
         assert_eq!(run.next_settings().trial.physics.engine, PhysicsEngine::Lanes);
     }
     let in_lanes = changed(&mut run, &solo(), Trial::ENGINE_FIELD, "lanes");
-    let kept = kept(&in_lanes.champions, &in_lanes.mode).expect("kept");
+    let kept = kept(&in_lanes).expect("kept");
     // The next run already has the engine rapier.
     run.set_preset("squishy").expect("shipped");
     let soft = changed(&mut run, &kept, "youngs_modulus_pa", "90000");
@@ -136,7 +136,7 @@ fn a_change_is_tried_from_the_moment_on_and_kept_from_the_start() {
     assert_eq!((copy.changes_at_step(), copy.label()), (Some(312), "friction 0.3"));
     assert_eq!(copy.caption(), "What if: friction 0.3, from 5.20 s on (climber)");
     assert!(!copy.must_match_record(), "its result is that of no trial");
-    let kept = kept(&show.champions, &show.mode).expect("a what-if");
+    let kept = kept(&show).expect("a what-if");
     assert_eq!((kept.champions[0].changes_at_step(), kept.mode), (None, StageMode::Solo));
     assert_eq!(kept.champions[0].trial(), copy.trial());
 }
@@ -164,8 +164,8 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     let mut run = prepared_run();
     let start = run.next_plan().clone();
     let ice = changed(&mut run, &solo(), "surface.friction", "0.3");
-    let fixed = another_beside(&run, ice.champions, &ice.mode).expect("a copy");
-    let again = another_beside(&run, fixed.champions.clone(), &fixed.mode);
+    let fixed = another_beside(&run, ice).expect("a copy");
+    let again = another_beside(&run, fixed.clone());
     assert!(again.is_err(), "it stays already");
     // The further lane also has the changes of the latest one.
     let both = changed(&mut run, &fixed, "stairs.rise_m", "0.7");
@@ -175,21 +175,21 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 2"]);
     let after_both = run.next_plan().clone();
 
-    let kept = kept_lane(&mut run, &both.champions, &both.mode, 1).expect("allowed");
+    let kept = kept_lane(&mut run, &both, 1).expect("allowed");
     assert_eq!(labels(&kept.expect("a lane")), ["friction 0.3"]);
     let world = &run.next_settings().trial;
     assert_eq!(world.surface.friction, 0.3);
     assert_eq!(world.stairs.rise_m, start.settings.trial.stairs.rise_m);
 
     run.set_next_plan(after_both).expect("allowed");
-    let kept = kept_lane(&mut run, &both.champions, &both.mode, 2).expect("allowed");
+    let kept = kept_lane(&mut run, &both, 2).expect("allowed");
     assert_eq!(labels(&kept.expect("a lane")), ["rise 0.7, friction 2"]);
     assert_eq!(run.next_settings().trial.surface.friction, 2.0);
 
-    let one = dropped(&mut run, &both.champions, &both.mode).expect("allowed").expect("lanes");
+    let one = dropped(&mut run, &both).expect("allowed").expect("lanes");
     assert_eq!(labels(&one), ["climber", "friction 0.3"]);
     assert_eq!(run.next_settings().trial.surface.friction, 0.3, "that of the lane before it");
-    let none = dropped(&mut run, &one.champions, &one.mode).expect("allowed").expect("lanes");
+    let none = dropped(&mut run, &one).expect("allowed").expect("lanes");
     assert_eq!((labels(&none), &none.mode), (vec!["climber"], &StageMode::Solo));
     assert_eq!(run.next_settings().trial, start.settings.trial);
 }
@@ -199,11 +199,11 @@ fn five_lanes_are_the_most() {
     let mut run = prepared_run();
     let mut show = changed(&mut run, &solo(), "surface.friction", "0.2");
     for friction in ["0.3", "0.4", "0.5"] {
-        show = another_beside(&run, show.champions, &show.mode).expect("there is room");
+        show = another_beside(&run, show).expect("there is room");
         show = changed(&mut run, &show, "surface.friction", friction);
     }
     assert_eq!(show.champions.len(), 5);
-    let refusal = another_beside(&run, show.champions.clone(), &show.mode).expect_err("full");
+    let refusal = another_beside(&run, show.clone()).expect_err("full");
     assert!(refusal.contains("no room"), "{refusal}");
     show = changed(&mut run, &show, "surface.friction", "0.6");
     let expected = ["climber", "friction 0.2", "friction 0.3", "friction 0.4", "friction 0.6"];

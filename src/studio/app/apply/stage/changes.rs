@@ -16,14 +16,6 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::score::Rollout;
 use snakes_lab::run::caught;
 
-/// State of the original from which a change is tried.
-struct TriedMoment {
-    /// Time of the change, in simulated seconds.
-    time_s: f64,
-    /// Rollout of the original at that time; `None` at the start.
-    rollout: Option<Rollout>,
-}
-
 impl StageParams<'_, '_> {
     /// Executes a command to the plan of the next run, and shows its effect on the stage.
     pub fn apply_to_plan(
@@ -34,19 +26,18 @@ impl StageParams<'_, '_> {
         history: &UndoHistory,
         notices: &mut Notices,
     ) -> Result<(), String> {
-        let (on_show, mode) = (self.champions_to_change(), self.mode.clone());
+        let shown = self.to_change();
         let is_tried = matches!(
             command,
             PlanCommand::SetField { .. } | PlanCommand::SetFields(_) | PlanCommand::SetPreset(_)
         );
-        let moment = is_tried.then(|| self.moment(history));
-        let rollout = moment.as_ref().and_then(|moment| moment.rollout.as_ref());
-        let stage = ChangedStage { on_show: &on_show, mode: &mode, moment: rollout };
+        let (time_s, moment) = if is_tried { self.moment(history) } else { (0.0, None) };
+        let stage = ChangedStage { show: &shown, moment: moment.as_ref() };
         let show = apply_to_plan(command, run, saves, stage, notices)?;
-        match (command, moment) {
-            (_, Some(moment)) => self.present_change(show, &moment),
+        match command {
+            _ if is_tried => self.present_change(show, time_s),
             // The lanes that are kept continue.
-            (PlanCommand::DropChange, _) => {
+            PlanCommand::DropChange => {
                 self.following.stop();
                 *self.pending = show;
             }
@@ -67,42 +58,39 @@ impl StageParams<'_, '_> {
         let (from, to) = if way == UndoDirection::Back { (after, before) } else { (before, after) };
         let now = run.next_plan().clone();
         let next = stepped(&now, from, to);
-        if step.is_of_another_run() {
-            run.set_next_plan_alone(next)?;
-        } else {
-            run.set_next_plan(next)?;
-        }
-        let moment = self.moment(history);
-        let (on_show, rollout) = (self.champions(), moment.rollout.as_ref());
-        let stage = ChangedStage { on_show: &on_show, mode: &self.mode, moment: rollout };
+        run.replace_next(next, !step.is_of_another_run())?;
+        let (time_s, moment) = self.moment(history);
+        let shown = self.shown();
+        let stage = ChangedStage { show: &shown, moment: moment.as_ref() };
         let show = followed(stage, &now, run.next_plan())?;
-        self.present_change(show, &moment);
+        self.present_change(show, time_s);
         Ok(())
     }
 
-    /// Returns the time and state from which a change is tried now.
-    fn moment(&self, history: &UndoHistory) -> TriedMoment {
-        let at_start = TriedMoment { time_s: 0.0, rollout: None };
+    /// Returns the time from which a change is tried now, in simulated seconds, and the rollout of the original at that
+    /// time; `None` at the start.
+    fn moment(&self, history: &UndoHistory) -> (f64, Option<Rollout>) {
+        let at_start = (0.0, None);
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
         let Some(lane) = self.all_lanes().find(|lane| lane.number() == original) else {
             return at_start;
         };
         // A drag of a slider across the original value ends the what-if and begins it again.
         let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || history.is_open();
-        let tried_s = self.playback.tried_from_s().filter(|_| goes_on);
+        let tried_s = self.playback.tried_from_s.filter(|_| goes_on);
         let time_s = tried_s.unwrap_or(self.playback.time_s());
         let (step, _) = lane.moment(time_s);
-        let is_over = f64::from(step) * lane.step_s() >= lane.end_s();
+        let is_over = f64::from(step) * lane.step_s >= lane.end_s();
         if step == 0 || is_over {
             return at_start;
         }
         // A genome whose simulation panics is tried from the start; the stage then reports the panic.
         let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
-        TriedMoment { time_s: f64::from(step) * lane.step_s(), rollout: Some(rollout) }
+        (f64::from(step) * lane.step_s, Some(rollout))
     }
 
-    /// Shows the effect of a change from the time of the change on.
-    fn present_change(&mut self, show: Option<Show>, moment: &TriedMoment) {
+    /// Shows the effect of a change from the time of the change on, in simulated seconds.
+    fn present_change(&mut self, show: Option<Show>, time_s: f64) {
         let Some(show) = show else { return };
         let current = match show.mode {
             StageMode::WhatIf { current, .. } => show.champions.get(current),
@@ -115,8 +103,8 @@ impl StageParams<'_, '_> {
         let is_original = current.is_none_or(|staged| Some(staged) == show.champions.first());
         let is_from_moment =
             is_original || current.is_some_and(|staged| staged.changes_at_step().is_some());
-        let start_s = if is_from_moment { moment.time_s } else { 0.0 };
-        self.playback.play_change(start_s, moment.time_s);
+        let start_s = if is_from_moment { time_s } else { 0.0 };
+        self.playback.play_change(start_s, time_s);
         *self.pending = Some(show);
     }
 }

@@ -75,12 +75,12 @@ fn split_times_grow_with_the_steps_and_end_at_the_present() {
     lane.finish_lookahead();
     let history = lane.history().expect("it has finished");
     let stairs = &lane.trial().stairs;
-    let all_s = splits_s(stairs, history, lane.step_s(), 15.0);
+    let all_s = splits_s(stairs, history, lane.step_s, 15.0);
     assert_eq!(all_s.len() as u32, stairs.steps, "the shipped champion lands");
     assert!(all_s.windows(2).all(|pair| pair[0] <= pair[1]), "{all_s:?}");
     let landed_s = lane.landed_s(15.0).expect("it lands");
     assert!((all_s[9] - landed_s).abs() < 0.2, "{} and {landed_s}", all_s[9]);
-    let some_s = splits_s(stairs, history, lane.step_s(), all_s[4] + 0.01);
+    let some_s = splits_s(stairs, history, lane.step_s, all_s[4] + 0.01);
     assert_eq!(some_s, all_s[..some_s.len()]);
     assert!((5..10).contains(&some_s.len()), "{some_s:?}");
 }
