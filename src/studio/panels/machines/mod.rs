@@ -183,7 +183,7 @@ fn connected(
         title(ui, heading);
         explain(ui, &format!("Type this on {other}, where this program is installed:"));
         worker_command(ui, &link.address, commands);
-        queues(ui, link.address(), known, machines, commands);
+        queues(ui, &link.address, known, machines, commands);
     }
 }
 
