@@ -9,6 +9,7 @@ use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
+use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -38,6 +39,7 @@ fn app() -> App {
         .init_resource::<Playback>()
         .init_resource::<CameraRig>()
         .init_resource::<Overlays>()
+        .init_resource::<StageQuality>()
         .init_resource::<Selection>()
         .init_resource::<Following>()
         .init_resource::<Workspace>()
