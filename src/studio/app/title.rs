@@ -54,7 +54,7 @@ fn update(
                 (false, Some(_)) => " as recorded".to_owned(),
                 (false, None) => String::new(),
             };
-            let disturbed = if lane.is_disturbed() { ", pulled" } else { "" };
+            let disturbed = if lane.replay.is_disturbed() { ", pulled" } else { "" };
             format!("{what}{manner}{disturbed}")
         }
     };

@@ -98,7 +98,7 @@ pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3
     let mut points = Vec::new();
     for lane in lanes {
         let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
-        for pose in lane.last_poses() {
+        for pose in lane.replay.poses() {
             let at = pose.translation + lane.offset();
             let along = [Vec3::ZERO, Vec3::Y * AROUND_M, Vec3::NEG_Y * AROUND_M];
             points.extend(along.map(|along| at + along));

@@ -256,7 +256,7 @@ fn glide(
             let middle = lane.drawn_middle() + lane.offset();
             points.extend([half_width, -half_width].map(|aside| middle + aside));
             points.extend([Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along));
-            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+            snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
@@ -264,7 +264,7 @@ fn glide(
     } else if rig.follows {
         let followed = lanes.iter().filter(|lane| !lane.is_ghost());
         for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
-            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+            snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         let anchor = rig.anchor.unwrap_or_default();
         goal = goal.beside(anchor, snakes, area.aspect(), covers);

@@ -93,7 +93,7 @@ fn draw(
             torques(lane, palette, &mut on_top);
         }
         if draws(Overlay::Trail) {
-            let color = if lane.is_disturbed() { palette.pull } else { palette.trail };
+            let color = if lane.replay.is_disturbed() { palette.pull } else { palette.trail };
             let way = lane.trail_m().into_iter().map(|at| at + lane.offset());
             hidden.linestrip(way, color);
         }

@@ -43,7 +43,7 @@ pub(crate) struct RayHit<'w> {
 impl<'w> StagedWorldItem<'w, '_> {
     /// Copies the lane's world after the last step into the context. A recording has no world; its drawn state is copied instead.
     pub fn hold_last_step(&mut self) {
-        match self.lane.simulation() {
+        match self.lane.replay.simulation() {
             Some(simulation) => self.hold(simulation, simulation.poses()),
             None => drop(self.hold_drawn()),
         }

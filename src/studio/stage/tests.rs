@@ -127,7 +127,7 @@ fn seeking_gives_the_played_state_bit_for_bit() {
         let played = rollout_after(&champion, target);
         let shown = lane(&mut app);
         assert_eq!(shown.replay.step(), target);
-        assert_eq!(shown.last_poses(), played.poses(), "step {target}");
+        assert_eq!(shown.replay.poses(), played.poses(), "step {target}");
         assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
         assert_eq!(drawn, played.poses(), "held on a step, that step is drawn");
@@ -143,7 +143,7 @@ fn stepping_back_and_forward_visits_the_same_states() {
     for forward in [true, true, false, false, true, true] {
         clock(&mut app).step(forward, step_s, 1.0e9);
         frame(&mut app, 0.1);
-        seen.push((lane(&mut app).replay.step(), lane(&mut app).last_poses().to_vec()));
+        seen.push((lane(&mut app).replay.step(), lane(&mut app).replay.poses().to_vec()));
     }
     assert_eq!(seen[1], seen[5]);
     assert_eq!(seen[0], seen[2]);
@@ -269,7 +269,7 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
 fn pull(app: &mut App, way_m: Vector) {
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(app).last_poses()[0].translation + way_m;
+    let to_m = lane(app).replay.poses()[0].translation + way_m;
     let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
     let held = HeldLimb { lane: entity, pull, pressed_at: Vec2::ZERO, is_pulling: true };
     app.world_mut().resource_mut::<Selection>().grab(0, 0, held);
@@ -282,7 +282,7 @@ fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record(
     play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     pull(&mut app, Vector::new(0.0, -2.0, 2.0));
     (0..20).for_each(|_| frame(&mut app, 0.05));
-    assert!(lane(&mut app).is_disturbed());
+    assert!(lane(&mut app).replay.is_disturbed());
     app.world_mut().resource_mut::<Selection>().held = None;
     play(&mut app, &[0.1], is_over);
     (0..10).for_each(|_| frame(&mut app, 0.05));
@@ -291,7 +291,7 @@ fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record(
     assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "the pull changed the result");
     clock(&mut app).seek(1.0, 1.0e9);
     frame(&mut app, 0.0);
-    assert!(!lane(&mut app).is_disturbed(), "undisturbed before the pull");
+    assert!(!lane(&mut app).replay.is_disturbed(), "undisturbed before the pull");
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     assert!(lane(&mut app).evaluation().agrees_with(&recorded));
@@ -312,7 +312,7 @@ fn a8_no_pull_ends_a_trial_and_a_pull_plays_a_paused_stage() {
     assert!(clock(&mut app).is_playing, "or nothing would move");
     let lane = lane(&mut app);
     assert_eq!(lane.evaluation().disqualified, None);
-    assert!(lane.is_disturbed() && lane.last_poses()[0].translation.x.abs() > 3.0);
+    assert!(lane.replay.is_disturbed() && lane.replay.poses()[0].translation.x.abs() > 3.0);
 }
 
 #[test]
@@ -324,7 +324,7 @@ fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     play(&mut app, &[0.1], |lane| lane.replay.step() > 300);
     pull(&mut app, Vector::new(0.0, 0.0, 2.0));
     frame(&mut app, 0.1);
-    assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
+    assert!(lane(&mut app).replay.is_disturbed(), "pulled during all hundred steps of the frame");
 }
 
 #[test]
@@ -341,7 +341,7 @@ fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     frame(&mut app, 0.05);
     let after = lane(&mut app).replay.step();
     assert!(after - before <= MAX_STEPS_PER_FRAME, "{before} to {after}");
-    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay.step() == 15_000);
+    play(&mut app, &[0.05], |lane| lane.replay.is_over() || lane.replay.step() == 15_000);
 }
 
 #[test]

@@ -211,7 +211,7 @@ fn follow(
         // The user is looking at the paused stage.
         return;
     }
-    if lanes.iter().any(Lane::is_disturbed) {
+    if lanes.iter().any(|lane| lane.replay.is_disturbed()) {
         return;
     }
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);

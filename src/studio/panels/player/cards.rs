@@ -157,7 +157,7 @@ pub(crate) fn around_stage(
     if on_stage.overlays.shows_any() {
         // The legend ignores the pointer, because the snake may be behind the legend.
         let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
-        let is_pulled = lanes.iter().any(|lane| lane.is_disturbed());
+        let is_pulled = lanes.iter().any(|lane| lane.replay.is_disturbed());
         let shown = place.show(context, |ui| {
             frame.show(ui, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
         });

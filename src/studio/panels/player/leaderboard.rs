@@ -32,7 +32,7 @@ fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64
 /// Draws the tooltip of a snake's result: the time of each step that the snake has climbed.
 fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     let stairs = &lane.trial().stairs;
-    let history = lane.history().filter(|_| !lane.is_disturbed());
+    let history = lane.history().filter(|_| !lane.replay.is_disturbed());
     let splits_s =
         history.map(|history| splits_s(stairs, history, lane.step_s, time_s)).unwrap_or_default();
     if splits_s.is_empty() {

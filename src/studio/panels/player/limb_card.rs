@@ -76,7 +76,7 @@ pub(super) fn limb_card(
     size: CardSize,
 ) {
     let body = lane.body();
-    let poses = body.limb_poses(lane.last_poses());
+    let poses = body.limb_poses(lane.replay.poses());
     let Some(pose) = poses.get(limb) else { return };
     ui.set_min_width(size.width());
     let count = body.limbs();

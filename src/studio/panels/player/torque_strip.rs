@@ -109,7 +109,7 @@ impl TorqueStrip {
                     seen.extend(drawn.shapes.iter().cloned());
                 }
                 // A snake that was pulled does not climb as in its undisturbed rollout.
-                if !lane.is_disturbed() {
+                if !lane.replay.is_disturbed() {
                     climb.clone_from(&drawn.events);
                 }
             }

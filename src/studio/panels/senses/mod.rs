@@ -100,7 +100,7 @@ impl SensesPanel {
             explain(ui, &sensing_controllers());
             return exam(ui, view.lane, exams, commands);
         }
-        let Some(rollout) = view.lane.rollout() else {
+        let Some(rollout) = view.lane.replay.rollout() else {
             explain(ui, "A recording contains poses, but no senses.");
             return exam(ui, view.lane, exams, commands);
         };

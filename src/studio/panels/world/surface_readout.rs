@@ -171,7 +171,7 @@ impl<'l> ReadLanes<'l> {
         surface: ReadSurface,
         is_meant: &dyn Fn(TouchedSurface) -> bool,
     ) {
-        let missing = if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
+        let missing = if self.lanes.iter().all(|lane| lane.replay.simulation().is_none()) {
             Some("Not available in a recording")
         } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
             Some("Not available for a ghost")

@@ -139,7 +139,7 @@ fn where_limbs_slip_friction_takes_energy_and_does_not_give_it() {
         let (mut given_w, mut taken_w) = (0.0, 0.0);
         for step in 1..=840 {
             lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
-            for patch in lane.simulation().expect("simulated").contact_patches() {
+            for patch in lane.replay.simulation().expect("simulated").contact_patches() {
                 given_w -= patch.friction_w.min(0.0);
                 taken_w += patch.friction_w.max(0.0);
             }
@@ -155,12 +155,12 @@ fn a_dent_in_the_ground_is_as_deep_as_the_lowest_corner_of_the_limb_is_below_it(
         let mut deepest_m = 0.0_f32;
         for step in 1..=300 {
             lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
-            for patch in lane.simulation().expect("simulated").contact_patches() {
+            for patch in lane.replay.simulation().expect("simulated").contact_patches() {
                 if patch.touched != TouchedSurface::Ground {
                     continue;
                 }
                 let half = lane.body().parts[patch.limb].size_m().map(|size| size / 2.0);
-                let pose = lane.last_poses()[patch.limb];
+                let pose = lane.replay.poses()[patch.limb];
                 let corners = (0..8_u8).map(|corner| {
                     let side = |axis: usize| if corner & (1 << axis) == 0 { 1.0 } else { -1.0 };
                     let at = std::array::from_fn(|axis| side(axis) * half[axis]);

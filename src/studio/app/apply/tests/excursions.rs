@@ -22,7 +22,7 @@ fn seen(app: &mut App) -> Seen {
     let world = app.world();
     let (playback, selection) = (world.resource::<Playback>(), world.resource::<Selection>());
     let labels = lanes.iter().map(|lane| lane.staged().label());
-    let poses = lanes.iter().map(|lane| lane.last_poses());
+    let poses = lanes.iter().map(|lane| lane.replay.poses());
     let next = world.resource::<CurrentRun>().next_settings();
     BTreeMap::from([
         ("labels", format!("{:?}", labels.collect::<Vec<_>>())),

@@ -45,7 +45,7 @@ impl<'l> LaneColumn<'l> {
 
     /// Draws how many limbs touch the surface.
     pub fn contact(&self, ui: &mut egui::Ui) {
-        let text = match (self.lane.simulation(), self.reading) {
+        let text = match (self.lane.replay.simulation(), self.reading) {
             (None, _) => "recording".to_owned(),
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
@@ -120,7 +120,7 @@ impl<'l> LaneColumn<'l> {
     /// Draws a list of the energy lost, by cause.
     fn explain_energy(&self, ui: &mut egui::Ui) {
         let Some(lost) = self.lane.readings().energy_lost else {
-            if self.lane.is_disturbed() {
+            if self.lane.replay.is_disturbed() {
                 ui.label("Unknown, because the mouse has pulled the snake.");
             }
             return;
