@@ -44,7 +44,7 @@ fn hold_worlds(
     }
     for mut world in &mut worlds {
         world.hold_for_lines();
-        if !world.lane.is_ghost() {
+        if !world.lane.is_ghost {
             draw_contacts(world.lane, &mut gizmos);
         }
     }

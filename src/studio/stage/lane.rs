@@ -22,14 +22,16 @@ use snakes_lab::run::{Lookahead, caught};
 #[derive(Component)]
 #[require(RapierContextSimulation)]
 pub(crate) struct Lane {
-    staged: StagedChampion,
-    body: BodyPlan,
+    /// Champion in the lane.
+    pub staged: StagedChampion,
+    /// Body of the snake: number, sizes and joints of its limbs.
+    pub body: BodyPlan,
     /// Index of the lane; the first is 0.
-    number: usize,
+    pub number: usize,
     /// Offset of the lane's world along x, in metres.
     pub offset_x_m: f32,
     /// Whether the lane has the place of another lane and is drawn translucent, without stairs.
-    is_ghost: bool,
+    pub is_ghost: bool,
     /// Replay of the snake, at its last step.
     pub replay: Replay,
     pub(super) lookahead: Lookahead,
@@ -42,7 +44,7 @@ pub(crate) struct Lane {
     /// Length of a physics step, in seconds.
     pub step_s: f64,
     /// Contacts, torques and joints after the last step.
-    readings: Readings,
+    pub readings: Readings,
     /// Path of the middle limb since the first pull by the mouse, in metres.
     detour_m: Vec<Vector>,
     /// Whether simulating the lane panicked. The lane then keeps its last state.
@@ -103,29 +105,9 @@ impl Lane {
         Self { is_ghost: true, ..self }
     }
 
-    /// Returns whether the lane is drawn as a ghost.
-    pub fn is_ghost(&self) -> bool {
-        self.is_ghost
-    }
-
-    /// Returns the champion in the lane.
-    pub fn staged(&self) -> &StagedChampion {
-        &self.staged
-    }
-
-    /// Returns the index of the lane; the first is 0.
-    pub fn number(&self) -> usize {
-        self.number
-    }
-
     /// Returns the offset of the lane's world along x, in metres.
     pub fn offset(&self) -> Vec3 {
         Vec3::new(self.offset_x_m, 0.0, 0.0)
-    }
-
-    /// Returns the snake's body: number, sizes and joints of its limbs.
-    pub fn body(&self) -> &BodyPlan {
-        &self.body
     }
 
     /// Returns the trial that the lane shows.
@@ -162,11 +144,6 @@ impl Lane {
         Some(steps as f32 / self.replay.last_step().max(1) as f32)
     }
 
-    /// Returns contacts, torques and joints after the last step.
-    pub fn readings(&self) -> &Readings {
-        &self.readings
-    }
-
     /// Returns the path of the middle limb so far, in metres, in lane coordinates.
     pub fn trail_m(&self) -> Vec<Vector> {
         if let Some(way) = self.replay.recorded_way_m() {
@@ -194,7 +171,7 @@ impl Lane {
 
     /// Returns the drawn position of the middle limb's centre, in metres, in lane coordinates.
     pub fn drawn_middle(&self) -> Vec3 {
-        self.drawn_poses().nth(self.body().middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
+        self.drawn_poses().nth(self.body.middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
     }
 
     /// Converts a point from a part's frame after the last step to lane coordinates, in metres.
@@ -204,7 +181,7 @@ impl Lane {
 
     /// Returns the speed of the middle limb during the last step, in m/s.
     pub fn speed_m_s(&self) -> f32 {
-        let middle = self.body().middle_part;
+        let middle = self.body.middle_part;
         match (self.before.get(middle), self.replay.poses().get(middle)) {
             (Some(before), Some(after)) => {
                 before.translation.distance(after.translation) / self.step_s as f32
@@ -304,7 +281,7 @@ impl Lane {
                 self.readings.meter.note(&self.replay, step);
             }
             if goes_on && self.replay.is_disturbed() {
-                let middle = self.replay.poses()[self.body().middle_part].translation;
+                let middle = self.replay.poses()[self.body.middle_part].translation;
                 self.detour_m.push(middle);
             }
         }

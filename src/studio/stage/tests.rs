@@ -73,7 +73,7 @@ fn play(app: &mut App, frames_s: &[f32], until: impl Fn(&Lane) -> bool) {
 
 fn lane(app: &mut App) -> &Lane {
     let mut lanes = app.world_mut().query::<&Lane>();
-    lanes.iter(app.world()).min_by_key(|lane| lane.number()).expect("a lane")
+    lanes.iter(app.world()).min_by_key(|lane| lane.number).expect("a lane")
 }
 
 fn clock(app: &mut App) -> Mut<'_, Playback> {
@@ -191,15 +191,15 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     for (drawn, recorded) in shown.drawn_poses().zip(last) {
         assert!((drawn.translation - recorded.translation).length() < 1e-5);
     }
-    assert!(shown.staged().caption().contains("as recorded by engine 1"));
-    let simulated = shown.staged().simulated();
+    assert!(shown.staged.caption().contains("as recorded by engine 1"));
+    let simulated = shown.staged.simulated();
     app.world_mut().write_message(Show::solo(simulated));
     clock(&mut app).restart();
     frame(&mut app, 0.0);
     play(&mut app, &[0.1], is_over);
     let shown = lane(&mut app);
     assert_eq!(shown.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
-    assert!(shown.staged().could_be_as_found());
+    assert!(shown.staged.could_be_as_found());
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn drawn_poses_lie_between_the_last_two_steps() {
     let place = time_s / shown.step_s;
     let share = (place - place.floor()) as f32;
     assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
-    let champion = shown.staged().champion();
+    let champion = shown.staged.champion();
     let mut rollout = Rollout::new(&champion.genome, &champion.trial);
     let mut head = || {
         rollout.advance();
@@ -232,7 +232,7 @@ fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     let mut lanes = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     assert_eq!(lanes.len(), MAX_LANES, "and no more");
     let xs: Vec<f32> = lanes.iter().map(|lane| lane.offset().x).collect();
     let spacing_m = champion.trial.stairs.width_m + GAP_M;
@@ -262,7 +262,7 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     // The earlier lanes stay if the new ones cannot be shown.
     app.world_mut().write_message(Show::solo(StagedChampion::from_file(&unfit, 0, "unfit")));
     frame(&mut app, 0.1);
-    assert_eq!(lane(&mut app).staged().name(), "a champion");
+    assert_eq!(lane(&mut app).staged.name(), "a champion");
 }
 
 /// Holds the head of the only snake with the mouse, and pulls it this far.
@@ -287,7 +287,7 @@ fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record(
     play(&mut app, &[0.1], is_over);
     (0..10).for_each(|_| frame(&mut app, 0.05));
     assert_eq!(app.world().resource::<Notices>().len(), 0, "the record is not checked");
-    let recorded = lane(&mut app).staged().champion().evaluation;
+    let recorded = lane(&mut app).staged.champion().evaluation;
     assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "the pull changed the result");
     clock(&mut app).seek(1.0, 1.0e9);
     frame(&mut app, 0.0);

@@ -353,10 +353,10 @@ fn take_in(
         return;
     }
     let mut lanes: Vec<&Lane> = lanes.iter().collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     lessons.follow_playback(&playback, &lanes);
     let is_seen = |lane: &Lane| lane.replay.is_over() && !lane.replay.is_disturbed();
-    let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
+    let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged.label()));
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
     let reached = lessons.view().filter(|view| view.shows_conclusion);

@@ -125,8 +125,8 @@ fn take_turns(
     if !turns.is_on || run.is_lent {
         return;
     }
-    let first = lanes.iter().min_by_key(|lane| lane.number());
-    let on_stage = first.map(Lane::staged);
+    let first = lanes.iter().min_by_key(|lane| lane.number);
+    let on_stage = first.map(|lane| &lane.staged);
     let end_s = end_s(lanes);
     let is_over = playback.is_playing && end_s > 0.0 && playback.time_s() >= end_s;
     turns.rested = if is_over { turns.rested + time.delta() } else { Duration::ZERO };

@@ -125,7 +125,7 @@ pub(crate) fn around_stage(
         });
         corner = Some(shown.response.rect);
     } else if *on_stage.mode != StageMode::Solo {
-        let (mode, focus) = (&*on_stage.mode, focused.number());
+        let (mode, focus) = (&*on_stage.mode, focused.number);
         let time_s = on_stage.playback.time_s();
         let shown = card("board", low.0, low.1).show(context, |ui| {
             frame.show(ui, |ui| {
@@ -200,7 +200,7 @@ fn limb_place(
     let drawn_size = drawn.map_or(least, |rect| rect.size());
     let of_lane = |lane: &Lane| on_stage.limbs_in_window(context, lane);
     let selected = of_lane(focused).get(limb).copied().flatten();
-    let lanes = lanes.iter().filter(|lane| !lane.is_ghost());
+    let lanes = lanes.iter().filter(|lane| !lane.is_ghost);
     let all: Vec<egui::Rect> = lanes.flat_map(|lane| of_lane(lane)).flatten().collect();
     let around = AroundLimb { room, taken: others, selected, all: &all };
     around.place(drawn_size, drawn)

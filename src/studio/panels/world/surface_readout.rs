@@ -173,7 +173,7 @@ impl<'l> ReadLanes<'l> {
     ) {
         let missing = if self.lanes.iter().all(|lane| lane.replay.simulation().is_none()) {
             Some("Not available in a recording")
-        } else if self.lanes.iter().any(|lane| lane.is_ghost()) {
+        } else if self.lanes.iter().any(|lane| lane.is_ghost) {
             Some("Not available for a ghost")
         } else {
             None
@@ -214,8 +214,8 @@ impl<'l> ReadLanes<'l> {
                 ui.label("");
                 for column in table.columns {
                     table.cell(ui, |ui| {
-                        let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
-                        let label = column.lane.staged().label();
+                        let dot = lane_dot(ui, column.lane.number, theme::LANE_DOT);
+                        let label = column.lane.staged.label();
                         let name = weak(ui, head_of(ui, label));
                         ui.add(egui::Label::new(name).truncate()).on_hover_text(label);
                         dot.on_hover_text(label);
@@ -266,7 +266,7 @@ impl ReadoutTable<'_, '_> {
         for column in self.columns {
             let cell = self.cell(ui, |ui| (line.draw)(column, ui));
             // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
-            let id = ui.id().with((line.name, column.lane.number()));
+            let id = ui.id().with((line.name, column.lane.number));
             ui.interact(cell.rect, id, egui::Sense::hover())
                 .on_hover_ui(|ui| column.explain(ui, line, self.is_meant));
         }

@@ -64,7 +64,7 @@ fn stage_at_moment() -> App {
 fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
     let mut query = app.world_mut().query::<(Entity, &Lane)>();
     let mut lanes: Vec<_> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|(_, lane)| lane.number());
+    lanes.sort_by_key(|(_, lane)| lane.number);
     lanes
 }
 
@@ -149,7 +149,7 @@ fn while_a_copy_starts_over_the_other_lanes_stay() {
     };
     assert_eq!([first, second], entities[..2]);
     assert_ne!(third, entities[2]);
-    assert_eq!(changed.staged().label(), "friction 3");
+    assert_eq!(changed.staged.label(), "friction 3");
     for lane in [original, fixed, changed] {
         assert_eq!(lane.replay.step(), MOMENT);
         assert_eq!(lane.replay.poses(), original_at(MOMENT).poses());

@@ -90,7 +90,7 @@ impl Plays {
 }
 
 fn is_undisturbed(lane: &Lane) -> bool {
-    let staged = lane.staged();
+    let staged = &lane.staged;
     staged.source() == ChampionSource::Lesson && !staged.is_changed() && !lane.replay.is_disturbed()
 }
 

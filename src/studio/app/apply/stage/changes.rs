@@ -72,7 +72,7 @@ impl StageParams<'_, '_> {
     fn moment(&self, history: &UndoHistory) -> (f64, Option<Rollout>) {
         let at_start = (0.0, None);
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
-        let Some(lane) = self.all_lanes().find(|lane| lane.number() == original) else {
+        let Some(lane) = self.all_lanes().find(|lane| lane.number == original) else {
             return at_start;
         };
         // A drag of a slider across the original value ends the what-if and begins it again.

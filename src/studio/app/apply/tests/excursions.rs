@@ -18,10 +18,10 @@ type Seen = BTreeMap<&'static str, String>;
 fn seen(app: &mut App) -> Seen {
     let mut query = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     let world = app.world();
     let (playback, selection) = (world.resource::<Playback>(), world.resource::<Selection>());
-    let labels = lanes.iter().map(|lane| lane.staged().label());
+    let labels = lanes.iter().map(|lane| lane.staged.label());
     let poses = lanes.iter().map(|lane| lane.replay.poses());
     let next = world.resource::<CurrentRun>().next_settings();
     BTreeMap::from([

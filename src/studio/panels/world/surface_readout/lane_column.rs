@@ -32,13 +32,13 @@ pub(super) struct LaneColumn<'l> {
 impl<'l> LaneColumn<'l> {
     /// Creates the column of a lane for the surfaces for which `is_meant` holds.
     pub fn of(lane: &'l Lane, is_playing: bool, is_meant: impl Fn(TouchedSurface) -> bool) -> Self {
-        let reading = lane.readings().meter.surface(is_playing, is_meant);
+        let reading = lane.readings.meter.surface(is_playing, is_meant);
         Self { lane, reading, is_playing }
     }
 
     /// Draws the energy lost so far in contacts and at the stops of the joints.
     pub fn lost(&self, ui: &mut egui::Ui) {
-        let lost = self.lane.readings().energy_lost;
+        let lost = self.lane.readings.energy_lost;
         let lost = lost.map(|lost| in_joules(lost.elsewhere_j()));
         number(ui, lost.as_deref().unwrap_or(UNKNOWN));
     }
@@ -50,7 +50,7 @@ impl<'l> LaneColumn<'l> {
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
                 let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " limbs" };
-                format!("{} of {}{unit}", reading.limbs, self.lane.body().limbs())
+                format!("{} of {}{unit}", reading.limbs, self.lane.body.limbs())
             }
         };
         number(ui, &text);
@@ -101,8 +101,8 @@ impl<'l> LaneColumn<'l> {
         }
         let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
         grid.show(ui, |ui| {
-            for limb in 0..self.lane.body().limbs() {
-                let meter = &self.lane.readings().meter;
+            for limb in 0..self.lane.body.limbs() {
+                let meter = &self.lane.readings.meter;
                 let Some(reading) = meter.limb(self.is_playing, limb, &is_meant) else { continue };
                 ui.label(format!("Limb {}", limb + 1));
                 for text in [
@@ -119,7 +119,7 @@ impl<'l> LaneColumn<'l> {
 
     /// Draws a list of the energy lost, by cause.
     fn explain_energy(&self, ui: &mut egui::Ui) {
-        let Some(lost) = self.lane.readings().energy_lost else {
+        let Some(lost) = self.lane.readings.energy_lost else {
             if self.lane.replay.is_disturbed() {
                 ui.label("Unknown, because the mouse has pulled the snake.");
             }
