@@ -22,7 +22,7 @@ pub(crate) struct Following {
     /// Whether the run began since the program started and its first generation is still to be shown.
     is_new: bool,
     /// Whether the playback is held at its start until the first generation is finished.
-    holds: bool,
+    pub holds: bool,
     /// Number of the run that is followed.
     run: u32,
     /// Whether a story is repeated after its end. This does not change what the stage shows.
@@ -67,11 +67,6 @@ impl Following {
     /// Returns whether better generations are shown automatically.
     pub fn follows_evolution(&self) -> bool {
         self.plan == FollowPlan::Evolution
-    }
-
-    /// Returns whether the playback is held until the first generation is finished.
-    pub fn awaits_first(&self) -> bool {
-        self.holds
     }
 
     /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
@@ -174,7 +169,7 @@ pub(super) fn plugin(app: &mut App) {
 
 /// Holds the playback at its start until the first generation is finished.
 fn await_first(following: Res<Following>, mut playback: ResMut<Playback>) {
-    if following.awaits_first() {
+    if following.holds {
         playback.hold_at(0.0);
     }
 }
@@ -312,7 +307,7 @@ mod tests {
         let mut following = Following::from_start();
         following.stop();
         assert_eq!(following.due(&run, true), None);
-        assert!(!following.awaits_first());
+        assert!(!following.holds);
     }
 
     #[test]

@@ -168,7 +168,7 @@ impl Lessons {
                 };
                 run.pause()?;
                 run.is_lent = true;
-                let (next, history) = (run.next_plan().clone(), history.lend());
+                let (next, history) = (run.next_plan().clone(), std::mem::take(history));
                 Own { next, history, pace }
             }
         };

@@ -102,7 +102,7 @@ impl Turns {
         let is_opened = on_stage.is_some_and(|of| matches!(of.source(), ChampionSource::Opened(_)));
         let stays = matches!(mode, StageMode::Race | StageMode::WhatIf { .. })
             || (is_opened && self.keeps_opened);
-        let is_told = is_live || following.awaits_first() || following.story_part().is_some();
+        let is_told = is_live || following.holds || following.story_part().is_some();
         !is_told && !self.is_held && (self.is_led || !stays)
     }
 }

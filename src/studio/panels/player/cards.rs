@@ -134,7 +134,7 @@ pub(crate) fn around_stage(
             });
         });
         board = Some(shown.response.rect.expand(theme::GAP));
-    } else if on_stage.following.awaits_first() {
+    } else if on_stage.following.holds {
         let shown = card("waiting", pivot, at).show(context, |ui| {
             frame.show(ui, |ui| waiting_card(ui, situation.progress, commands));
         });

@@ -45,7 +45,7 @@ impl PresentedCaption {
     /// Creates the caption of what the stage shows now. It contains nothing that the playback has not reached yet.
     pub fn of(lanes: &[&Lane], on_stage: &OnStage, run: &CurrentRun) -> Self {
         let Some(first) = lanes.first() else { return Self::default() };
-        if on_stage.following.awaits_first() {
+        if on_stage.following.holds {
             let (done, all) = run.progress();
             let title = format!("Generation 1: {done} of {all} random snakes tried");
             let details = vec![CaptionPart::plain("They appear here in a moment.".to_owned())];
