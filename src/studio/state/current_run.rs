@@ -71,7 +71,7 @@ pub(crate) struct CurrentRun {
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
     /// Generations that were better than all earlier ones, the earliest first.
-    milestones: Vec<Milestone>,
+    pub milestones: Vec<Milestone>,
     /// Results besides champions; `None` until the first generation is finished.
     exploration: Option<Box<Exploration>>,
     /// Individuals with descendants, by their place; computed at the first use.

@@ -56,7 +56,7 @@ impl PresentedCaption {
             StageMode::Solo | StageMode::Generation { .. } => {
                 let generation = first.staged.generation();
                 let is_first_landing = run
-                    .milestones()
+                    .milestones
                     .iter()
                     .find(|milestone| milestone.is_landed)
                     .is_some_and(|milestone| milestone.generation == generation)
