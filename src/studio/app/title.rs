@@ -26,7 +26,7 @@ fn update(
         RunStatus::Paused => "paused",
         RunStatus::Finished => "finished",
     };
-    let first = lanes.iter().min_by_key(|lane| lane.number());
+    let first = lanes.iter().min_by_key(|lane| lane.number);
     let shown = match (&*mode, first) {
         (_, None) => "nothing".to_owned(),
         (StageMode::Race, _) => format!("a race of {} snakes", lanes.iter().len()),
@@ -34,10 +34,10 @@ fn update(
             format!("generation {number}, {} snakes", lanes.iter().len())
         }
         (mode, Some(lane)) => {
-            let generation = lane.staged().generation();
-            let what = match lane.staged().source() {
+            let generation = lane.staged.generation();
+            let what = match lane.staged.source() {
                 ChampionSource::Opened(_) | ChampionSource::Library(_) => {
-                    lane.staged().name().to_owned()
+                    lane.staged.name().to_owned()
                 }
                 ChampionSource::Lesson => "a lesson".to_owned(),
                 ChampionSource::Edited => "an edited body".to_owned(),
@@ -47,14 +47,14 @@ fn update(
                 ChampionSource::Run(_) => format!("generation {generation} of an earlier run"),
             };
             let is_what_if = matches!(mode, StageMode::WhatIf { .. });
-            let manner = match (lane.staged().is_changed(), lane.staged().recording()) {
+            let manner = match (lane.staged.is_changed(), lane.staged.recording()) {
                 _ if is_what_if => copies_in_words(&lanes),
-                (true, _) if lane.staged().is_on_stairs_of_exam() => " on other stairs".to_owned(),
+                (true, _) if lane.staged.is_on_stairs_of_exam() => " on other stairs".to_owned(),
                 (true, _) => " in another world".to_owned(),
                 (false, Some(_)) => " as recorded".to_owned(),
                 (false, None) => String::new(),
             };
-            let disturbed = if lane.is_disturbed() { ", pulled" } else { "" };
+            let disturbed = if lane.replay.is_disturbed() { ", pulled" } else { "" };
             format!("{what}{manner}{disturbed}")
         }
     };
@@ -80,7 +80,7 @@ fn copies_in_words(lanes: &Query<&Lane>) -> String {
         ..=2 => "a what-if copy".to_owned(),
         lanes => format!("{} what-if copies", lanes - 1),
     };
-    let latest = lanes.iter().max_by_key(|lane| lane.number());
-    let beginning = latest.and_then(|lane| lane.staged().beginning_in_words());
+    let latest = lanes.iter().max_by_key(|lane| lane.number);
+    let beginning = latest.and_then(|lane| lane.staged.beginning_in_words());
     format!(" with {copies}{}", beginning.map(|words| format!(", {words}")).unwrap_or_default())
 }

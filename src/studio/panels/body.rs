@@ -86,7 +86,7 @@ impl BodyPanel {
         let Some(lane) = lane else {
             return explain(ui, "The blocks of the snake on the stage will appear here.");
         };
-        let body = lane.body();
+        let body = &lane.body;
         drawing(ui, body, None);
         let (blocks, length_m, mass_kg) = (body.limbs(), body.length_m(), body.mass_kg());
         ui.label(format!("{blocks} blocks, {length_m:.1} m long, {mass_kg:.1} kg"));
@@ -101,7 +101,7 @@ impl BodyPanel {
             "Change sizes, joints and strength of every block, add blocks and remove them: the stage shows the changed \
              snake beside the original.",
         );
-        let refusal = BodyEditor::refusal(lane.staged());
+        let refusal = BodyEditor::refusal(&lane.staged);
         let edit = CommandButton::new("Edit this body", "", Command::Body(BodyCommand::Edit));
         if edit.unless(refusal.as_deref()).show(ui, commands) {
             self.block = 0;

@@ -193,8 +193,8 @@ fn draw(
             .max_rect(context.content_rect()),
     );
     let mut lanes: Vec<&Lane> = on_stage.lanes.iter().collect();
-    lanes.sort_by_key(|lane| lane.number());
-    let focused = lanes.iter().find(|lane| lane.number() == on_stage.selection.lane);
+    lanes.sort_by_key(|lane| lane.number);
+    let focused = lanes.iter().find(|lane| lane.number == on_stage.selection.lane);
     let focused = focused.or(lanes.first()).copied();
     panels.panel_rects.clear();
     let panels = &mut *panels;
@@ -316,7 +316,7 @@ impl Viewer<'_, '_, '_> {
         if let Some(lane) = self.focused {
             let frame = bar_frame(theme::of(ui), theme::GAP as i8);
             egui::Panel::bottom("timeline").resizable(false).frame(frame).show(ui, |ui| {
-                let is_of_lesson = lane.staged().source() == ChampionSource::Lesson;
+                let is_of_lesson = lane.staged.source() == ChampionSource::Lesson;
                 let hides_future = is_of_lesson && self.data.lessons.hides_result();
                 let span = TimelineSpan::of(self.lanes.iter().copied(), hides_future);
                 let (playback, run) = (&self.data.on_stage.playback, self.data.run.number());
@@ -360,7 +360,7 @@ impl Viewer<'_, '_, '_> {
                 panels.world.ui(ui, run, history, &read, commands);
             }
             PanelKind::Charts => {
-                panels.charts.ui(ui, run, &shown, focused.map(Lane::staged), commands);
+                panels.charts.ui(ui, run, &shown, focused.map(|lane| &lane.staged), commands);
             }
             PanelKind::Champions => {
                 let view = ChampionsView {

@@ -46,7 +46,7 @@ impl OnStage<'_, '_> {
             let point = pixel / context.zoom_factor();
             Some(egui::pos2(point.x, point.y))
         };
-        let parts = lane.drawn_poses().zip(&lane.body().parts);
+        let parts = lane.drawn_poses().zip(&lane.body.parts);
         let around = parts.map(|(pose, plan)| {
             let half = Vec3::from(plan.size_m()) / 2.0;
             let ends = [-1.0, 1.0];
@@ -59,11 +59,11 @@ impl OnStage<'_, '_> {
         });
         let around: Vec<Option<egui::Rect>> = around.collect();
         let limb = |limb: usize| {
-            let parts = around.get(lane.body().parts_of(limb)).unwrap_or_default();
+            let parts = around.get(lane.body.parts_of(limb)).unwrap_or_default();
             let parts: Option<Vec<egui::Rect>> = parts.iter().copied().collect();
             parts?.into_iter().reduce(egui::Rect::union)
         };
-        (0..lane.body().limbs()).map(limb).collect()
+        (0..lane.body.limbs()).map(limb).collect()
     }
 
     /// Returns whether the setting that a command toggles is on, or `None` for other commands.

@@ -58,11 +58,11 @@ pub(crate) struct ShownLane {
 impl ShownLane {
     /// Returns the champions of the list that are on the stage, except ghosts. `run` is the number of the current run.
     pub(crate) fn all(lanes: &[&Lane], run: u32) -> Vec<Self> {
-        let racers = || lanes.iter().filter(|lane| !lane.is_ghost());
+        let racers = || lanes.iter().filter(|lane| !lane.is_ghost);
         let are_many = racers().nth(1).is_some();
         let shown = racers().filter_map(|lane| {
-            let champion = ShownChampion::of(lane.staged(), run)?;
-            Some(Self { champion, lane: are_many.then_some(lane.number()) })
+            let champion = ShownChampion::of(&lane.staged, run)?;
+            Some(Self { champion, lane: are_many.then_some(lane.number) })
         });
         shown.collect()
     }

@@ -47,7 +47,7 @@ fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     let moments = lane.skip_to_end(MOMENTS);
     let evaluation = lane.evaluation();
     let ends_at_m = lane.drawn_poses().map(|pose| pose.translation.y).fold(f32::MIN, f32::max);
-    let body = lane.body().clone();
+    let body = lane.body.clone();
     let starts_at_m = champion.trial.start_y_m - body.length_m() / 2.0;
     let stairs_show_m = champion.trial.stairs.riser_y_m(4);
     let place = camera::overview_transform(starts_at_m, ends_at_m.max(stairs_show_m) + 1.0);

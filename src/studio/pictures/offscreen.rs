@@ -1,8 +1,8 @@
 //! Renders the studio's scene to a picture, without a window.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use bevy::app::{SubApp, TaskPoolOptions, TaskPoolPlugin, TerminalCtrlCHandlerPlugin};
@@ -48,7 +48,7 @@ pub(crate) struct Offscreen {
 
 /// Pictures that the renderer returned, by their numbers; `None` for one without content.
 #[derive(Resource, Default)]
-struct FinishedPictures(Mutex<BTreeMap<u64, Option<Picture>>>);
+struct FinishedPictures(BTreeMap<u64, Option<Picture>>);
 
 /// Whether the messages of this process have a log.
 static HAS_LOG: AtomicBool = AtomicBool::new(false);
@@ -194,9 +194,8 @@ impl Offscreen {
         let number = self.shots;
         self.shots += 1;
         self.app.world_mut().spawn(Screenshot::image(self.target.clone())).observe(
-            move |captured: On<ScreenshotCaptured>, finished: Res<FinishedPictures>| {
-                let mut finished = finished.0.lock().unwrap_or_else(PoisonError::into_inner);
-                finished.insert(number, picture_of(&captured.image));
+            move |captured: On<ScreenshotCaptured>, mut finished: ResMut<FinishedPictures>| {
+                finished.0.insert(number, picture_of(&captured.image));
             },
         );
         self.app.update();
@@ -208,8 +207,8 @@ impl Offscreen {
     /// # Errors
     /// The renderer returned no picture.
     pub fn taken(&mut self, number: u64) -> Result<Option<Picture>, StudioError> {
-        let finished = self.app.world().resource::<FinishedPictures>();
-        let taken = finished.0.lock().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        let mut finished = self.app.world_mut().resource_mut::<FinishedPictures>();
+        let taken = finished.0.remove(&number);
         taken.map(|picture| picture.ok_or_else(no_picture)).transpose()
     }
 

@@ -76,7 +76,7 @@ pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lan
 pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
     let text = |lane: &&Lane| {
         let head = lane.drawn_poses().next()?.translation + lane.offset();
-        let text = format!("{}  {:.1} m", lane.staged().label(), lane.drawn_middle().y);
+        let text = format!("{}  {:.1} m", lane.staged.label(), lane.drawn_middle().y);
         Some((head + Vec3::Z * OVER_HEAD_M, text))
     };
     if lanes.len() > 1 { lanes.iter().filter_map(text).collect() } else { Vec::new() }
@@ -98,7 +98,7 @@ pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3
     let mut points = Vec::new();
     for lane in lanes {
         let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
-        for pose in lane.last_poses() {
+        for pose in lane.replay.poses() {
             let at = pose.translation + lane.offset();
             let along = [Vec3::ZERO, Vec3::Y * AROUND_M, Vec3::NEG_Y * AROUND_M];
             points.extend(along.map(|along| at + along));

@@ -121,8 +121,8 @@ fn plant(
 /// Returns whether a lane has the flag of the run with this index: the first lane, which is nearest to the camera, if its
 /// snake is of this run.
 fn is_marked(lane: &Lane, run: u32) -> bool {
-    let is_of_run = lane.staged().source() == ChampionSource::Run(run);
-    lane.number() == 0 && !lane.is_ghost() && is_of_run
+    let is_of_run = lane.staged.source() == ChampionSource::Run(run);
+    lane.number == 0 && !lane.is_ghost && is_of_run
 }
 
 /// Returns the base of the flag's post: at the left edge of the stairs, on their surface.

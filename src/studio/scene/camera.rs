@@ -180,7 +180,7 @@ fn steer(
 /// Moves the camera's anchor towards the middle of the followed snake or of all snakes.
 fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Real>>) {
     // Ghosts are ignored, because they surround the lane that the camera follows.
-    let lanes = || lanes.iter().filter(|lane| !lane.is_ghost());
+    let lanes = || lanes.iter().filter(|lane| !lane.is_ghost);
     let count = lanes().count();
     if count == 0 {
         return;
@@ -193,13 +193,13 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
         rig.take(if camera_mode == CameraMode::Free { CameraMode::Follow } else { camera_mode });
     }
     rig.lanes = count;
-    rig.lane = rig.lane.filter(|of| !is_new && lanes().any(|lane| lane.number() == *of));
+    rig.lane = rig.lane.filter(|of| !is_new && lanes().any(|lane| lane.number == *of));
     let of_one = |lane: &Lane| {
         // The sideways motion of the snake is ignored, because following it would make viewers seasick.
         let middle = lane.drawn_middle();
         Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
     };
-    let chosen = lanes().filter(|lane| rig.lane.is_none_or(|number| number == lane.number()));
+    let chosen = lanes().filter(|lane| rig.lane.is_none_or(|number| number == lane.number));
     let (mut least, mut most) = (Vec3::MAX, Vec3::MIN);
     chosen.map(|lane| of_one(&lane)).for_each(|middle| {
         least = least.min(middle);
@@ -247,20 +247,20 @@ fn glide(
         covers.extend(area.covers());
     }
     if rig.frames_all() {
-        for lane in lanes.iter().filter(|lane| !lane.is_ghost()) {
+        for lane in lanes.iter().filter(|lane| !lane.is_ghost) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
             points.extend([half_width, -half_width].map(|aside| middle + aside));
             points.extend([Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along));
-            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+            snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
         goal = goal.framing(anchor, points, snakes, area.aspect(), covers);
     } else if rig.follows {
-        let followed = lanes.iter().filter(|lane| !lane.is_ghost());
-        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
-            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
+        let followed = lanes.iter().filter(|lane| !lane.is_ghost);
+        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number)) {
+            snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         let anchor = rig.anchor.unwrap_or_default();
         goal = goal.beside(anchor, snakes, area.aspect(), covers);

@@ -73,14 +73,13 @@ fn throw(
         celebration.lanes.clear();
     }
     let now_s = playback.time_s();
-    let racing = || lanes.iter().filter(|lane| !lane.is_ghost());
-    let landings =
-        racing().filter_map(|lane| lane.landed_s(now_s).map(|at_s| (lane.number(), at_s)));
+    let racing = || lanes.iter().filter(|lane| !lane.is_ghost);
+    let landings = racing().filter_map(|lane| lane.landed_s(now_s).map(|at_s| (lane.number, at_s)));
     celebration.pass(&playback, landings);
     if celebration.lanes.is_empty() {
         return;
     }
-    for lane in racing().filter(|lane| celebration.lanes.contains(&lane.number())) {
+    for lane in racing().filter(|lane| celebration.lanes.contains(&lane.number)) {
         let Some(landed_s) = lane.landed_s(now_s) else { continue };
         let since_s = now_s - landed_s;
         if since_s < FLIGHT_S {
@@ -94,7 +93,7 @@ fn draw(lane: &Lane, since_s: f32, palette: &Palette, gizmos: &mut Gizmos<Pieces
     let opacity = ((FLIGHT_S as f32 - since_s) / 0.5).clamp(0.0, 1.0);
     for piece in 0..PIECES {
         let color = in_scene(palette.lane_color(piece as usize)).with_alpha(opacity);
-        let (at, along) = piece_at(&lane.trial().stairs, lane.number(), piece, since_s);
+        let (at, along) = piece_at(&lane.trial().stairs, lane.number, piece, since_s);
         let (at, half) = (lane.offset() + at, along * (PIECE_M / 2.0));
         gizmos.line(at - half, at + half, color);
     }

@@ -85,14 +85,14 @@ fn patch() -> Mesh {
 
 /// Spawns hidden patches for a new lane with a soft surface.
 fn build(lanes: Query<(Entity, &Lane), Added<Lane>>, patch: Res<Patch>, mut commands: Commands) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
         let trial = lane.trial();
         let is_soft = |surface| SurfaceLook::of(surface).soft >= LEAST_SOFT;
         if !is_soft(&trial.surface) && !is_soft(trial.ground()) {
             continue;
         }
         commands.entity(entity).with_children(|parent| {
-            for limb in 0..lane.body().parts.len() {
+            for limb in 0..lane.body.parts.len() {
                 parent.spawn((
                     Dent(limb),
                     Mesh3d(patch.mesh.clone()),
@@ -115,7 +115,7 @@ fn place(
         let stairs = &lane.trial().stairs;
         let mut dents = dents.iter_many_mut(children);
         while let Some((dent, mut transform, mut visibility)) = dents.fetch_next() {
-            let limb = lane.drawn_poses().zip(&lane.body().parts).nth(dent.0);
+            let limb = lane.drawn_poses().zip(&lane.body.parts).nth(dent.0);
             let sunken =
                 limb.and_then(|(pose, plan)| sunken(&pose, Vec3::from(plan.size_m()), stairs));
             let Some(sunken) = sunken else {

@@ -87,7 +87,7 @@ fn build(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
         let stairs = &lane.trial().stairs;
         if stairs.steps == 0 {
             continue;

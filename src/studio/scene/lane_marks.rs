@@ -58,12 +58,12 @@ fn build(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
-        let start_m = lane.trial().start_y_m - lane.body().length_m() / 2.0;
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
+        let start_m = lane.trial().start_y_m - lane.body.length_m() / 2.0;
         commands.entity(entity).with_child((
             LaneMark,
             Mesh3d(meshes.add(to_mesh(stripes(&lane.trial().stairs, start_m)))),
-            MeshMaterial3d(colors.of(lane.number())),
+            MeshMaterial3d(colors.of(lane.number)),
             NotShadowCaster,
             Visibility::Hidden,
         ));
@@ -85,7 +85,7 @@ fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
 
 /// Shows the lanes' colours while several snakes are side by side, and hides them otherwise.
 fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) {
-    let are_many = lanes.iter().filter(|lane| !lane.is_ghost()).nth(1).is_some();
+    let are_many = lanes.iter().filter(|lane| !lane.is_ghost).nth(1).is_some();
     let wanted = if are_many { Visibility::Inherited } else { Visibility::Hidden };
     marks.iter_mut().for_each(|mut mark| {
         mark.set_if_neq(wanted);

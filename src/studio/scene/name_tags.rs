@@ -37,7 +37,7 @@ fn draw(
     area: Res<StageArea>,
 ) -> Result {
     let shows_line = overlays.shows(Overlay::FitnessLine);
-    let racing = || lanes.iter().filter(|lane| !lane.is_ghost());
+    let racing = || lanes.iter().filter(|lane| !lane.is_ghost);
     let are_many = racing().nth(1).is_some();
     if !are_many && !shows_line {
         return Ok(());
@@ -52,7 +52,7 @@ fn draw(
                 let head = lane.drawn_poses().next()?.translation + lane.offset();
                 (
                     head + Vec3::Z * OVER_HEAD_M,
-                    format!("{}  {} m", lane.staged().label(), decimals(y_m, 1)),
+                    format!("{}  {} m", lane.staged.label(), decimals(y_m, 1)),
                 )
             } else {
                 (fitness_line_end(lane), format!("middle block at {} m", decimals(y_m, 2)))

@@ -85,7 +85,7 @@ fn draw(
 ) {
     let palette = theme.palette();
     for (entity, lane) in &lanes {
-        let draws = |overlay| overlays.shows(overlay) && !lane.is_ghost();
+        let draws = |overlay| overlays.shows(overlay) && !lane.is_ghost;
         if draws(Overlay::Contacts) {
             contacts(lane, palette, &mut on_top);
         }
@@ -93,7 +93,7 @@ fn draw(
             torques(lane, palette, &mut on_top);
         }
         if draws(Overlay::Trail) {
-            let color = if lane.is_disturbed() { palette.pull } else { palette.trail };
+            let color = if lane.replay.is_disturbed() { palette.pull } else { palette.trail };
             let way = lane.trail_m().into_iter().map(|at| at + lane.offset());
             hidden.linestrip(way, color);
         }
@@ -101,7 +101,7 @@ fn draw(
             fitness_line(lane, palette, &mut on_top);
         }
         if let Some(selection) = &selection
-            && selection.lane == lane.number()
+            && selection.lane == lane.number
             && let Some(limb) = selection.limb
         {
             outline(lane, limb, palette, &mut on_top);
@@ -118,7 +118,7 @@ fn draw(
 
 /// Draws the outlines of the selected limb's parts.
 fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
-    for (pose, part) in lane.drawn_poses().zip(&lane.body().parts) {
+    for (pose, part) in lane.drawn_poses().zip(&lane.body.parts) {
         if part.limb == limb {
             let size = Vec3::from(part.size_m()) * 1.02;
             let at = Transform::from_translation(pose.translation + lane.offset());
@@ -130,8 +130,8 @@ fn outline(lane: &Lane, limb: usize, palette: &Palette, gizmos: &mut Gizmos<OnTo
 
 /// Draws a cross at every contact, with an arrow for the force on the limb.
 fn contacts(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
-    let weight_n = lane.body().mass_kg() * lane.trial().physics.gravity_m_s2.max(0.1);
-    for contact in &lane.readings().contacts {
+    let weight_n = lane.body.mass_kg() * lane.trial().physics.gravity_m_s2.max(0.1);
+    for contact in &lane.readings.contacts {
         let at = contact.at_m + lane.offset();
         let arrow = (contact.force_n * (WEIGHT_M / weight_n)).clamp_length_max(LONGEST_ARROW_M);
         gizmos.cross(Isometry3d::from_translation(at), 0.1, palette.force);
@@ -143,9 +143,9 @@ fn contacts(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
 
 /// Draws an arrow around each axis of each joint. The angle of the arrow is proportional to the torque.
 fn torques(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
-    let body = lane.body();
+    let body = &lane.body;
     let poses: Vec<_> = lane.drawn_poses().collect();
-    for (joint, torque) in body.joints.iter().zip(&lane.readings().torques) {
+    for (joint, torque) in body.joints.iter().zip(&lane.readings.torques) {
         let Some(front) = poses.get(joint.parent) else { continue };
         let [width_m, length_m, height_m] = body.parts[joint.parent].size_m();
         let at = *front * joint.anchor_m(length_m) + lane.offset();

@@ -54,10 +54,10 @@ fn plant(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    let ways = lanes.iter().filter(|lane| !lane.is_ghost()).map(|lane| {
+    let ways = lanes.iter().filter(|lane| !lane.is_ghost).map(|lane| {
         let (trial, x_m) = (lane.trial(), lane.offset().x);
         let half_m = trial.stairs.width_m / 2.0;
-        let start = Vec2::new(x_m - half_m, trial.start_y_m - lane.body().length_m() / 2.0);
+        let start = Vec2::new(x_m - half_m, trial.start_y_m - lane.body.length_m() / 2.0);
         Rect::from_corners(start, Vec2::new(x_m + half_m, trial.stairs.end_y_m()))
     });
     let area = ways.reduce(|all, way| all.union(way));

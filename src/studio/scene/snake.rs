@@ -84,9 +84,9 @@ fn build(
     mut commands: Commands,
 ) {
     for (entity, lane) in &lanes {
-        let body = lane.body();
+        let body = &lane.body;
         let is_best = matches!(*mode, StageMode::Generation { .. });
-        let ([red, blue], [white, dark]) = match (lane.is_ghost(), is_best) {
+        let ([red, blue], [white, dark]) = match (lane.is_ghost, is_best) {
             (true, _) => (&props.ghosts, &trim.usual),
             (false, true) => (&props.limbs_of_best, &trim.of_best),
             (false, false) => (&props.limbs, &trim.usual),
@@ -103,7 +103,7 @@ fn build(
                     let place = place.with_rotation(pose.rotation);
                     let mut bone = commands.spawn((SnakePart(part), place, Visibility::default()));
                     bone.insert(ChildOf(entity));
-                    if lane.is_ghost() {
+                    if lane.is_ghost {
                         let size = Vec3::from(body.parts[part].size_m()) * GHOST_SIZE;
                         let cube = Mesh3d(props.ghost_cube.clone());
                         let place = place.with_scale(size);
@@ -113,7 +113,7 @@ fn build(
                     bone.id()
                 })
                 .collect();
-            if lane.is_ghost() {
+            if lane.is_ghost {
                 continue;
             }
             let bends = |joint: &JointPlan| joint.bend_limit_rad > 0.0;
@@ -151,7 +151,7 @@ fn build(
             let white = spawn(shapes.white.clone(), MeshMaterial3d(white.clone()));
             let dark = spawn(shapes.dark.clone(), MeshMaterial3d(dark.clone()));
             let collar = (limb == 0)
-                .then(|| spawn(shapes.collar.clone(), MeshMaterial3d(colors.of(lane.number()))));
+                .then(|| spawn(shapes.collar.clone(), MeshMaterial3d(colors.of(lane.number))));
             if let Some(collar) = collar {
                 commands.entity(collar).insert((LaneMark, Visibility::Hidden));
             }

@@ -59,11 +59,11 @@ fn build(
     mut images: ResMut<Assets<Image>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
         let trial = lane.trial();
         let mut of = |surface| surfaces.of(surface, *theme, &mut materials, &mut images);
         let (on_stairs, on_ground) = (of(&trial.surface), of(trial.ground()));
-        let start_m = trial.start_y_m - lane.body().length_m() / 2.0;
+        let start_m = trial.start_y_m - lane.body.length_m() / 2.0;
         let strip = meshes.add(to_tiled_mesh(strip(&trial.stairs, start_m), TILE_M));
         commands.entity(entity).with_child((
             Mesh3d(strip),

@@ -65,7 +65,7 @@ fn build(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
         let stairs = &lane.trial().stairs;
         let glow = meshes.add(glow(stairs));
         commands.entity(entity).with_children(|parent| {
@@ -131,8 +131,8 @@ fn light(
     strips: Res<Strips>,
     mut edges: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
 ) {
-    for (lane, children) in lanes.iter().filter(|(lane, _)| !lane.is_ghost()) {
-        let middle = lane.drawn_poses().nth(lane.body().middle_part);
+    for (lane, children) in lanes.iter().filter(|(lane, _)| !lane.is_ghost) {
+        let middle = lane.drawn_poses().nth(lane.body.middle_part);
         let stairs = &lane.trial().stairs;
         let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
         let mut edges = edges.iter_many_mut(children);

@@ -41,9 +41,9 @@ fn paint(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost()) {
+    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
         let mut writing = lettering.begin();
-        if lane.number() == 0 {
+        if lane.number == 0 {
             // Only the nearest lane is labelled. The scale's large digits need less contrast than small ones.
             writing.thin(SCALE_OPACITY);
             scale(&mut writing, lane);
@@ -61,7 +61,7 @@ fn paint(
 /// Adds the scale of distances along the lane, readable from the right of the stairs.
 fn scale(writing: &mut TextMeshBuilder<'_>, lane: &Lane) {
     let trial = lane.trial();
-    let start_m = trial.start_y_m - lane.body().length_m() / 2.0;
+    let start_m = trial.start_y_m - lane.body.length_m() / 2.0;
     let begin = (start_m / NUMBER_EVERY_M as f32).floor() as i32 * NUMBER_EVERY_M;
     let end = trial.stairs.end_y_m() as i32;
     let edge_m = trial.stairs.width_m / 2.0 + ASIDE_M;

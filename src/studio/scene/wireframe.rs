@@ -44,7 +44,7 @@ fn hold_worlds(
     }
     for mut world in &mut worlds {
         world.hold_for_lines();
-        if !world.lane.is_ghost() {
+        if !world.lane.is_ghost {
             draw_contacts(world.lane, &mut gizmos);
         }
     }
@@ -54,7 +54,7 @@ fn hold_worlds(
 /// overlap of each point, and the normal.
 fn draw_contacts(lane: &Lane, gizmos: &mut Gizmos) {
     let style = DebugRenderStyle::default();
-    let contacts = lane.simulation().map(|simulation| simulation.contacts_in_lanes());
+    let contacts = lane.replay.simulation().map(|simulation| simulation.contacts_in_lanes());
     for contact in contacts.unwrap_or_default() {
         let [from, to] = contact.on_m.map(|at| at + lane.offset());
         let along = from + contact.normal * style.contact_normal_length;

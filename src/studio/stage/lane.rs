@@ -14,23 +14,26 @@ use bevy_rapier3d::prelude::RapierContextSimulation;
 use super::readings::Readings;
 use super::replay::Replay;
 use super::staged_champion::StagedChampion;
-use snakes_core::score::{Evaluation, KeyframeHistory, Rollout, Trial};
-use snakes_core::world::{BodyPlan, Pose, Pull, Simulation, Vector};
+use snakes_core::score::{Evaluation, KeyframeHistory, Trial};
+use snakes_core::world::{BodyPlan, Pose, Pull, Vector};
 use snakes_lab::run::{Lookahead, caught};
 
 /// A lane of the stage, with the rollout that is scored.
 #[derive(Component)]
 #[require(RapierContextSimulation)]
 pub(crate) struct Lane {
-    staged: StagedChampion,
-    body: BodyPlan,
+    /// Champion in the lane.
+    pub staged: StagedChampion,
+    /// Body of the snake: number, sizes and joints of its limbs.
+    pub body: BodyPlan,
     /// Index of the lane; the first is 0.
-    number: usize,
+    pub number: usize,
     /// Offset of the lane's world along x, in metres.
     pub offset_x_m: f32,
     /// Whether the lane has the place of another lane and is drawn translucent, without stairs.
-    is_ghost: bool,
-    pub(super) replay: Replay,
+    pub is_ghost: bool,
+    /// Replay of the snake, at its last step.
+    pub replay: Replay,
     pub(super) lookahead: Lookahead,
     /// Step at which the snake of a recording first stood on the landing; `None` for a simulation.
     recorded_landing: Option<u32>,
@@ -41,7 +44,7 @@ pub(crate) struct Lane {
     /// Length of a physics step, in seconds.
     pub step_s: f64,
     /// Contacts, torques and joints after the last step.
-    readings: Readings,
+    pub readings: Readings,
     /// Path of the middle limb since the first pull by the mouse, in metres.
     detour_m: Vec<Vector>,
     /// Whether simulating the lane panicked. The lane then keeps its last state.
@@ -102,29 +105,9 @@ impl Lane {
         Self { is_ghost: true, ..self }
     }
 
-    /// Returns whether the lane is drawn as a ghost.
-    pub fn is_ghost(&self) -> bool {
-        self.is_ghost
-    }
-
-    /// Returns the champion in the lane.
-    pub fn staged(&self) -> &StagedChampion {
-        &self.staged
-    }
-
-    /// Returns the index of the lane; the first is 0.
-    pub fn number(&self) -> usize {
-        self.number
-    }
-
     /// Returns the offset of the lane's world along x, in metres.
     pub fn offset(&self) -> Vec3 {
         Vec3::new(self.offset_x_m, 0.0, 0.0)
-    }
-
-    /// Returns the snake's body: number, sizes and joints of its limbs.
-    pub fn body(&self) -> &BodyPlan {
-        &self.body
     }
 
     /// Returns the trial that the lane shows.
@@ -138,7 +121,7 @@ impl Lane {
             self.replay.step()
         } else {
             match self.history() {
-                Some(history) if !self.is_disturbed() => history.evaluation().steps,
+                Some(history) if !self.replay.is_disturbed() => history.evaluation().steps,
                 _ => self.replay.last_step(),
             }
         };
@@ -159,21 +142,6 @@ impl Lane {
     pub fn lookahead_share(&self) -> Option<f32> {
         let steps = self.lookahead.steps_done()?;
         Some(steps as f32 / self.replay.last_step().max(1) as f32)
-    }
-
-    /// Returns whether the rollout has ended.
-    pub fn is_over(&self) -> bool {
-        self.replay.is_over()
-    }
-
-    /// Returns whether the mouse has pulled the snake, so that the result does not count for the genome.
-    pub fn is_disturbed(&self) -> bool {
-        self.replay.is_disturbed()
-    }
-
-    /// Returns contacts, torques and joints after the last step.
-    pub fn readings(&self) -> &Readings {
-        &self.readings
     }
 
     /// Returns the path of the middle limb so far, in metres, in lane coordinates.
@@ -203,12 +171,7 @@ impl Lane {
 
     /// Returns the drawn position of the middle limb's centre, in metres, in lane coordinates.
     pub fn drawn_middle(&self) -> Vec3 {
-        self.drawn_poses().nth(self.body().middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
-    }
-
-    /// Returns the poses after the last step, from head to tail, in lane coordinates.
-    pub fn last_poses(&self) -> &[Pose] {
-        self.replay.poses()
+        self.drawn_poses().nth(self.body.middle_part).map_or(Vec3::ZERO, |pose| pose.translation)
     }
 
     /// Converts a point from a part's frame after the last step to lane coordinates, in metres.
@@ -218,7 +181,7 @@ impl Lane {
 
     /// Returns the speed of the middle limb during the last step, in m/s.
     pub fn speed_m_s(&self) -> f32 {
-        let middle = self.body().middle_part;
+        let middle = self.body.middle_part;
         match (self.before.get(middle), self.replay.poses().get(middle)) {
             (Some(before), Some(after)) => {
                 before.translation.distance(after.translation) / self.step_s as f32
@@ -229,7 +192,7 @@ impl Lane {
 
     /// Returns the time of the first landing, in simulated seconds, if the snake has landed by `time_s`.
     pub fn landed_s(&self, time_s: f64) -> Option<f64> {
-        let known = self.history().filter(|_| !self.is_disturbed());
+        let known = self.history().filter(|_| !self.replay.is_disturbed());
         let step = known.and_then(|history| history.landed_at_step()).or(self.recorded_landing)?;
         let landed_s = f64::from(step) * self.step_s;
         (landed_s <= time_s).then_some(landed_s)
@@ -237,19 +200,9 @@ impl Lane {
 
     /// Returns true only once, when an undisturbed replay first reaches its end.
     pub fn has_just_ended(&mut self) -> bool {
-        let has_ended = self.replay.is_over() && !self.is_disturbed() && !self.is_checked;
+        let has_ended = self.replay.is_over() && !self.replay.is_disturbed() && !self.is_checked;
         self.is_checked |= has_ended;
         has_ended
-    }
-
-    /// Returns the simulated world after the last step; `None` for a recording.
-    pub fn simulation(&self) -> Option<&Simulation> {
-        self.replay.simulation()
-    }
-
-    /// Returns the rollout after the last step; `None` for a recording.
-    pub fn rollout(&self) -> Option<&Rollout> {
-        self.replay.rollout()
     }
 
     /// Blocks until the lookahead has finished.
@@ -275,7 +228,7 @@ impl Lane {
         let known = self.history().cloned();
         // A jump is only faster if a keyframe lies between the current step and the target.
         let pays = |history: &Arc<KeyframeHistory>| {
-            !self.is_disturbed() && pull.is_none() && history.keyframe_before(step) > now
+            !self.replay.is_disturbed() && pull.is_none() && history.keyframe_before(step) > now
         };
         let jumps = step < now || known.as_ref().is_some_and(pays);
         let is_on_its_way = known.is_none() && self.lookahead_share().is_some();
@@ -328,7 +281,7 @@ impl Lane {
                 self.readings.meter.note(&self.replay, step);
             }
             if goes_on && self.replay.is_disturbed() {
-                let middle = self.replay.poses()[self.body().middle_part].translation;
+                let middle = self.replay.poses()[self.body.middle_part].translation;
                 self.detour_m.push(middle);
             }
         }

@@ -136,7 +136,7 @@ fn lanes_after(
     for staged in champions {
         let name = staged.name().to_owned();
         let number = lanes.len();
-        let same = earlier.iter_mut().find(|lane| lane.number() == number && lane.suits(&staged));
+        let same = earlier.iter_mut().find(|lane| lane.number == number && lane.suits(&staged));
         let built = staged.check().map_err(|invalid| invalid.to_string()).and_then(|()| {
             caught(|| match (same, lanes.first()) {
                 (_, Some(_)) if is_generation => Lane::ghost(staged, number),
@@ -151,12 +151,12 @@ fn lanes_after(
             Err(reason) => problems.push(format!("{name} cannot be shown: {reason}.")),
         }
     }
-    let width_m = |lane: &Lane| lane.body().width_m().max(lane.trial().stairs.width_m);
+    let width_m = |lane: &Lane| lane.body.width_m().max(lane.trial().stairs.width_m);
     let beside_m = lanes.iter().map(width_m).fold(0.0, f32::max) + GAP_M;
     let spacing_m = if is_generation { 0.0 } else { beside_m };
     let middle = (lanes.len().saturating_sub(1)) as f32 / 2.0;
     for lane in &mut lanes {
-        lane.offset_x_m = (middle - lane.number() as f32) * spacing_m;
+        lane.offset_x_m = (middle - lane.number as f32) * spacing_m;
     }
     (lanes, problems)
 }
@@ -250,19 +250,19 @@ fn advance(
 
 /// Returns a message if an undisturbed replay does not end as recorded.
 fn differs_from_record(lane: &Lane) -> Option<String> {
-    let recorded = lane.staged().champion().evaluation;
+    let recorded = lane.staged.champion().evaluation;
     let mut seen = lane.evaluation();
     if lane.trial().repeats.trials > 1 {
         // The stage shows a single trial, which cannot be compared with the mean over several repeats.
         seen.fitness = recorded.fitness;
     }
-    let differs = lane.staged().must_match_record() && !seen.agrees_with(&recorded);
+    let differs = lane.staged.must_match_record() && !seen.agrees_with(&recorded);
     differs.then(|| {
         format!(
             "This replay differs from its record ({:.2} instead of {:.2}): the file was \
              edited, or this machine computes different results (see snakes verify).",
             lane.evaluation().fitness,
-            lane.staged().fitness(),
+            lane.staged.fitness(),
         )
     })
 }

@@ -26,11 +26,11 @@ pub fn ranking<'a>(lanes: impl IntoIterator<Item = &'a Lane>, time_s: f64) -> Ve
         .map(|lane| {
             let evaluation = lane.evaluation();
             RankedLane {
-                lane: lane.number(),
-                name: lane.staged().label().to_owned(),
+                lane: lane.number,
+                name: lane.staged.label().to_owned(),
                 landed_s: lane.landed_s(time_s),
                 is_disqualified: evaluation.disqualified.is_some(),
-                is_disturbed: lane.is_disturbed(),
+                is_disturbed: lane.replay.is_disturbed(),
                 y_m: evaluation.centre_y_m,
             }
         })

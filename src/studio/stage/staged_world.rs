@@ -43,7 +43,7 @@ pub(crate) struct RayHit<'w> {
 impl<'w> StagedWorldItem<'w, '_> {
     /// Copies the lane's world after the last step into the context. A recording has no world; its drawn state is copied instead.
     pub fn hold_last_step(&mut self) {
-        match self.lane.simulation() {
+        match self.lane.replay.simulation() {
             Some(simulation) => self.hold(simulation, simulation.poses()),
             None => drop(self.hold_drawn()),
         }
@@ -52,7 +52,7 @@ impl<'w> StagedWorldItem<'w, '_> {
     /// Prepares the context for the lines of the collision shapes: the lane's world after the last step, or nothing for a
     /// ghost. The shapes of all snakes of a generation would hide the only one that is not a ghost.
     pub fn hold_for_lines(&mut self) {
-        if !self.lane.is_ghost() {
+        if !self.lane.is_ghost {
             return self.hold_last_step();
         }
         // A ray that was cast before has left a copy of the ghost's world.
@@ -89,7 +89,7 @@ impl<'w> StagedWorldItem<'w, '_> {
     /// the snake at its start.
     fn hold_drawn(&mut self) -> Simulation {
         let lane = self.lane;
-        let plan = lane.trial().world_plan(&lane.staged().champion().genome);
+        let plan = lane.trial().world_plan(&lane.staged.champion().genome);
         let simulation = Simulation::new(&plan);
         self.hold(&simulation, lane.drawn_poses());
         simulation

@@ -73,7 +73,7 @@ fn play(app: &mut App, frames_s: &[f32], until: impl Fn(&Lane) -> bool) {
 
 fn lane(app: &mut App) -> &Lane {
     let mut lanes = app.world_mut().query::<&Lane>();
-    lanes.iter(app.world()).min_by_key(|lane| lane.number()).expect("a lane")
+    lanes.iter(app.world()).min_by_key(|lane| lane.number).expect("a lane")
 }
 
 fn clock(app: &mut App) -> Mut<'_, Playback> {
@@ -127,7 +127,7 @@ fn seeking_gives_the_played_state_bit_for_bit() {
         let played = rollout_after(&champion, target);
         let shown = lane(&mut app);
         assert_eq!(shown.replay.step(), target);
-        assert_eq!(shown.last_poses(), played.poses(), "step {target}");
+        assert_eq!(shown.replay.poses(), played.poses(), "step {target}");
         assert_eq!(shown.evaluation(), played.evaluation(), "step {target}");
         let drawn: Vec<Pose> = shown.drawn_poses().collect();
         assert_eq!(drawn, played.poses(), "held on a step, that step is drawn");
@@ -143,7 +143,7 @@ fn stepping_back_and_forward_visits_the_same_states() {
     for forward in [true, true, false, false, true, true] {
         clock(&mut app).step(forward, step_s, 1.0e9);
         frame(&mut app, 0.1);
-        seen.push((lane(&mut app).replay.step(), lane(&mut app).last_poses().to_vec()));
+        seen.push((lane(&mut app).replay.step(), lane(&mut app).replay.poses().to_vec()));
     }
     assert_eq!(seen[1], seen[5]);
     assert_eq!(seen[0], seen[2]);
@@ -191,15 +191,15 @@ fn a_champion_of_another_engine_plays_its_recording_and_can_be_simulated() {
     for (drawn, recorded) in shown.drawn_poses().zip(last) {
         assert!((drawn.translation - recorded.translation).length() < 1e-5);
     }
-    assert!(shown.staged().caption().contains("as recorded by engine 1"));
-    let simulated = shown.staged().simulated();
+    assert!(shown.staged.caption().contains("as recorded by engine 1"));
+    let simulated = shown.staged.simulated();
     app.world_mut().write_message(Show::solo(simulated));
     clock(&mut app).restart();
     frame(&mut app, 0.0);
     play(&mut app, &[0.1], is_over);
     let shown = lane(&mut app);
     assert_eq!(shown.evaluation().trace_hash, loaded.champion.evaluation.trace_hash);
-    assert!(shown.staged().could_be_as_found());
+    assert!(shown.staged.could_be_as_found());
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn drawn_poses_lie_between_the_last_two_steps() {
     let place = time_s / shown.step_s;
     let share = (place - place.floor()) as f32;
     assert!((0.1..0.9).contains(&share), "the frame ends {share} of the way through a step");
-    let champion = shown.staged().champion();
+    let champion = shown.staged.champion();
     let mut rollout = Rollout::new(&champion.genome, &champion.trial);
     let mut head = || {
         rollout.advance();
@@ -232,7 +232,7 @@ fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     let mut lanes = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     assert_eq!(lanes.len(), MAX_LANES, "and no more");
     let xs: Vec<f32> = lanes.iter().map(|lane| lane.offset().x).collect();
     let spacing_m = champion.trial.stairs.width_m + GAP_M;
@@ -262,14 +262,14 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
     // The earlier lanes stay if the new ones cannot be shown.
     app.world_mut().write_message(Show::solo(StagedChampion::from_file(&unfit, 0, "unfit")));
     frame(&mut app, 0.1);
-    assert_eq!(lane(&mut app).staged().name(), "a champion");
+    assert_eq!(lane(&mut app).staged.name(), "a champion");
 }
 
 /// Holds the head of the only snake with the mouse, and pulls it this far.
 fn pull(app: &mut App, way_m: Vector) {
     let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
     let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(app).last_poses()[0].translation + way_m;
+    let to_m = lane(app).replay.poses()[0].translation + way_m;
     let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
     let held = HeldLimb { lane: entity, pull, pressed_at: Vec2::ZERO, is_pulling: true };
     app.world_mut().resource_mut::<Selection>().grab(0, 0, held);
@@ -282,16 +282,16 @@ fn a_pulled_snake_is_disturbed_until_a_seek_and_is_not_compared_with_its_record(
     play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
     pull(&mut app, Vector::new(0.0, -2.0, 2.0));
     (0..20).for_each(|_| frame(&mut app, 0.05));
-    assert!(lane(&mut app).is_disturbed());
+    assert!(lane(&mut app).replay.is_disturbed());
     app.world_mut().resource_mut::<Selection>().held = None;
     play(&mut app, &[0.1], is_over);
     (0..10).for_each(|_| frame(&mut app, 0.05));
     assert_eq!(app.world().resource::<Notices>().len(), 0, "the record is not checked");
-    let recorded = lane(&mut app).staged().champion().evaluation;
+    let recorded = lane(&mut app).staged.champion().evaluation;
     assert!(!lane(&mut app).evaluation().agrees_with(&recorded), "the pull changed the result");
     clock(&mut app).seek(1.0, 1.0e9);
     frame(&mut app, 0.0);
-    assert!(!lane(&mut app).is_disturbed(), "undisturbed before the pull");
+    assert!(!lane(&mut app).replay.is_disturbed(), "undisturbed before the pull");
     clock(&mut app).set_speed(16.0);
     play(&mut app, &[0.1], is_over);
     assert!(lane(&mut app).evaluation().agrees_with(&recorded));
@@ -312,7 +312,7 @@ fn a8_no_pull_ends_a_trial_and_a_pull_plays_a_paused_stage() {
     assert!(clock(&mut app).is_playing, "or nothing would move");
     let lane = lane(&mut app);
     assert_eq!(lane.evaluation().disqualified, None);
-    assert!(lane.is_disturbed() && lane.last_poses()[0].translation.x.abs() > 3.0);
+    assert!(lane.replay.is_disturbed() && lane.replay.poses()[0].translation.x.abs() > 3.0);
 }
 
 #[test]
@@ -324,7 +324,7 @@ fn a_high_step_rate_can_be_pulled_without_jumping_back() {
     play(&mut app, &[0.1], |lane| lane.replay.step() > 300);
     pull(&mut app, Vector::new(0.0, 0.0, 2.0));
     frame(&mut app, 0.1);
-    assert!(lane(&mut app).is_disturbed(), "pulled during all hundred steps of the frame");
+    assert!(lane(&mut app).replay.is_disturbed(), "pulled during all hundred steps of the frame");
 }
 
 #[test]
@@ -341,7 +341,7 @@ fn a_disturbed_lane_spreads_a_long_seek_over_several_frames() {
     frame(&mut app, 0.05);
     let after = lane(&mut app).replay.step();
     assert!(after - before <= MAX_STEPS_PER_FRAME, "{before} to {after}");
-    play(&mut app, &[0.05], |lane| lane.is_over() || lane.replay.step() == 15_000);
+    play(&mut app, &[0.05], |lane| lane.replay.is_over() || lane.replay.step() == 15_000);
 }
 
 #[test]

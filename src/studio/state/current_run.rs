@@ -71,7 +71,7 @@ pub(crate) struct CurrentRun {
     before: Option<BackgroundRun>,
     reports: Vec<GenerationReport>,
     /// Generations that were better than all earlier ones, the earliest first.
-    milestones: Vec<Milestone>,
+    pub milestones: Vec<Milestone>,
     /// Results besides champions; `None` until the first generation is finished.
     exploration: Option<Box<Exploration>>,
     /// Individuals with descendants, by their place; computed at the first use.
@@ -249,7 +249,7 @@ impl CurrentRun {
 
     /// Prepares the next run. If its plan is that of the current run, the current run is discarded and starts again. A
     /// different run that was stopped earlier is resumed.
-    pub fn reset(&mut self) -> Result<(), String> {
+    pub fn reset(&mut self) {
         // The plan with which the current run began is compared, because changes during a run make it differ from a run
         // that began with the changed settings.
         if self.source.plan != self.plan_next {
@@ -258,7 +258,6 @@ impl CurrentRun {
             self.discarded = Some(self.source.folder.clone());
             self.replace(RunSource { earlier: ExistingRun::Discard, ..self.source.clone() });
         }
-        Ok(())
     }
 
     /// Makes the next run the current one, without starting it.
@@ -328,11 +327,10 @@ impl CurrentRun {
         self.background.as_ref().is_some_and(BackgroundRun::is_single_generation)
     }
 
-    fn take_over_if_ready(&mut self) -> Result<(), String> {
+    fn take_over_if_ready(&mut self) {
         if self.status() == RunStatus::Ready {
             self.prepare_next();
         }
-        Ok(())
     }
 
     /// Prepares a run that differs from the current one. If nothing else differs, takes the next seed for which there is

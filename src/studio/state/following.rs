@@ -22,7 +22,7 @@ pub(crate) struct Following {
     /// Whether the run began since the program started and its first generation is still to be shown.
     is_new: bool,
     /// Whether the playback is held at its start until the first generation is finished.
-    holds: bool,
+    pub holds: bool,
     /// Number of the run that is followed.
     run: u32,
     /// Whether a story is repeated after its end. This does not change what the stage shows.
@@ -69,11 +69,6 @@ impl Following {
         self.plan == FollowPlan::Evolution
     }
 
-    /// Returns whether the playback is held until the first generation is finished.
-    pub fn awaits_first(&self) -> bool {
-        self.holds
-    }
-
     /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
     pub fn story_part(&self) -> Option<(usize, usize)> {
         let FollowPlan::Story { generations, next } = &self.plan else { return None };
@@ -103,7 +98,7 @@ impl Following {
     /// # Errors
     /// There are fewer than two better generations; the error is a sentence for the user.
     pub fn tell_story(&mut self, run: &CurrentRun) -> Result<(), String> {
-        let milestones = run.milestones();
+        let milestones = &run.milestones;
         if milestones.len() < 2 {
             return Err("There is no story yet: wait for a second, better generation.".to_owned());
         }
@@ -119,7 +114,7 @@ impl Following {
         match &mut self.plan {
             FollowPlan::Nothing => None,
             FollowPlan::Evolution => {
-                let milestones = run.milestones();
+                let milestones = &run.milestones;
                 let next = match self.shown {
                     // A new run is shown from its first generation on, even if better ones follow quickly.
                     None => {
@@ -174,7 +169,7 @@ pub(super) fn plugin(app: &mut App) {
 
 /// Holds the playback at its start until the first generation is finished.
 fn await_first(following: Res<Following>, mut playback: ResMut<Playback>) {
-    if following.awaits_first() {
+    if following.holds {
         playback.hold_at(0.0);
     }
 }
@@ -211,7 +206,7 @@ fn follow(
         // The user is looking at the paused stage.
         return;
     }
-    if lanes.iter().any(Lane::is_disturbed) {
+    if lanes.iter().any(|lane| lane.replay.is_disturbed()) {
         return;
     }
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
@@ -228,7 +223,7 @@ fn follow(
 
 /// Announces a generation that is better than all earlier ones, unless the stage shows better ones automatically.
 fn announce(mut following: ResMut<Following>, run: Res<CurrentRun>, mut notices: ResMut<Notices>) {
-    let Some(latest) = run.milestones().last() else { return };
+    let Some(latest) = run.milestones.last() else { return };
     if following.follows_evolution() || latest.generation <= following.announced {
         return;
     }
@@ -251,7 +246,7 @@ mod tests {
     #[test]
     fn a_new_run_is_shown_from_its_first_generation_and_then_from_the_latest() {
         let run = explored_run();
-        let [first, .., last] = run.milestones() else { panic!("two better generations") };
+        let [first, .., last] = &run.milestones[..] else { panic!("two better generations") };
         let (first, last) = (first.generation, last.generation);
         let mut following = Following::from_start();
         assert_eq!(following.due(&prepared_run(), false), None, "nothing is finished");
@@ -270,7 +265,7 @@ mod tests {
     fn a4_the_first_landing_is_watched_to_its_end_and_evolution_is_followed_on() {
         let run = landed_run();
         let mut following = Following::from_start();
-        let landing = run.milestones().iter().find(|of| of.is_landed).expect("it lands").generation;
+        let landing = run.milestones.iter().find(|of| of.is_landed).expect("it lands").generation;
         while let Some(generation) = following.due(&run, true) {
             following.shown = Some(generation);
             if generation == landing {
@@ -279,7 +274,7 @@ mod tests {
             }
         }
         assert!(following.follows_evolution(), "nobody ended it");
-        let last = run.milestones().last().map(|last| last.generation);
+        let last = run.milestones.last().map(|last| last.generation);
         assert_eq!(following.shown, last, "the best of all");
     }
 
@@ -312,7 +307,7 @@ mod tests {
         let mut following = Following::from_start();
         following.stop();
         assert_eq!(following.due(&run, true), None);
-        assert!(!following.awaits_first());
+        assert!(!following.holds);
     }
 
     #[test]
@@ -342,8 +337,8 @@ mod tests {
         for _ in 0..parts {
             told.extend(following.due(&run, true));
         }
-        assert_eq!(told.first(), run.milestones().first().map(|first| &first.generation));
-        assert_eq!(told.last(), run.milestones().last().map(|last| &last.generation));
+        assert_eq!(told.first(), run.milestones.first().map(|first| &first.generation));
+        assert_eq!(told.last(), run.milestones.last().map(|last| &last.generation));
         assert_eq!(following.due(&run, true), None);
         assert_eq!(following.story_part(), None, "it is over");
     }

@@ -168,7 +168,7 @@ impl Lessons {
                 };
                 run.pause()?;
                 run.is_lent = true;
-                let (next, history) = (run.next_plan().clone(), history.lend());
+                let (next, history) = (run.next_plan().clone(), std::mem::take(history));
                 Own { next, history, pace }
             }
         };
@@ -353,10 +353,10 @@ fn take_in(
         return;
     }
     let mut lanes: Vec<&Lane> = lanes.iter().collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     lessons.follow_playback(&playback, &lanes);
-    let is_seen = |lane: &Lane| lane.is_over() && !lane.is_disturbed();
-    let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged().label()));
+    let is_seen = |lane: &Lane| lane.replay.is_over() && !lane.replay.is_disturbed();
+    let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged.label()));
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
     let reached = lessons.view().filter(|view| view.shows_conclusion);
@@ -366,7 +366,7 @@ fn take_in(
         lessons.finished.insert(title.to_owned());
     }
     let end_s = end_s(lanes.iter().copied());
-    let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
+    let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.replay.is_over());
     if is_over && playback.is_playing && playback.time_s() >= end_s {
         // The finish stays in sight until the reader plays again.
         playback.hold_at(end_s);

@@ -49,7 +49,7 @@ pub(crate) fn apply_to_plan(
 ) -> Result<Option<Show>, String> {
     let on_show = &stage.show.champions;
     match command {
-        PlanCommand::SetSeed(seed) => run.set_seed(*seed)?,
+        PlanCommand::SetSeed(seed) => run.set_seed(*seed),
         PlanCommand::SetField { field, text } => {
             let mut fields = vec![(field.as_str(), text.as_str())];
             // Without the changes of the partners, the strategy, the controller and the bodies would not suit each
@@ -96,7 +96,7 @@ pub(crate) fn apply_to_plan(
             // The new run uses the changed world of a what-if.
             return Ok(kept(stage.show));
         }
-        PlanCommand::ForgetFounder => run.forget_founder()?,
+        PlanCommand::ForgetFounder => run.forget_founder(),
         PlanCommand::UseWorldOfLane => {
             let changes = on_show.first().map(changes_of).unwrap_or_default();
             let texts = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));

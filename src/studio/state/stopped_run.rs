@@ -104,7 +104,7 @@ mod tests {
         let mut run = app.world_mut().resource_mut::<CurrentRun>();
         assert_eq!((run.plan_now.seed, run.number(), run.reports().len()), (1, 0, 1));
         assert_eq!(run.status(), RunStatus::Paused);
-        assert!(!run.milestones().is_empty(), "its best snake can be shown");
+        assert!(!run.milestones.is_empty(), "its best snake can be shown");
         let mut notices = Notices::default();
         run.apply(&RunCommand::New, &mut notices).expect("allowed");
         assert_eq!(

@@ -102,7 +102,7 @@ impl Turns {
         let is_opened = on_stage.is_some_and(|of| matches!(of.source(), ChampionSource::Opened(_)));
         let stays = matches!(mode, StageMode::Race | StageMode::WhatIf { .. })
             || (is_opened && self.keeps_opened);
-        let is_told = is_live || following.awaits_first() || following.story_part().is_some();
+        let is_told = is_live || following.holds || following.story_part().is_some();
         !is_told && !self.is_held && (self.is_led || !stays)
     }
 }
@@ -125,8 +125,8 @@ fn take_turns(
     if !turns.is_on || run.is_lent {
         return;
     }
-    let first = lanes.iter().min_by_key(|lane| lane.number());
-    let on_stage = first.map(Lane::staged);
+    let first = lanes.iter().min_by_key(|lane| lane.number);
+    let on_stage = first.map(|lane| &lane.staged);
     let end_s = end_s(lanes);
     let is_over = playback.is_playing && end_s > 0.0 && playback.time_s() >= end_s;
     turns.rested = if is_over { turns.rested + time.delta() } else { Duration::ZERO };

@@ -43,10 +43,6 @@ pub(crate) enum UndoStep {
 }
 
 impl UndoStep {
-    fn is_of_files(&self) -> bool {
-        matches!(self, Self::Files { .. })
-    }
-
     /// Describes the change of the step in a few words.
     pub fn label(&self) -> &str {
         match self {
@@ -113,7 +109,7 @@ pub(crate) struct UndoHistory {
     /// Steps that can be redone, the next one last.
     undone: Vec<UndoStep>,
     /// Whether the latest step is complete, so that a further change is a separate step.
-    is_settled: bool,
+    pub is_settled: bool,
     /// Whether a step has been added since the last one was taken, so that the taken step cannot be redone.
     is_overtaken: bool,
 }
@@ -151,16 +147,6 @@ impl UndoHistory {
         }
     }
 
-    /// Returns whether a further change of the same setting would be added to the latest step.
-    pub fn is_open(&self) -> bool {
-        !self.is_settled
-    }
-
-    /// Completes the latest step, so that the next change is a separate step.
-    pub fn settle(&mut self) {
-        self.is_settled = true;
-    }
-
     /// Removes and returns the next step in a direction. The caller executes it, and reports the result to [`Self::complete`].
     pub fn take(&mut self, way: UndoDirection) -> Option<UndoStep> {
         (self.is_settled, self.is_overtaken) = (true, false);
@@ -180,16 +166,12 @@ impl UndoHistory {
         self.undone.extend(redoable.filter(|_| !self.is_overtaken));
     }
 
-    /// Replaces the history by an empty one for a lesson, and returns the old one.
-    pub fn lend(&mut self) -> Self {
-        std::mem::take(self)
-    }
-
     /// Restores the history from before a lesson, and adds the file operations that were made during the lesson.
     pub fn give_back(&mut self, own: Self) {
         let lesson = std::mem::replace(self, own);
-        self.done.extend(lesson.done.into_iter().filter(UndoStep::is_of_files));
-        self.undone.extend(lesson.undone.into_iter().filter(UndoStep::is_of_files));
+        let is_of_files = |step: &UndoStep| matches!(step, UndoStep::Files { .. });
+        self.done.extend(lesson.done.into_iter().filter(is_of_files));
+        self.undone.extend(lesson.undone.into_iter().filter(is_of_files));
         self.is_settled = true;
     }
 
@@ -255,7 +237,7 @@ fn settle_on_press(
     mut history: ResMut<UndoHistory>,
 ) {
     if buttons.get_just_pressed().next().is_some() || keys.get_just_pressed().next().is_some() {
-        history.settle();
+        history.is_settled = true;
     }
 }
 
@@ -279,7 +261,7 @@ mod tests {
     fn after_a_lesson_its_file_operations_stay_and_its_plan_steps_do_not() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
-        let own = history.lend();
+        let own = std::mem::take(&mut history);
         assert_eq!(history.next(UndoDirection::Back), None);
         history.note(&set("0.3"), plan("0.5"), &plan("0.3"));
         history.push(of_files("deleted a"));
@@ -309,7 +291,7 @@ mod tests {
     fn steps_are_undone_and_redone_with_their_labels() {
         let mut history = UndoHistory::default();
         history.note(&set("0.5"), plan("1"), &plan("0.5"));
-        history.settle();
+        history.is_settled = true;
         history.note(&set("0.2"), plan("0.5"), &plan("0.2"));
         assert_eq!(history.next(UndoDirection::Back), Some("friction 0.2"));
         assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("0.5"), plan("0.2")));
@@ -350,7 +332,7 @@ mod tests {
         for number in 0..MAX_STEPS + 50 {
             let after = plan(&format!("{}", number + 2));
             history.note(&set(""), plan(&format!("{}", number + 1)), &after);
-            history.settle();
+            history.is_settled = true;
         }
         let steps = std::iter::from_fn(|| step(&mut history, UndoDirection::Back)).count();
         assert_eq!(steps, MAX_STEPS);

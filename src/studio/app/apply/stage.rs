@@ -68,8 +68,8 @@ impl StageParams<'_, '_> {
     /// Returns the champions on the stage, in the order of their lanes.
     fn champions(&self) -> Vec<StagedChampion> {
         let mut lanes: Vec<&Lane> = self.all_lanes().collect();
-        lanes.sort_by_key(|lane| lane.number());
-        lanes.into_iter().map(|lane| lane.staged().clone()).collect()
+        lanes.sort_by_key(|lane| lane.number);
+        lanes.into_iter().map(|lane| lane.staged.clone()).collect()
     }
 
     /// Returns a request for what is on the stage.
@@ -90,9 +90,9 @@ impl StageParams<'_, '_> {
     /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
     pub fn selected(&self) -> Option<StagedChampion> {
         let lanes = || self.all_lanes();
-        let selected = lanes().find(|lane| lane.number() == self.selection.lane);
-        let lane = selected.or_else(|| lanes().min_by_key(|lane| lane.number()));
-        lane.map(|lane| lane.staged().clone())
+        let selected = lanes().find(|lane| lane.number == self.selection.lane);
+        let lane = selected.or_else(|| lanes().min_by_key(|lane| lane.number));
+        lane.map(|lane| lane.staged.clone())
     }
 
     /// Shows other champions from their start until the user chooses again. A pause command later in the same frame
@@ -254,7 +254,7 @@ impl StageParams<'_, '_> {
 
     /// Executes a command to the clock of the stage.
     pub fn apply_to_player(&mut self, command: &PlayerCommand) {
-        let focused = self.all_lanes().find(|lane| lane.number() == self.selection.lane);
+        let focused = self.all_lanes().find(|lane| lane.number == self.selection.lane);
         let step_s = focused.map_or(1.0, |lane| lane.step_s);
         let end_s = end_s(self.all_lanes());
         self.playback.apply(command, step_s, end_s);

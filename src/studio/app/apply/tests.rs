@@ -76,7 +76,7 @@ fn settings_are_undone_and_redone_drag_by_drag() {
     let first = friction_after(&mut app, &[]);
     // A drag of a slider with a pause.
     assert_eq!(friction_after(&mut app, &[set("0.5"), set("0.4"), set("0.3")]), 0.3);
-    app.world_mut().resource_mut::<UndoHistory>().settle();
+    app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
     assert_eq!(friction_after(&mut app, &[set("0.2")]), 0.2);
     assert_eq!(friction_after(&mut app, &[Command::Undo]), 0.3);
     assert_eq!(friction_after(&mut app, &[Command::Undo]), first);
@@ -94,7 +94,7 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
     let mut tried = |friction: &str, act: &dyn Fn(&mut Playback)| {
         act(&mut app.world_mut().resource_mut::<Playback>());
         app.world_mut().write_message(set(friction));
-        app.world_mut().resource_mut::<UndoHistory>().settle();
+        app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
         app.update();
         let show = app.world_mut().resource_mut::<Messages<Show>>().drain().last();
         let Show { champions, mode } = show.expect("a what-if");

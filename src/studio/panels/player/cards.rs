@@ -124,7 +124,7 @@ pub(crate) fn around_stage(
         });
         corner = Some(shown.response.rect);
     } else if *on_stage.mode != StageMode::Solo {
-        let (mode, focus) = (&*on_stage.mode, focused.number());
+        let (mode, focus) = (&*on_stage.mode, focused.number);
         let time_s = on_stage.playback.time_s();
         let shown = card("board", low.0, low.1).show(context, |ui| {
             frame.show(ui, |ui| {
@@ -133,7 +133,7 @@ pub(crate) fn around_stage(
             });
         });
         board = Some(shown.response.rect.expand(theme::GAP));
-    } else if on_stage.following.awaits_first() {
+    } else if on_stage.following.holds {
         let shown = card("waiting", pivot, at).show(context, |ui| {
             frame.show(ui, |ui| waiting_card(ui, situation.progress, commands));
         });
@@ -156,7 +156,7 @@ pub(crate) fn around_stage(
     if on_stage.overlays.shows_any() {
         // The legend ignores the pointer, because the snake may be behind the legend.
         let place = card("legend", egui::Align2::LEFT_TOP, below_bar).interactable(false);
-        let is_pulled = lanes.iter().any(|lane| lane.is_disturbed());
+        let is_pulled = lanes.iter().any(|lane| lane.replay.is_disturbed());
         let shown = place.show(context, |ui| {
             frame.show(ui, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
         });
@@ -199,7 +199,7 @@ fn limb_place(
     let drawn_size = drawn.map_or(least, |rect| rect.size());
     let of_lane = |lane: &Lane| on_stage.limbs_in_window(context, lane);
     let selected = of_lane(focused).get(limb).copied().flatten();
-    let lanes = lanes.iter().filter(|lane| !lane.is_ghost());
+    let lanes = lanes.iter().filter(|lane| !lane.is_ghost);
     let all: Vec<egui::Rect> = lanes.flat_map(|lane| of_lane(lane)).flatten().collect();
     let around = AroundLimb { room, taken: others, selected, all: &all };
     around.place(drawn_size, drawn)

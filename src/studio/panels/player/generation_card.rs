@@ -25,7 +25,7 @@ pub(crate) fn generation_card(
     let (caption, detail) = captions(*number, *size, shown);
     ui.label(egui::RichText::new(caption).size(theme::CAPTION_SIZE).strong());
     ui.label(detail);
-    ui.label(format!("Best: {}", best.staged().champion().reached()));
+    ui.label(format!("Best: {}", best.staged.champion().reached()));
     if let Some((part, parts)) = following.story_part() {
         explain(ui, &format!("Story, part {part} of {parts}"));
     }
@@ -35,9 +35,9 @@ pub(crate) fn generation_card(
         let single = Command::Stage(StageCommand::Single);
         CommandButton::new("Only the best", hint, single).show(ui, commands);
     });
-    let champion = best.staged().champion();
+    let champion = best.staged.champion();
     if champion.evaluation.is_on_landing(&champion.trial.stairs) {
-        after_landing(ui, best.staged().source(), commands);
+        after_landing(ui, best.staged.source(), commands);
     }
 }
 

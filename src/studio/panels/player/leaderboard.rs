@@ -32,7 +32,7 @@ fn splits_s(stairs: &Stairs, history: &KeyframeHistory, step_s: f64, time_s: f64
 /// Draws the tooltip of a snake's result: the time of each step that the snake has climbed.
 fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     let stairs = &lane.trial().stairs;
-    let history = lane.history().filter(|_| !lane.is_disturbed());
+    let history = lane.history().filter(|_| !lane.replay.is_disturbed());
     let splits_s =
         history.map(|history| splits_s(stairs, history, lane.step_s, time_s)).unwrap_or_default();
     if splits_s.is_empty() {
@@ -81,9 +81,9 @@ pub(crate) fn leaderboard(
         .min_col_width(0.0)
         .spacing([theme::GAP, theme::GAP / 4.0])
         .show(ui, |ui| {
-            let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost());
+            let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost);
             for (place, ranked) in ranking(racers, time_s).iter().enumerate() {
-                let lane = lanes.iter().find(|lane| lane.number() == ranked.lane);
+                let lane = lanes.iter().find(|lane| lane.number == ranked.lane);
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 if is_winner {
                     // A coloured background would look like that of the selected row.
@@ -93,7 +93,7 @@ pub(crate) fn leaderboard(
                     ui.label(rank.color(palette.text_weak));
                 }
                 lane_dot(ui, ranked.lane, theme::LANE_DOT);
-                let beginning = lane.and_then(|lane| lane.staged().beginning_in_words());
+                let beginning = lane.and_then(|lane| lane.staged.beginning_in_words());
                 let beginning = beginning.map(|words| format!("\n{}: {words}", ranked.name));
                 let hint = "Show the numbers and torques of this snake below".to_owned();
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
@@ -131,10 +131,10 @@ pub(crate) fn leaderboard(
     {
         explain(ui, NEXT_LANE);
     }
-    let selected = lanes.iter().find(|lane| lane.number() == focus);
+    let selected = lanes.iter().find(|lane| lane.number == focus);
     ui.horizontal(|ui| {
         buttons(ui, mode, (keeps_each, can_leave), commands);
-        if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged().is_changed()) {
+        if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged.is_changed()) {
             let hint = "Use the changed settings of the selected snake's world for the next run";
             let use_it = Command::Plan(PlanCommand::UseWorldOfLane);
             CommandButton::new("Use this world", hint, use_it).show(ui, commands);
@@ -149,8 +149,8 @@ const NEXT_LANE: &str = "The next change gets a lane of its own.";
 
 /// Describes the time from which all copies differ from the original, if it is the same for all.
 fn common_beginning(lanes: &[&Lane]) -> Option<String> {
-    let copies = || lanes.iter().filter(|lane| lane.number() > 0);
-    let mut beginnings = copies().map(|lane| lane.staged().beginning_in_words());
+    let copies = || lanes.iter().filter(|lane| lane.number > 0);
+    let mut beginnings = copies().map(|lane| lane.staged.beginning_in_words());
     let first = beginnings.next().flatten()?;
     beginnings.all(|other| other.as_ref() == Some(&first)).then_some(first)
 }

@@ -75,8 +75,8 @@ pub(super) fn limb_card(
     is_playing: bool,
     size: CardSize,
 ) {
-    let body = lane.body();
-    let poses = body.limb_poses(lane.last_poses());
+    let body = &lane.body;
+    let poses = body.limb_poses(lane.replay.poses());
     let Some(pose) = poses.get(limb) else { return };
     ui.set_min_width(size.width());
     let count = body.limbs();
@@ -137,7 +137,7 @@ pub(super) fn limb_card(
 
 /// Returns the readings of a limb's speed and contacts. Each reading of a contact states whether it is instantaneous or an average.
 fn contact_rows(lane: &Lane, limb: usize, is_playing: bool, size: CardSize) -> Vec<Reading> {
-    let readings = lane.readings();
+    let readings = &lane.readings;
     let Some(speed_m_s) = readings.speeds_m_s.get(limb) else { return Vec::new() };
     let contacts = readings.contacts.iter().filter(|contact| contact.limb == limb);
     let (points, force_n) = contacts
@@ -160,7 +160,7 @@ fn contact_rows(lane: &Lane, limb: usize, is_playing: bool, size: CardSize) -> V
             ..Reading::of(name("Contact", "Contact now"), touch)
         },
     ];
-    if lane.is_ghost() {
+    if lane.is_ghost {
         return rows;
     }
     let surface = readings.meter.limb(is_playing, limb, |_| true);
@@ -181,7 +181,7 @@ fn contact_rows(lane: &Lane, limb: usize, is_playing: bool, size: CardSize) -> V
 
 /// Returns the readings of angles and torques at the joints of a limb.
 fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
-    let readings = lane.readings();
+    let readings = &lane.readings;
     let joint = |index: usize| {
         let state: &JointState = readings.joints.get(index)?;
         let torque = readings.torques.get(index)?;
@@ -197,7 +197,7 @@ fn joint_rows(lane: &Lane, limb: usize, size: CardSize) -> Vec<Reading> {
         Some([line(state.bend_rad, torque.bend_nm), line(state.twist_rad, torque.twist_nm)])
     };
     let mut rows = Vec::new();
-    let body = lane.body();
+    let body = &lane.body;
     for (index, of) in body.joints.iter().enumerate() {
         let [front, rear] = [of.parent, of.child].map(|part| body.parts[part].limb);
         let names = if rear == limb {
@@ -225,8 +225,8 @@ mod tests {
     fn a_limb_that_has_just_left_the_ground_says_which_readings_are_of_the_moment() {
         let mut lane = climber_lane(0, "climber");
         let has_left = |lane: &Lane| {
-            let touches = lane.readings().contacts.iter().any(|contact| contact.limb == 0);
-            !touches && lane.readings().meter.limb(false, 0, |_| true).is_some()
+            let touches = lane.readings.contacts.iter().any(|contact| contact.limb == 0);
+            !touches && lane.readings.meter.limb(false, 0, |_| true).is_some()
         };
         let mut times_s = (0..900).map(|step| f64::from(step) / 60.0);
         let left_s = times_s.find(|time_s| {

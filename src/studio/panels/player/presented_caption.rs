@@ -45,7 +45,7 @@ impl PresentedCaption {
     /// Creates the caption of what the stage shows now. It contains nothing that the playback has not reached yet.
     pub fn of(lanes: &[&Lane], on_stage: &OnStage, run: &CurrentRun) -> Self {
         let Some(first) = lanes.first() else { return Self::default() };
-        if on_stage.following.awaits_first() {
+        if on_stage.following.holds {
             let (done, all) = run.progress();
             let title = format!("Generation 1: {done} of {all} random snakes tried");
             let details = vec![CaptionPart::plain("They appear here in a moment.".to_owned())];
@@ -54,17 +54,17 @@ impl PresentedCaption {
         let time_s = on_stage.playback.time_s();
         let mut caption = match &*on_stage.mode {
             StageMode::Solo | StageMode::Generation { .. } => {
-                let generation = first.staged().generation();
+                let generation = first.staged.generation();
                 let is_first_landing = run
-                    .milestones()
+                    .milestones
                     .iter()
                     .find(|milestone| milestone.is_landed)
                     .is_some_and(|milestone| milestone.generation == generation)
-                    && first.staged().source() == ChampionSource::Run(run.number());
+                    && first.staged.source() == ChampionSource::Run(run.number());
                 Self::of_one(first, time_s, is_first_landing)
             }
             StageMode::Race => {
-                let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost());
+                let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost);
                 Self::of_race(&ranking(racers, time_s))
             }
             StageMode::WhatIf { .. } => Self::of_what_if(lanes, time_s),
@@ -86,7 +86,7 @@ impl PresentedCaption {
     }
 
     fn of_one(lane: &Lane, time_s: f64, is_first_landing: bool) -> Self {
-        let name = lane.staged().label();
+        let name = lane.staged.label();
         let title = match lane.landed_s(time_s) {
             Some(_) if is_first_landing => format!("First landing! {name} has reached the top"),
             _ => format!("{name}: {}", lane.progress_in_words(time_s)),
@@ -117,7 +117,7 @@ impl PresentedCaption {
 
     /// Creates the caption of a what-if: compares the latest copy, which is the last lane, with the original, which is the first.
     fn of_what_if(lanes: &[&Lane], time_s: f64) -> Self {
-        let racers: Vec<&&Lane> = lanes.iter().filter(|lane| !lane.is_ghost()).collect();
+        let racers: Vec<&&Lane> = lanes.iter().filter(|lane| !lane.is_ghost).collect();
         let (Some(original), Some(changed)) = (racers.first(), racers.last()) else {
             return Self::default();
         };
@@ -128,13 +128,13 @@ impl PresentedCaption {
             _ => format!("{:.1} m behind", -ahead_m),
         };
         let details = [original, changed].map(|lane| CaptionPart {
-            lane: Some(lane.number()),
-            text: format!("{}: {}", lane.staged().label(), lane.progress_in_words(time_s)),
+            lane: Some(lane.number),
+            text: format!("{}: {}", lane.staged.label(), lane.progress_in_words(time_s)),
         });
         Self {
             title: CaptionPart {
-                lane: Some(changed.number()),
-                text: format!("{}: {difference}", changed.staged().label()),
+                lane: Some(changed.number),
+                text: format!("{}: {difference}", changed.staged.label()),
             },
             details: details.into(),
         }
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a28_a_landing_counts_even_if_the_snake_has_gone_on_beyond_it() {
-        let staged = lane(0, "climber", 0.0).staged().clone();
+        let staged = lane(0, "climber", 0.0).staged.clone();
         let title = |landing_m: f32| {
             let mut trial = staged.trial().clone();
             trial.stairs.landing_m = landing_m;

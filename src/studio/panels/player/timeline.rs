@@ -86,7 +86,7 @@ impl TimelinePanel {
         run: u32,
         commands: &mut Vec<Command>,
     ) {
-        let staged = lane.staged();
+        let staged = &lane.staged;
         ui.horizontal(|ui| {
             at_right(ui, |ui| {
                 if staged.other_engine().is_some() && staged.could_be_as_found() {
@@ -99,7 +99,7 @@ impl TimelinePanel {
                     CommandButton::new("Simulate again", hint, simulate).show(ui, commands);
                 }
                 own_stairs_button(ui, staged, commands);
-                if lane.is_disturbed() {
+                if lane.replay.is_disturbed() {
                     let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
                     let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);
                     ui.label(text).on_hover_text(hint);
@@ -167,7 +167,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     }
     let unit = trial.fitness.unit();
     // A recording stores only the final evaluation.
-    let is_on_record = lane.staged().recording().is_some() && !lane.is_over();
+    let is_on_record = lane.staged.recording().is_some() && !lane.replay.is_over();
     if is_on_record {
         let place = format!("{} m", decimals(evaluation.centre_y_m, 2));
         ui.label(egui::RichText::new(place).monospace());

@@ -66,7 +66,7 @@ impl TorqueStrip {
         // A thin bar has the marks of the climb only.
         let has_torques = height > THIN;
         if has_torques {
-            legend(ui, &lane.body().joints);
+            legend(ui, &lane.body.joints);
         }
         let names_width = if has_torques { NAMES_WIDTH[usize::from(!is_wide)] } else { 0.0 };
         let size = egui::vec2(ui.available_width(), height);
@@ -97,7 +97,7 @@ impl TorqueStrip {
         seconds(&painter, rect, end_s, &x_of, palette);
         let of_whole = Rect::from_x_y_ranges(whole.left()..=plot.left(), plot.y_range());
         if has_torques {
-            names(ui, of_whole, lane.body(), is_wide);
+            names(ui, of_whole, &lane.body, is_wide);
         }
         let mut climb = Vec::new();
         match lane.history() {
@@ -109,7 +109,7 @@ impl TorqueStrip {
                     seen.extend(drawn.shapes.iter().cloned());
                 }
                 // A snake that was pulled does not climb as in its undisturbed rollout.
-                if !lane.is_disturbed() {
+                if !lane.replay.is_disturbed() {
                     climb.clone_from(&drawn.events);
                 }
             }
@@ -118,7 +118,7 @@ impl TorqueStrip {
                 climb = events(lane);
                 let text = match lane.lookahead_share() {
                     Some(share) => format!("Computing preview: {:.0} %", share * 100.0),
-                    None if lane.staged().recording().is_some() => {
+                    None if lane.staged.recording().is_some() => {
                         "A recording contains poses, but no torques".to_owned()
                     }
                     None => "The torques are unknown".to_owned(),
@@ -237,7 +237,7 @@ fn shapes(
     palette: &theme::Palette,
 ) -> Vec<Shape> {
     let samples: Vec<&[JointTorque]> = history.torques().collect();
-    let joints = &lane.body().joints;
+    let joints = &lane.body.joints;
     let sample_s = lane.step_s * f64::from(history.sample_steps());
     let row_height = plot.height() / joints.len().max(1) as f32;
     let columns = (plot.width() / COLUMN_WIDTH).max(1.0) as usize;
@@ -286,7 +286,7 @@ fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
             // Turns -0.0 into 0.0.
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
             let end = match joint {
-                _ if lane.body().is_branching() => "",
+                _ if lane.body.is_branching() => "",
                 1 => " (head)",
                 _ if joint == torques.len() => " (tail)",
                 _ => "",

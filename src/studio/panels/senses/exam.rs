@@ -28,7 +28,7 @@ pub(super) fn exam(
     let header = egui::CollapsingHeader::new(name).id_salt("exam").default_open(true);
     let hint = "How often the snake lands on 100 staircases, nearly all unlike its own";
     folded(ui, header, hint, |ui| {
-        let staged = lane.staged();
+        let staged = &lane.staged;
         match exams.of(staged.champion()) {
             Some(grids) => results(ui, staged, grids, commands),
             None => invitation(ui, staged, exams, commands),

@@ -60,12 +60,12 @@ impl<'l> SensesView<'l> {
             _ => lane,
         };
         let selection = &on_stage.selection;
-        let limb = selection.limb.filter(|_| selection.lane == lane.number());
+        let limb = selection.limb.filter(|_| selection.lane == lane.number);
         Some(Self {
             lane,
-            limb: limb.unwrap_or(0).min(lane.body().limbs().saturating_sub(1)),
+            limb: limb.unwrap_or(0).min(lane.body.limbs().saturating_sub(1)),
             is_selected: limb.is_some(),
-            racers: lanes.iter().copied().filter(|lane| !lane.is_ghost()).collect(),
+            racers: lanes.iter().copied().filter(|lane| !lane.is_ghost).collect(),
             switched: switched.trial().agent.senses,
         })
     }
@@ -76,7 +76,7 @@ impl<'l> SensesView<'l> {
     }
 
     fn kind(&self) -> ControllerKind {
-        self.lane.staged().champion().genome.controller.kind()
+        self.lane.staged.champion().genome.controller.kind()
     }
 }
 
@@ -99,7 +99,7 @@ impl SensesPanel {
             explain(ui, &sensing_controllers());
             return exam(ui, view.lane, exams, commands);
         }
-        let Some(rollout) = view.lane.rollout() else {
+        let Some(rollout) = view.lane.replay.rollout() else {
             explain(ui, "A recording contains poses, but no senses.");
             return exam(ui, view.lane, exams, commands);
         };
@@ -172,12 +172,12 @@ fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>
     }
     ui.horizontal_wrapped(|ui| {
         for lane in &view.racers {
-            lane_dot(ui, lane.number(), theme::LANE_DOT);
-            let is_shown = lane.number() == view.lane.number();
-            let name = egui::Button::selectable(is_shown, lane.staged().label()).truncate();
+            lane_dot(ui, lane.number, theme::LANE_DOT);
+            let is_shown = lane.number == view.lane.number;
+            let name = egui::Button::selectable(is_shown, lane.staged.label()).truncate();
             let hint = "Show the senses of this snake";
             if ui.add(name).on_hover_text(hint).clicked() && !is_shown {
-                commands.push(Command::Stage(StageCommand::Focus(lane.number())));
+                commands.push(Command::Stage(StageCommand::Focus(lane.number)));
             }
         }
     });

@@ -48,7 +48,7 @@ fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
     let lane = lane_of(ControllerKind::Modular, &[], |_| ());
     let panel_of = |limb| panel(&lane, limb);
     let head = panel_of(0);
-    let senses = lane.rollout().expect("simulated").perception();
+    let senses = lane.replay.rollout().expect("simulated").perception();
     let gap_m = senses.limbs[0].gap * 2.0;
     assert!(shows(&head, "Limb 1 of 5, the head"));
     let gap = if gap_m < 2.0 { format!("Gap: {gap_m:.2} m") } else { "Gap: ≥ 2.00 m".to_owned() };
@@ -144,7 +144,7 @@ fn the_panel_is_as_long_at_the_start_as_later() {
         let mut lane = lane_of(kind, &[], |_| ());
         let later = panel(&lane, 0).get_by_label_contains("Controller: ").rect();
         lane.show(0.0, None, 3000).expect("healthy");
-        assert!(lane.rollout().expect("simulated").perception().limbs.is_empty());
+        assert!(lane.replay.rollout().expect("simulated").perception().limbs.is_empty());
         assert_eq!(panel(&lane, 0).get_by_label_contains("Controller: ").rect(), later, "{kind}");
         assert!(shows(&panel(&lane, 0), "Joint 4 bend: "), "{kind}");
     }
@@ -173,7 +173,7 @@ fn decisions_show_situation_postures_and_rules() {
 fn waves_and_the_rules_that_chose_them_are_shown() {
     let lane = lane_of(ControllerKind::Rules, &[], |_| ());
     let panel = panel(&lane, 2);
-    let activity = lane.rollout().expect("simulated").activity(1);
+    let activity = lane.replay.rollout().expect("simulated").activity(1);
     let Some(Activity::Waves(choice)) = activity else { panic!("{activity:?}") };
     assert!(shows(&panel, "Waves at joint 2"));
     for (joint, wave) in choice.of_joints.iter().enumerate() {
@@ -203,7 +203,7 @@ fn the_neurons_of_all_limbs_are_shown_and_the_wiring_of_the_selected_one() {
     for (limb, title) in [(0, "the head"), (2, "limb 3"), (4, "the tail")] {
         let panel = panel(&lane, limb);
         assert!(shows(&panel, &format!("Wiring of {title}")));
-        let activity = lane.rollout().expect("simulated").activity(0);
+        let activity = lane.replay.rollout().expect("simulated").activity(0);
         let Some(Activity::Limbs(limbs)) = activity else { panic!("{activity:?}") };
         let network = limbs.network(limb).expect("a limb");
         for node in &network.nodes {

@@ -155,10 +155,10 @@ impl<'l> ReadLanes<'l> {
     }
 
     fn table(&self, ui: &mut egui::Ui, surface: ReadSurface, has_own_ground: bool) {
-        if self.lanes.iter().all(|lane| lane.simulation().is_none()) {
+        if self.lanes.iter().all(|lane| lane.replay.simulation().is_none()) {
             return explain(ui, "Not available in a recording");
         }
-        if self.lanes.iter().any(|lane| lane.is_ghost()) {
+        if self.lanes.iter().any(|lane| lane.is_ghost) {
             return explain(ui, "Not available for a ghost");
         }
         let all_room = ui.available_width() - NAME_WIDTH;
@@ -193,8 +193,8 @@ impl<'l> ReadLanes<'l> {
                 ui.label("");
                 for column in columns {
                     cell(ui, column.width, |ui| {
-                        let dot = lane_dot(ui, column.lane.number(), theme::LANE_DOT);
-                        let label = column.lane.staged().label();
+                        let dot = lane_dot(ui, column.lane.number, theme::LANE_DOT);
+                        let label = column.lane.staged.label();
                         let name = weak(ui, head_of(ui, label));
                         ui.add(egui::Label::new(name).truncate()).on_hover_text(label);
                         dot.on_hover_text(label);
@@ -233,7 +233,7 @@ impl ReadoutLine {
         for column in columns {
             let cell = cell(ui, column.width, |ui| (self.draw)(column, ui));
             // The area for the tooltip is above the number, which would otherwise hide it from the pointer.
-            let id = ui.id().with((self.name, column.lane.number()));
+            let id = ui.id().with((self.name, column.lane.number));
             ui.interact(cell.rect, id, egui::Sense::hover()).on_hover_ui(|ui| {
                 ui.set_max_width(theme::NOTICE_WIDTH);
                 ui.label(self.hint);

@@ -119,7 +119,7 @@ impl Shooting<'_> {
         let world = self.studio.app.world_mut();
         let mut lanes = world.query::<&Lane>();
         let mut lanes: Vec<&Lane> = lanes.iter(world).collect();
-        lanes.sort_by_key(|lane| lane.number());
+        lanes.sort_by_key(|lane| lane.number);
         let heads = over_heads(&lanes);
         (band(&lanes, self.time_s), heads)
     }
@@ -135,7 +135,7 @@ fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
         let has_distance = progress.ends_with(" m");
         let detail =
             if has_distance { progress } else { format!("{progress}, at {middle_m:.1} m") };
-        return Some(FilmBand { name: first.staged().label().to_owned(), detail, clock });
+        return Some(FilmBand { name: first.staged.label().to_owned(), detail, clock });
     }
     let mut places = (1..)
         .zip(ranking(lanes.iter().copied(), time_s))
@@ -195,7 +195,7 @@ mod tests {
         let names = |key: &dyn Fn(&Lane) -> f64| -> Vec<String> {
             let mut order: Vec<&Lane> = lanes.iter().collect();
             order.sort_by(|a, b| key(a).total_cmp(&key(b)));
-            order.iter().map(|lane| lane.staged().label().to_owned()).collect()
+            order.iter().map(|lane| lane.staged.label().to_owned()).collect()
         };
         let by_landing = names(&|lane| lane.landed_s(time_s).expect("it lands"));
         let by_way = names(&|lane| -f64::from(lane.drawn_middle().y));

@@ -79,7 +79,7 @@ fn press(
     let is_double = presses > 1 || follows_another;
     earlier.last = (!is_double).then_some((now_s, cursor));
     if is_double && let Some(hit) = &hit {
-        let lane = hit.part.map(|_| hit.lane.number());
+        let lane = hit.part.map(|_| hit.lane.number);
         rig.focus_on(lane, ray.get_point(hit.distance_m));
     }
     let Some(RayHit { entity, lane, part: Some(part), distance_m }) = hit else {
@@ -90,8 +90,8 @@ fn press(
     let point = ray.get_point(distance_m) - lane.offset();
     let pull = Pull { part, held_at_m: pose.inverse() * point, to_m: point };
     let held = HeldLimb { lane: entity, pull, pressed_at: cursor, is_pulling: false };
-    let limb = lane.body().parts.get(part).map_or(0, |part| part.limb);
-    selection.grab(lane.number(), limb, held);
+    let limb = lane.body.parts.get(part).map_or(0, |part| part.limb);
+    selection.grab(lane.number, limb, held);
 }
 
 /// Moves the held limb with the pointer, in a plane that faces the camera.
@@ -108,7 +108,7 @@ fn drag(
         return;
     }
     let Ok(lane) = lanes.get(held.lane) else { return };
-    if !held.is_pulling && lane.staged().recording().is_some() {
+    if !held.is_pulling && lane.staged.recording().is_some() {
         notices
             .info("A recording cannot be pulled; \"Simulate again\" makes it a simulation.".into());
     }
@@ -156,13 +156,13 @@ fn clear_selection(
     }
     if matches!(*mode, StageMode::WhatIf { .. }) {
         // A what-if is restarted at every change.
-        selection.lane = added.iter().map(Lane::number).max().unwrap_or_default();
+        selection.lane = added.iter().map(|lane| lane.number).max().unwrap_or_default();
         return;
     }
     selection.reset();
     if *mode == StageMode::Race {
-        let racers = added.iter().filter(|lane| !lane.is_ghost());
-        selection.lane = leader(racers.map(|lane| (lane.number(), lane.staged().fitness())));
+        let racers = added.iter().filter(|lane| !lane.is_ghost);
+        selection.lane = leader(racers.map(|lane| (lane.number, lane.staged.fitness())));
     }
 }
 

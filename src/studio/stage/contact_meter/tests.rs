@@ -16,7 +16,7 @@ fn lane(preset: Option<&str>) -> Lane {
 }
 
 fn reading(lane: &Lane) -> Option<SurfaceReading> {
-    lane.readings().meter.surface(false, |_| true)
+    lane.readings.meter.surface(false, |_| true)
 }
 
 #[test]
@@ -33,13 +33,13 @@ fn a_jump_gives_the_readings_of_playing_to_the_same_moment() {
         again.show(time_s, None, 3000).expect("healthy");
         sought.show(time_s, None, 3000).expect("healthy");
         for is_playing in [false, true] {
-            let of = |lane: &Lane| lane.readings().meter.surface(is_playing, |_| true);
+            let of = |lane: &Lane| lane.readings.meter.surface(is_playing, |_| true);
             assert_eq!(of(&sought), of(&again), "at {time_s} s");
         }
         if back == 0 {
             assert_eq!(reading(&sought), reading(&played));
         }
-        assert_eq!(sought.readings().energy_lost, again.readings().energy_lost);
+        assert_eq!(sought.readings.energy_lost, again.readings.energy_lost);
         seen += usize::from(reading(&sought).is_some());
     }
     assert!(seen > 15, "it touches something at {seen} moments");
@@ -52,7 +52,7 @@ fn while_the_stage_plays_a_reading_stays_for_an_eighth_of_a_second() {
     let mut before = (None, None);
     for step in 1..=240 {
         lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
-        let meter = &lane.readings().meter;
+        let meter = &lane.readings.meter;
         let now = (meter.surface(true, |_| true), meter.surface(false, |_| true));
         held += usize::from(now.0 != before.0);
         fresh += usize::from(now.1 != before.1);
@@ -69,7 +69,7 @@ fn ice_uses_nearly_all_grip_glue_little_and_mud_is_dented_and_takes_energy() {
         if let Some(friction) = friction {
             let mut trial = lane.trial().clone();
             trial.surface.friction = friction;
-            lane = Lane::new(lane.staged().in_world(&trial, "changed".to_owned()), 0);
+            lane = Lane::new(lane.staged.in_world(&trial, "changed".to_owned()), 0);
         }
         let mut readings = Vec::new();
         for quarter in 1..=56 {
@@ -93,7 +93,7 @@ fn ice_uses_nearly_all_grip_glue_little_and_mud_is_dented_and_takes_energy() {
 fn the_fine_print_of_a_limb_covers_only_that_limb() {
     let mut lane = lane(Some("mud"));
     lane.show(1.0, None, 3000).expect("healthy");
-    let meter = &lane.readings().meter;
+    let meter = &lane.readings.meter;
     let all = meter.surface(false, |_| true).expect("it lies in mud");
     let limbs: Vec<_> = (0..5).filter_map(|limb| meter.limb(false, limb, |_| true)).collect();
     let deepest_m = limbs.iter().map(|limb| limb.depth_m).fold(0.0, f32::max);
@@ -106,9 +106,9 @@ fn the_fine_print_of_a_limb_covers_only_that_limb() {
 fn a_fast_step_rate_takes_no_more_samples() {
     let mut trial = lane(None).trial().clone();
     trial.physics.steps_per_s = 960;
-    let mut lane = Lane::new(lane(None).staged().in_world(&trial, "fine".to_owned()), 0);
+    let mut lane = Lane::new(lane(None).staged.in_world(&trial, "fine".to_owned()), 0);
     lane.show(2.0, None, 3000).expect("healthy");
-    let samples = lane.readings().meter.samples.len();
+    let samples = lane.readings.meter.samples.len();
     assert!((20..=25).contains(&samples), "{samples} samples of 0.375 s");
 }
 
@@ -122,7 +122,7 @@ fn on_no_surface_is_the_energy_lost_in_contacts_and_stops_negative() {
         let mut lane = lane(preset);
         for moment in 1..=140 {
             lane.show(f64::from(moment) / 10.0, None, 3000).expect("healthy");
-            let lost = lane.readings().energy_lost.expect("undisturbed");
+            let lost = lane.readings.energy_lost.expect("undisturbed");
             let case = format!("{preset:?} after {moment} tenths of a second: {lost:?}");
             assert!(lost.elsewhere_j() > -10.0, "{case}");
             // The lost energy rises steadily: at 5 kW, the torques lose some hundred watts in impacts and stops.
@@ -139,7 +139,7 @@ fn where_limbs_slip_friction_takes_energy_and_does_not_give_it() {
         let (mut given_w, mut taken_w) = (0.0, 0.0);
         for step in 1..=840 {
             lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
-            for patch in lane.simulation().expect("simulated").contact_patches() {
+            for patch in lane.replay.simulation().expect("simulated").contact_patches() {
                 given_w -= patch.friction_w.min(0.0);
                 taken_w += patch.friction_w.max(0.0);
             }
@@ -155,12 +155,12 @@ fn a_dent_in_the_ground_is_as_deep_as_the_lowest_corner_of_the_limb_is_below_it(
         let mut deepest_m = 0.0_f32;
         for step in 1..=300 {
             lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
-            for patch in lane.simulation().expect("simulated").contact_patches() {
+            for patch in lane.replay.simulation().expect("simulated").contact_patches() {
                 if patch.touched != TouchedSurface::Ground {
                     continue;
                 }
-                let half = lane.body().parts[patch.limb].size_m().map(|size| size / 2.0);
-                let pose = lane.last_poses()[patch.limb];
+                let half = lane.body.parts[patch.limb].size_m().map(|size| size / 2.0);
+                let pose = lane.replay.poses()[patch.limb];
                 let corners = (0..8_u8).map(|corner| {
                     let side = |axis: usize| if corner & (1 << axis) == 0 { 1.0 } else { -1.0 };
                     let at = std::array::from_fn(|axis| side(axis) * half[axis]);

@@ -19,7 +19,7 @@ impl Lane {
     pub fn progress_in_words(&self, time_s: f64) -> String {
         let stairs = &self.trial().stairs;
         let middle = self.drawn_middle();
-        let is_disqualified = self.is_over() && self.evaluation().disqualified.is_some();
+        let is_disqualified = self.replay.is_over() && self.evaluation().disqualified.is_some();
         match (self.landed_s(time_s), stairs.steps_under(middle.to_array())) {
             _ if is_disqualified => "disqualified".to_owned(),
             _ if stairs.steps == 0 => format!("at {:.1} m", middle.y),
@@ -28,7 +28,7 @@ impl Lane {
             }
             // The landing counts even if the snake has gone on beyond it, or has fallen from it.
             (Some(landed_s), _) => format!("reached the top after {landed_s:.1} s"),
-            (None, 0) if self.is_over() => "climbed no step".to_owned(),
+            (None, 0) if self.replay.is_over() => "climbed no step".to_owned(),
             (None, 0) if middle.y < stairs.first_riser_y_m => "on its way to the stairs".to_owned(),
             (None, 0) => "no step climbed yet".to_owned(),
             (None, climbed) => format!("climbed {climbed} of {} steps", stairs.steps),

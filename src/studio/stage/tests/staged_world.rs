@@ -35,11 +35,11 @@ fn a_context_holds_what_the_engine_sees_at_the_place_of_its_lane() {
             &RapierContextJoints,
         )>();
         for (lane, context, bodies, colliders, joints) in held.iter(world) {
-            let simulation = lane.simulation().expect("simulated");
+            let simulation = lane.replay.simulation().expect("simulated");
             let physics = simulation.physics();
             let on_stage =
                 |pose: &Pose| Pose { translation: pose.translation + lane.offset(), ..*pose };
-            for (&part, pose) in simulation.parts().iter().zip(lane.last_poses()) {
+            for (&part, pose) in simulation.parts().iter().zip(lane.replay.poses()) {
                 let body = &bodies.bodies[part];
                 let collider = &colliders.colliders[body.colliders()[0]];
                 assert_eq!([body.position(), collider.position()], [&on_stage(pose); 2]);
@@ -70,7 +70,7 @@ fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
                 let direction = Dir3::new(towards).expect("a direction");
                 world.cast_ray(Ray3d::new(from_m + lane.offset(), direction)).expect("a surface")
             };
-            for (part, (pose, plan)) in lane.drawn_poses().zip(&lane.body().parts).enumerate() {
+            for (part, (pose, plan)) in lane.drawn_poses().zip(&lane.body.parts).enumerate() {
                 let above_m = pose * (Vec3::Z * (plan.height_m / 2.0 + 0.1));
                 let seen = hit(above_m, pose.rotation * Vec3::NEG_Z);
                 assert_eq!(seen.part, Some(part));
@@ -91,7 +91,7 @@ fn a_ray_hits_the_parts_the_steps_and_the_ground_of_its_lane() {
 fn a16_lines_show_the_shapes_of_no_ghost_even_after_a_ray_was_cast() {
     let mut app = stage_of(vec![shipped()]);
     play(&mut app, &[0.1], |lane| lane.replay.step() > 6);
-    let ghost = Lane::ghost(lane(&mut app).staged().clone(), 1);
+    let ghost = Lane::ghost(lane(&mut app).staged.clone(), 1);
     app.world_mut().spawn(ghost);
     let world = app.world_mut();
     let mut worlds = world.query::<StagedWorld>();
@@ -101,8 +101,8 @@ fn a16_lines_show_the_shapes_of_no_ghost_even_after_a_ray_was_cast() {
     }
     let mut held = world.query::<(&Lane, &RapierContextColliders, &RapierRigidBodySet)>();
     for (lane, colliders, bodies) in held.iter(world) {
-        assert_eq!(colliders.colliders.is_empty(), lane.is_ghost());
-        assert_eq!(bodies.bodies.is_empty(), lane.is_ghost());
+        assert_eq!(colliders.colliders.is_empty(), lane.is_ghost);
+        assert_eq!(bodies.bodies.is_empty(), lane.is_ghost);
     }
 }
 

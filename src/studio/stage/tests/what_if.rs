@@ -64,7 +64,7 @@ fn stage_at_moment() -> App {
 fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
     let mut query = app.world_mut().query::<(Entity, &Lane)>();
     let mut lanes: Vec<_> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|(_, lane)| lane.number());
+    lanes.sort_by_key(|(_, lane)| lane.number);
     lanes
 }
 
@@ -77,11 +77,11 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
     assert_eq!(clock(&mut app).time_s(), moment_s);
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
     assert_eq!((first.replay.step(), second.replay.step()), (MOMENT, MOMENT));
-    assert_eq!(first.last_poses(), original_at(MOMENT).poses());
-    assert_eq!(second.last_poses(), first.last_poses());
+    assert_eq!(first.replay.poses(), original_at(MOMENT).poses());
+    assert_eq!(second.replay.poses(), first.replay.poses());
     (0..40).for_each(|_| frame(&mut app, 0.05));
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
-    assert_eq!(first.last_poses(), original_at(first.replay.step()).poses());
+    assert_eq!(first.replay.poses(), original_at(first.replay.step()).poses());
     let apart_m = first.drawn_middle().distance(second.drawn_middle());
     assert!(apart_m > 0.1, "{apart_m} m apart after two seconds on ice");
 }
@@ -127,9 +127,9 @@ fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
             let lanes = lanes_of(&mut app);
             let shown = lanes[1].1;
             assert_eq!(shown.replay.step(), step);
-            assert_eq!(shown.last_poses(), expected[step as usize - 1], "step {step}");
+            assert_eq!(shown.replay.poses(), expected[step as usize - 1], "step {step}");
             if step <= MOMENT {
-                assert_eq!(shown.last_poses(), original_at(step).poses(), "step {step}");
+                assert_eq!(shown.replay.poses(), original_at(step).poses(), "step {step}");
             }
         }
     }
@@ -149,10 +149,10 @@ fn while_a_copy_starts_over_the_other_lanes_stay() {
     };
     assert_eq!([first, second], entities[..2]);
     assert_ne!(third, entities[2]);
-    assert_eq!(changed.staged().label(), "friction 3");
+    assert_eq!(changed.staged.label(), "friction 3");
     for lane in [original, fixed, changed] {
         assert_eq!(lane.replay.step(), MOMENT);
-        assert_eq!(lane.last_poses(), original_at(MOMENT).poses());
+        assert_eq!(lane.replay.poses(), original_at(MOMENT).poses());
     }
     assert!(original.history().is_some() && fixed.history().is_some(), "not computed again");
 }
@@ -165,7 +165,7 @@ fn the_end_of_a_copy_is_not_compared_with_the_record() {
     clock(&mut app).hold_at(1.0e9);
     (0..5).for_each(|_| frame(&mut app, 0.1));
     let lanes = lanes_of(&mut app);
-    assert!(lanes.iter().all(|(_, lane)| lane.is_over()));
+    assert!(lanes.iter().all(|(_, lane)| lane.replay.is_over()));
     let ends = lanes.iter().map(|(_, lane)| lane.evaluation());
     let recorded = shipped().champion.evaluation;
     let agree: Vec<bool> = ends.map(|end| end.agrees_with(&recorded)).collect();

@@ -197,7 +197,7 @@ mod tests {
     fn a_reset_run_starts_again_even_after_other_settings_were_set() {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| {
-            run.reset()?;
+            run.reset();
             run.set_field("evolution.population", "5")?;
             run.set_field("evolution.population", "6")?;
             run.single_generation()
@@ -207,10 +207,10 @@ mod tests {
         assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
         // A reset does not discard later progress again.
         act(&mut app, |run| {
-            run.set_seed(2)?;
+            run.set_seed(2);
             run.begin_next()?;
             run.pause()?;
-            run.set_seed(1)?;
+            run.set_seed(1);
             run.begin_next()
         });
         wait_until(&mut app, |run| run.status() == RunStatus::Finished);

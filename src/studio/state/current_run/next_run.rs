@@ -35,9 +35,9 @@ impl CurrentRun {
     }
 
     /// Sets the seed of the next run. It also applies to a run that has not started.
-    pub fn set_seed(&mut self, seed: u64) -> Result<(), String> {
+    pub fn set_seed(&mut self, seed: u64) {
         self.plan_next.seed = seed;
-        self.take_over_if_ready()
+        self.take_over_if_ready();
     }
 
     /// Sets one setting of the next run, by its name: see [`Self::set_fields`].
@@ -77,10 +77,10 @@ impl CurrentRun {
                 }
             }
         }
-        if before == self.plan_next {
-            return Ok(());
+        if before != self.plan_next {
+            self.take_over_if_ready();
         }
-        self.take_over_if_ready()
+        Ok(())
     }
 
     /// Returns whether edits of the next run's settings also apply to the current run: both have the same search settings.
@@ -147,7 +147,8 @@ impl CurrentRun {
         self.context.saves.store_own(&preset).map_err(|error| error.to_string())?;
         self.list_presets();
         self.plan_next.preset = preset.name;
-        self.take_over_if_ready()
+        self.take_over_if_ready();
+        Ok(())
     }
 
     /// Returns a preset by its name, a built-in one or one of the user's own.

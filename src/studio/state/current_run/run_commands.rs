@@ -30,7 +30,7 @@ impl CurrentRun {
             RunCommand::Reset => {
                 let (plan, finished) = (self.source.plan.clone(), self.reports.len());
                 let folder = self.source.folder.clone();
-                self.reset()?;
+                self.reset();
                 if finished > 0 && self.source.folder == folder {
                     let text = format!(
                         "{}, seed {} begins anew: \"Start\" replaces its {finished} finished generations.",

@@ -5,16 +5,11 @@ use std::sync::Arc;
 use super::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
-use crate::studio::state::milestones::{GenerationMember, Milestone, members_to_show, note};
+use crate::studio::state::milestones::{GenerationMember, members_to_show, note};
 use snakes_core::evolve::IndividualId;
 use snakes_lab::run::GenerationReport;
 
 impl CurrentRun {
-    /// Returns the generations that were better than all earlier ones, the earliest first.
-    pub fn milestones(&self) -> &[Milestone] {
-        &self.milestones
-    }
-
     /// Records a finished generation as a milestone if it is better than all earlier ones.
     pub(super) fn note_milestone(&mut self, report: &GenerationReport) {
         let explored = self.exploration.as_deref();
@@ -26,7 +21,7 @@ impl CurrentRun {
     /// Returns a generation to show on the stage: all its snakes if they are kept, or else its champion alone. `None`
     /// if the generation is unknown or all its snakes were disqualified.
     pub fn whole_generation(&self, number: u32) -> Option<Show> {
-        let milestone = self.milestones().iter().find(|milestone| milestone.generation == number);
+        let milestone = self.milestones.iter().find(|milestone| milestone.generation == number);
         let whole = milestone.filter(|milestone| milestone.is_whole());
         let (kept, size) = match (whole, self.latest(number)) {
             (Some(milestone), _) => (Arc::clone(&milestone.members), milestone.size),

@@ -56,7 +56,7 @@ impl Plays {
     pub fn follow_stage(&mut self, playback: &Playback, lanes: &[&Lane]) {
         match lanes {
             [lane] if is_undisturbed(lane) => {
-                let ended = lane.is_over().then(|| lane.evaluation());
+                let ended = lane.replay.is_over().then(|| lane.evaluation());
                 self.follow(playback.speed(), playback.time_s(), ended.as_ref());
             }
             _ => self.current = CurrentPlay::None,
@@ -90,8 +90,8 @@ impl Plays {
 }
 
 fn is_undisturbed(lane: &Lane) -> bool {
-    let staged = lane.staged();
-    staged.source() == ChampionSource::Lesson && !staged.is_changed() && !lane.is_disturbed()
+    let staged = &lane.staged;
+    staged.source() == ChampionSource::Lesson && !staged.is_changed() && !lane.replay.is_disturbed()
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
         let mut lane = Lane::new(staged.clone(), 0);
         playback.set_speed(*speed);
         playback.restart();
-        while !lane.is_over() {
+        while !lane.replay.is_over() {
             playback.pass(1.0 / 60.0, 1.0, lane.end_s());
             lane.show(playback.time_s(), None, 1000).expect("it simulates");
             plays.follow_stage(&playback, &[&lane]);

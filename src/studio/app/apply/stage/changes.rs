@@ -72,11 +72,11 @@ impl StageParams<'_, '_> {
     fn moment(&self, history: &UndoHistory) -> (f64, Option<Rollout>) {
         let at_start = (0.0, None);
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
-        let Some(lane) = self.all_lanes().find(|lane| lane.number() == original) else {
+        let Some(lane) = self.all_lanes().find(|lane| lane.number == original) else {
             return at_start;
         };
         // A drag of a slider across the original value ends the what-if and begins it again.
-        let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || history.is_open();
+        let goes_on = matches!(*self.mode, StageMode::WhatIf { .. }) || !history.is_settled;
         let tried_s = self.playback.tried_from_s.filter(|_| goes_on);
         let time_s = tried_s.unwrap_or(self.playback.time_s());
         let (step, _) = lane.moment(time_s);

@@ -18,11 +18,11 @@ type Seen = BTreeMap<&'static str, String>;
 fn seen(app: &mut App) -> Seen {
     let mut query = app.world_mut().query::<&Lane>();
     let mut lanes: Vec<&Lane> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number());
+    lanes.sort_by_key(|lane| lane.number);
     let world = app.world();
     let (playback, selection) = (world.resource::<Playback>(), world.resource::<Selection>());
-    let labels = lanes.iter().map(|lane| lane.staged().label());
-    let poses = lanes.iter().map(|lane| lane.last_poses());
+    let labels = lanes.iter().map(|lane| lane.staged.label());
+    let poses = lanes.iter().map(|lane| lane.replay.poses());
     let next = world.resource::<CurrentRun>().next_settings();
     BTreeMap::from([
         ("labels", format!("{:?}", labels.collect::<Vec<_>>())),
@@ -91,9 +91,9 @@ fn excursions() -> Vec<(&'static str, Command, Command)> {
 
 /// Enters an excursion, and changes whatever a person can change within it.
 fn enter(app: &mut App, command: &Command) {
-    app.world_mut().resource_mut::<UndoHistory>().settle();
+    app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
     send(app, command);
-    app.world_mut().resource_mut::<UndoHistory>().settle();
+    app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
 }
 
 /// Returns the names of what differs.

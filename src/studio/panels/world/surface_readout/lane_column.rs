@@ -40,25 +40,25 @@ impl<'l> LaneColumn<'l> {
         is_playing: bool,
         is_meant: &'l dyn Fn(TouchedSurface) -> bool,
     ) -> Self {
-        let reading = lane.readings().meter.surface(is_playing, is_meant);
+        let reading = lane.readings.meter.surface(is_playing, is_meant);
         Self { lane, width, reading, is_playing, is_meant }
     }
 
     /// Draws the energy lost so far in contacts and at the stops of the joints.
     pub fn lost(&self, ui: &mut egui::Ui) {
-        let lost = self.lane.readings().energy_lost;
+        let lost = self.lane.readings.energy_lost;
         let lost = lost.map(|lost| in_joules(lost.elsewhere_j()));
         number(ui, lost.as_deref().unwrap_or(UNKNOWN));
     }
 
     /// Draws how many limbs touch the surface.
     pub fn contact(&self, ui: &mut egui::Ui) {
-        let text = match (self.lane.simulation(), self.reading) {
+        let text = match (self.lane.replay.simulation(), self.reading) {
             (None, _) => "recording".to_owned(),
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
                 let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " limbs" };
-                format!("{} of {}{unit}", reading.limbs, self.lane.body().limbs())
+                format!("{} of {}{unit}", reading.limbs, self.lane.body.limbs())
             }
         };
         number(ui, &text);
@@ -106,8 +106,8 @@ impl<'l> LaneColumn<'l> {
         }
         let grid = egui::Grid::new("limbs").num_columns(4).spacing([theme::GAP, 0.0]);
         grid.show(ui, |ui| {
-            for limb in 0..self.lane.body().limbs() {
-                let meter = &self.lane.readings().meter;
+            for limb in 0..self.lane.body.limbs() {
+                let meter = &self.lane.readings.meter;
                 let Some(reading) = meter.limb(self.is_playing, limb, self.is_meant) else {
                     continue;
                 };
@@ -126,8 +126,8 @@ impl<'l> LaneColumn<'l> {
 
     /// Draws a list of the energy lost, by cause.
     pub fn explain_energy(&self, ui: &mut egui::Ui) {
-        let Some(lost) = self.lane.readings().energy_lost else {
-            if self.lane.is_disturbed() {
+        let Some(lost) = self.lane.readings.energy_lost else {
+            if self.lane.replay.is_disturbed() {
                 ui.label("Unknown, because the mouse has pulled the snake.");
             }
             return;

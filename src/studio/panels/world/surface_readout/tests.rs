@@ -23,7 +23,7 @@ fn on_stone_and_ice() -> [Lane; 2] {
     [(stone, 0), (ice, 1)].map(|(staged, number)| {
         let mut lane = Lane::new(staged, number);
         lane.show(1.3, None, 3000).expect("healthy");
-        assert!(lane.readings().meter.surface(false, |_| true).is_some());
+        assert!(lane.readings.meter.surface(false, |_| true).is_some());
         lane
     })
 }
@@ -43,7 +43,7 @@ fn panel<'a>(lanes: Vec<&'a Lane>, surface: ReadSurface, width: f32) -> Harness<
 #[test]
 fn the_numbers_are_those_of_the_shown_moment() {
     let [lane, _] = on_stone_and_ice();
-    let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+    let reading = lane.readings.meter.surface(false, |_| true).expect("contact");
     let panel = panel(vec![&lane], ReadSurface::Stairs, 320.0);
     let grip = in_percent(reading.grip_share.expect("friction"));
     for label in [
@@ -52,7 +52,7 @@ fn the_numbers_are_those_of_the_shown_moment() {
         format!("Grip used: {grip}"),
         in_mm(reading.depth_m),
         in_watts(reading.lost_w),
-        in_joules(lane.readings().energy_lost.expect("undisturbed").elsewhere_j()),
+        in_joules(lane.readings.energy_lost.expect("undisturbed").elsewhere_j()),
     ] {
         assert!(shows(&panel, &label), "{label}");
     }
@@ -64,7 +64,7 @@ fn a_what_if_has_both_snakes_side_by_side_and_fits_at_every_width() {
     for width in [280.0, 348.0, 600.0] {
         let panel = panel(lanes.iter().collect(), ReadSurface::Stairs, width);
         let [left, right] = [&lanes[0], &lanes[1]].map(|lane| {
-            let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+            let reading = lane.readings.meter.surface(false, |_| true).expect("contact");
             let label = format!("{:.2} m/s", reading.slip_m_s);
             panel.get_by_label(&label).rect()
         });
@@ -77,7 +77,7 @@ fn a_what_if_has_both_snakes_side_by_side_and_fits_at_every_width() {
 #[test]
 fn pointing_at_a_number_explains_it_limb_by_limb() {
     let [lane, _] = on_stone_and_ice();
-    let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
+    let reading = lane.readings.meter.surface(false, |_| true).expect("contact");
     let mut panel = panel(vec![&lane], ReadSurface::Stairs, 420.0);
     let slip = panel.get_by_label(&format!("{:.2} m/s", reading.slip_m_s)).rect();
     panel.hover_at(slip.center());
@@ -86,7 +86,7 @@ fn pointing_at_a_number_explains_it_limb_by_limb() {
     let limbs = (1..=5).filter(|limb| shows(&panel, &format!("Limb {limb}"))).count();
     assert_eq!(
         limbs,
-        (0..5).filter(|limb| lane.readings().meter.limb(false, *limb, |_| true).is_some()).count()
+        (0..5).filter(|limb| lane.readings.meter.limb(false, *limb, |_| true).is_some()).count()
     );
     assert_eq!(limbs, reading.limbs);
 }
@@ -110,7 +110,7 @@ fn a_ground_of_its_own_has_readings_of_its_own() {
     assert!(!shows(&panel(vec![&shared], ReadSurface::Ground, 320.0), "On the ground now"));
     let mut trial = shared.trial().clone();
     trial.ground = Some(Surface { friction: 0.5, ..Default::default() });
-    let mut own = Lane::new(shared.staged().in_world(&trial, "own".to_owned()), 0);
+    let mut own = Lane::new(shared.staged.in_world(&trial, "own".to_owned()), 0);
     own.show(0.9, None, 3000).expect("healthy");
     let ground = panel(vec![&own], ReadSurface::Ground, 320.0);
     assert!(shows(&ground, "On the ground now") && shows(&ground, "of 5 limbs"));
@@ -126,8 +126,8 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
     let panel = panel(vec![&stone, &ice, &stone, &ice, &stone], ReadSurface::Stairs, width);
     assert_nothing_is_wider_than(&panel, width);
     for lane in [&stone, &ice] {
-        let reading = lane.readings().meter.surface(false, |_| true).expect("contact");
-        let lost = in_joules(lane.readings().energy_lost.expect("undisturbed").elsewhere_j());
+        let reading = lane.readings.meter.surface(false, |_| true).expect("contact");
+        let lost = in_joules(lane.readings.energy_lost.expect("undisturbed").elsewhere_j());
         let grip = format!("{:>5}", in_percent(reading.grip_share.expect("friction")));
         for label in [in_m_s(reading.slip_m_s), grip, in_watts(reading.lost_w), lost] {
             // A label that is not truncated has the width of its text in the monospaced font.
@@ -149,7 +149,7 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
 fn the_columns_of_one_settings_values_are_told_apart_by_their_values() {
     let [_, ice] = on_stone_and_ice();
     let changed = |friction: &str| {
-        let staged = ice.staged().in_world(ice.trial(), format!("friction {friction}"));
+        let staged = ice.staged.in_world(ice.trial(), format!("friction {friction}"));
         let mut lane = Lane::new(staged, 1);
         lane.show(1.0, None, 3000).expect("healthy");
         lane
