@@ -77,15 +77,15 @@ impl Climbs {
         if lookahead.steps_done().is_some() {
             return;
         }
-        let climb = match lookahead.history() {
-            Some(history) => {
-                let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
-                Climb {
-                    landed_s: history.landed_at_step().map(|step| f64::from(step) * step_s),
-                    picture: Thumbnail::of_history(champion, history),
-                }
-            }
-            None => Climb { landed_s: None, picture: Thumbnail::of_trial(&champion.trial) },
+        let history = lookahead.history();
+        let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
+        let landed_at = history.and_then(|history| history.landed_at_step());
+        let climb = Climb {
+            landed_s: landed_at.map(|step| f64::from(step) * step_s),
+            picture: match history {
+                Some(history) => Thumbnail::of_history(champion, history),
+                None => Thumbnail::of_trial(&champion.trial),
+            },
         };
         self.known.insert(champion.evaluation.trace_hash, climb);
         self.under_way = None;
