@@ -241,4 +241,4 @@ impl ChampionRow<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

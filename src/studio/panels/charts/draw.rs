@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Stroke};
 use egui_plot::{
     Arrows, Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints,
-    PlotTransform, PlotUi, Points, Polygon, VLine,
+    PlotTransform, PlotUi, Points, VLine,
 };
 
 use super::downsample::DrawnSeries;
@@ -151,11 +151,18 @@ struct ChartCanvas<'a> {
 }
 
 impl ChartCanvas<'_> {
-    /// Paints cells, and the bodies in them, on a background of empty cells. Polygons of the plot would leave visible
-    /// seams between neighbouring cells.
+    /// Paints boxes, and cells with the bodies in them on a background of empty cells. Polygons of the plot would leave
+    /// visible seams between neighbouring cells.
     fn cells(&self, view: &ChartView, chart: &Chart) {
         let Self { painter, transform, palette } = self;
         for series in &chart.series {
+            if let Shape::Boxes(boxes) = &series.shape {
+                // The edge keeps neighbouring blocks of the same colour apart.
+                let (fill, edge) = (palette.role(series.role), Stroke::new(1.0, palette.field));
+                for area in boxes.iter().map(|area| self.on_screen(HitShape::Area(*area))) {
+                    painter.rect(area, 0.0, fill, edge, egui::StrokeKind::Middle);
+                }
+            }
             let Shape::Cells(cells) = &series.shape else { continue };
             painter.rect_filled(*transform.frame(), 0.0, palette.empty_cell);
             for (index, (area, share, _)) in cells.iter().enumerate() {
@@ -317,18 +324,8 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let arrows = Arrows::new(&series.name, ends(0), ends(1)).color(color);
             plot.add(arrows.tip_length(ARROW_TIP).allow_hover(false));
         }
-        Shape::Boxes(boxes) => {
-            for [left, right, bottom, top] in boxes {
-                let corners =
-                    vec![[*left, *bottom], [*right, *bottom], [*right, *top], [*left, *top]];
-                // The edge keeps neighbouring blocks of the same colour apart.
-                let edge = Stroke::new(1.0, palette.field);
-                let block = Polygon::new("", corners).fill_color(color).stroke(edge);
-                plot.polygon(block.allow_hover(false));
-            }
-        }
-        // Cells are painted over the plot.
-        Shape::Cells(_) => {}
+        // Boxes and cells are painted over the plot.
+        Shape::Boxes(_) | Shape::Cells(_) => {}
     }
 }
 
