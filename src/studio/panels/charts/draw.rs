@@ -201,6 +201,7 @@ impl ChartCanvas<'_> {
             painter.galley(plate.min + MARK_PADDING, text, palette.text_weak);
         }
     }
+
     /// Returns the rectangle of a hit target on the screen. A point is a rectangle without extent.
     fn on_screen(&self, target: HitShape) -> egui::Rect {
         let place = |x: f64, y: f64| self.transform.position_from_point(&PlotPoint::new(x, y));
