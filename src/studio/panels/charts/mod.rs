@@ -173,7 +173,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
         ChartKind::Stairs => Some(stairs::view(
-            run.settings().evolution.strategy,
+            settings.evolution.strategy,
             run.reports(),
             exploration?.stairs.as_ref()?,
         )),

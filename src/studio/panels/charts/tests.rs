@@ -1,7 +1,6 @@
 //! Tests of the charts panel: select, hover, click, export.
 
 use egui_kittest::kittest::Queryable;
-use snakes_core::evolve::StrategyKind;
 
 use super::*;
 use crate::studio::commands::pick::Pick;
@@ -12,7 +11,7 @@ use crate::studio::panels::testing::{self, Sent, shows};
 use crate::studio::state::current_run::{
     bodies_run, compared_run, explored_run, prepared_run, species_run,
 };
-use snakes_core::evolve::{IndividualId, RunPlan, Settings};
+use snakes_core::evolve::{IndividualId, RunPlan, Settings, StrategyKind};
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
 /// Runs this number of generations for 0.5 s each. `change` changes the settings, which are also returned.
