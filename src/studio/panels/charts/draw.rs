@@ -333,11 +333,8 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
 /// Returns the screen position of a chart position, for tests. `area` is the rectangle of the chart.
 #[cfg(test)]
 pub(super) fn screen_position(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
-    let share = |value: f64, range: &std::ops::RangeInclusive<f64>| {
-        ((value - range.start()) / (range.end() - range.start())) as f32
-    };
-    egui::pos2(
-        area.left() + area.width() * share(x, &chart.x.range),
-        area.bottom() - area.height() * share(y, &chart.y.range),
-    )
+    let ends = |from: f32, to: f32| f64::from(from)..=f64::from(to);
+    let x = egui::remap(x, chart.x.range.clone(), ends(area.left(), area.right()));
+    let y = egui::remap(y, chart.y.range.clone(), ends(area.bottom(), area.top()));
+    egui::pos2(x as f32, y as f32)
 }

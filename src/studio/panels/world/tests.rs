@@ -137,8 +137,7 @@ fn a10_settings_whose_section_or_name_has_the_words_come_before_those_that_menti
     let run = prepared_run();
     sent(&run, |harness| {
         type_into(harness, "Find a setting", "joint");
-        let top =
-            |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
+        let top = |label: &str| harness.query_all_by_label(label).next().map(|of| of.rect().top());
         let joints = top("Joints").expect("the section");
         let field = harness.get_by_label("Find a setting").rect();
         assert!(joints < field.bottom() + theme::GAP * 4.0, "{joints}");
@@ -191,8 +190,7 @@ fn columns_align_and_fit_at_every_panel_width() {
             }
             let rect = |label: &str| harness.get_by_role_and_label(Role::Slider, label).rect();
             let one = rect("Friction");
-            for other in
-                ["Softness (CFM), m/s per N", "Limb length, m", "Joint damping, N·m·s/rad"]
+            for other in ["Softness (CFM), m/s per N", "Limb length, m", "Joint damping, N·m·s/rad"]
             {
                 let other = rect(other);
                 let are_aligned = one.left() == other.left() && one.width() == other.width();
