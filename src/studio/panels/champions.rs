@@ -17,7 +17,7 @@ use snakes_core::evolve::Champion;
 use snakes_core::save::LoadedChampion;
 use snakes_lab::run::GenerationReport;
 
-use climbs::{Climb, Climbs, LandingTime};
+use climbs::{Climb, Climbs, landed_s};
 use columns::{cells, heads, rows_width};
 use summary::ReportSummary;
 
@@ -206,12 +206,12 @@ impl ChampionRow<'_> {
     /// The context menu starts the next run from the champion, or races the ten best snakes of its generation.
     fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
         let Self { shown, name, champion, climb, pick, .. } = *self;
-        let time = LandingTime::of(champion, climb);
+        let time = landed_s(champion, climb);
         let picture = climb.map(|climb| &climb.picture);
         let response = columns::row(ui, shown, picture, name, &cells(champion, time));
         let response = response.on_hover_ui(|ui| {
             ui.label(format!("{name}: {}", champion.reached()));
-            if let LandingTime::Known(time_s) = time {
+            if let Ok(time_s) = time {
                 ui.label(format!("Reached the top after {time_s:.2} s"));
             }
             if let Some(effort) = champion.evaluation.effort {
@@ -241,4 +241,4 @@ impl ChampionRow<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

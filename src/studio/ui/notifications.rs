@@ -174,15 +174,14 @@ impl Notices {
         offers.flat_map(labelled).collect()
     }
 
-    /// Returns the messages to draw, with their indices, the oldest first.
-    fn drawn(&self) -> impl DoubleEndedIterator<Item = (usize, &Notice)> {
-        let all = self.list.iter().enumerate();
-        all.filter(|(_, notice)| !self.is_quiet || notice.is_important)
+    /// Returns the messages to draw, the oldest first.
+    fn drawn(&self) -> impl DoubleEndedIterator<Item = &Notice> {
+        self.list.iter().filter(|notice| !self.is_quiet || notice.is_important)
     }
 
     /// Counts the latest messages that fit into this height, in points; at least one.
     fn fitting(&self, height: f32) -> usize {
-        let heights = self.drawn().rev().map(|(_, notice)| notice.height + theme::GAP);
+        let heights = self.drawn().rev().map(|notice| notice.height + theme::GAP);
         let ends = heights.scan(0.0, |sum, height| {
             *sum += height;
             Some(*sum)
@@ -201,30 +200,30 @@ impl Notices {
         let fitting = self.fitting(room.height());
         // The rest of the room's width is for the card's margins.
         let width = theme::NOTICE_WIDTH.min(room.width() - theme::GAP * 3.0);
-        let (mut heights, mut taken) = (Vec::new(), None);
+        let has_buttons = self.drawn().any(|notice| !notice.offers.is_empty());
+        let (is_quiet, mut taken) = (self.is_quiet, None);
         let shown = egui::Area::new(egui::Id::new("notices"))
             .pivot(egui::Align2::RIGHT_BOTTOM)
             .fixed_pos(room.max)
             // If no message has a button, clicks reach the stage behind the messages.
-            .interactable(self.drawn().any(|(_, notice)| !notice.offers.is_empty()))
+            .interactable(has_buttons)
             .show(context, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
                 ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                    for (index, notice) in self.drawn().rev().take(fitting) {
+                    let drawn = self.list.iter_mut().enumerate().rev();
+                    let drawn = drawn.filter(|(_, notice)| !is_quiet || notice.is_important);
+                    for (index, notice) in drawn.take(fitting) {
                         let (height, commands) = notice.show(ui, width);
-                        heights.push((index, height));
+                        if notice.height.to_bits() != height.to_bits() {
+                            // egui places the area by its previous size. If the buttons were drawn there, they would
+                            // move away from the pointer in the next frame.
+                            context.request_discard("a message of another height");
+                        }
+                        notice.height = height;
                         taken = taken.take().or(commands.map(|commands| (index, commands)));
                     }
                 });
             });
-        for (index, height) in heights {
-            let before = std::mem::replace(&mut self.list[index].height, height);
-            if before.to_bits() != height.to_bits() {
-                // egui places the area by its previous size. If the buttons were drawn there, they would move away from
-                // the pointer in the next frame.
-                context.request_discard("a message of another height");
-            }
-        }
         let is_empty = self.drawn().next().is_none();
         let covered = (!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0));
         let commands = taken.map(|(index, commands)| {
@@ -343,12 +342,10 @@ mod tests {
         notices.info("small news".to_owned());
         notices.important("the run is finished".to_owned());
         notices.problem("it failed".to_owned());
-        let drawn =
-            |notices: &Notices| -> Vec<usize> { notices.drawn().map(|(index, _)| index).collect() };
-        assert_eq!(drawn(&notices), [0, 1, 2]);
-        notices.set_quiet(true);
-        assert_eq!(drawn(&notices), [1, 2]);
-        notices.set_quiet(false);
-        assert_eq!(drawn(&notices), [0, 1, 2]);
+        let all = ["small news", "the run is finished", "it failed"];
+        for (is_quiet, drawn) in [(false, &all[..]), (true, &all[1..]), (false, &all)] {
+            notices.set_quiet(is_quiet);
+            assert!(notices.drawn().map(|notice| &notice.text).eq(drawn), "{is_quiet}");
+        }
     }
 }

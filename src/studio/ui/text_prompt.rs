@@ -51,7 +51,8 @@ impl TextPrompt {
         let context = ui.ctx().clone();
         let pass = context.cumulative_pass_nr();
         context.data_mut(|data| data.insert_temp(mark(), pass));
-        let has_keys = self.pending.is_none() && !is_covered(&context) && has_no_focus(&context);
+        let has_focus = context.memory(|memory| memory.focused().is_some());
+        let has_keys = self.pending.is_none() && !is_covered(&context) && !has_focus;
         if has_keys {
             self.take_letters(&context);
         }
@@ -100,10 +101,6 @@ pub(crate) fn is_open(context: &egui::Context) -> bool {
 
 fn mark() -> egui::Id {
     egui::Id::new("text prompt")
-}
-
-fn has_no_focus(context: &egui::Context) -> bool {
-    context.memory(|memory| memory.focused().is_none())
 }
 
 /// Returns whether a modal view or a menu is open, which handles Enter and Escape itself.

@@ -25,25 +25,13 @@ pub(super) struct Climb {
     pub picture: Thumbnail,
 }
 
-/// Time of a champion's landing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum LandingTime {
-    /// The champion has landed at this simulated time, in seconds.
-    Known(f64),
-    /// The champion does not end on the landing, or the time cannot be known.
-    None,
-    /// The time has not been computed yet.
-    Pending,
-}
-
-impl LandingTime {
-    /// Returns the time of landing of a champion. `climb` is the champion's climb, if it is known.
-    pub fn of(champion: &Champion, climb: Option<&Climb>) -> Self {
-        match climb {
-            _ if !champion.evaluation.is_on_landing(&champion.trial.stairs) => Self::None,
-            None => Self::Pending,
-            Some(climb) => climb.landed_s.map_or(Self::None, Self::Known),
-        }
+/// Returns the simulated time at which a champion landed, in seconds, or the text in its place: "…" until the climb is known,
+/// and "-" if the champion does not end on the landing or its time cannot be known.
+pub(super) fn landed_s(champion: &Champion, climb: Option<&Climb>) -> Result<f64, &'static str> {
+    match climb {
+        _ if !champion.evaluation.is_on_landing(&champion.trial.stairs) => Err("-"),
+        None => Err("…"),
+        Some(climb) => climb.landed_s.ok_or("-"),
     }
 }
 
@@ -77,15 +65,15 @@ impl Climbs {
         if lookahead.steps_done().is_some() {
             return;
         }
-        let climb = match lookahead.history() {
-            Some(history) => {
-                let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
-                Climb {
-                    landed_s: history.landed_at_step().map(|step| f64::from(step) * step_s),
-                    picture: Thumbnail::of_history(champion, history),
-                }
-            }
-            None => Climb { landed_s: None, picture: Thumbnail::of_trial(&champion.trial) },
+        let history = lookahead.history();
+        let step_s = 1.0 / f64::from(champion.trial.physics.steps_per_s);
+        let landed_at = history.and_then(|history| history.landed_at_step());
+        let climb = Climb {
+            landed_s: landed_at.map(|step| f64::from(step) * step_s),
+            picture: match history {
+                Some(history) => Thumbnail::of_history(champion, history),
+                None => Thumbnail::of_trial(&champion.trial),
+            },
         };
         self.known.insert(champion.evaluation.trace_hash, climb);
         self.under_way = None;
@@ -103,19 +91,19 @@ mod tests {
         let loaded = shipped_champion().expect("well formed");
         let champion = &loaded.champion;
         let mut climbs = Climbs::default();
-        assert_eq!(LandingTime::of(champion, climbs.of(champion)), LandingTime::Pending);
+        assert_eq!(landed_s(champion, climbs.of(champion)), Err("…"));
         while climbs.of(champion).is_none() {
             climbs.poll();
         }
         let mut lane = climber_lane(0, "climber");
         lane.finish_lookahead();
-        let landed_s = lane.landed_s(f64::INFINITY).expect("it climbs");
+        let time_s = lane.landed_s(f64::INFINITY).expect("it climbs");
         let climb = climbs.of(champion).expect("it is known");
-        assert_eq!(LandingTime::of(champion, Some(climb)), LandingTime::Known(landed_s));
+        assert_eq!(landed_s(champion, Some(climb)), Ok(time_s));
         assert_eq!(climb.picture.parts_m.len(), 5);
         let mut below = loaded.champion;
         below.evaluation.behaviour = None;
-        assert_eq!(LandingTime::of(&below, None), LandingTime::None);
+        assert_eq!(landed_s(&below, None), Err("-"));
     }
 
     #[test]

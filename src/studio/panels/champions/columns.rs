@@ -3,7 +3,6 @@
 use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::LayoutJob;
 
-use super::climbs::LandingTime;
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::ui::accessible::named_selected;
@@ -33,15 +32,11 @@ pub(super) fn count(width: f32) -> usize {
     (1..=WIDTHS.len()).rev().find(fits).unwrap_or(1)
 }
 
-/// Returns the texts of a champion's columns.
-pub(super) fn cells(champion: &Champion, time: LandingTime) -> [String; 3] {
+/// Returns the texts of a champion's columns. `time` is that of its landing, in seconds, or a text in its place.
+pub(super) fn cells(champion: &Champion, time: Result<f64, &str>) -> [String; 3] {
     let energy =
         champion.evaluation.effort.map(|effort| format!("{:.1} kJ", effort.energy_j / 1000.0));
-    let time = match time {
-        LandingTime::Known(time_s) => format!("{time_s:.2} s"),
-        LandingTime::None => "-".to_owned(),
-        LandingTime::Pending => "…".to_owned(),
-    };
+    let time = time.map_or_else(str::to_owned, |time_s| format!("{time_s:.2} s"));
     // The column has no room for the words, which the tooltip has.
     let score = match (champion.trial.fitness, champion.evaluation.fitness) {
         (Fitness::Share, share) => format!("{:.1} %", 100.0 * share),

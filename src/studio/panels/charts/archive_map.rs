@@ -49,20 +49,12 @@ pub(super) fn view(settings: &Settings, archive: &Archive) -> ChartView {
     );
     let name = format!("fitness from {min:.2} to {max:.2}{unit}");
     let chart = Chart::new(x, y, vec![Series::new(&name, Role::Share(0.5), cells)]);
-    let [of_x, of_y] = [archive.x.label, archive.y.label];
-    let figure =
-        Figure::of("Best snake for each kind of behaviour", chart).with_note(note).with_numbers(
-            [
-                format!("{of_x}, from"),
-                format!("{of_x}, to"),
-                format!("{of_y}, from"),
-                format!("{of_y}, to"),
-                with_unit("fitness", unit),
-                "generation".to_owned(),
-                "snake".to_owned(),
-            ],
-            archive.elites().map(|of| record(archive, of)),
-        );
+    let heads = [archive.x.label, archive.y.label].into_iter();
+    let heads = heads.flat_map(|axis| [format!("{axis}, from"), format!("{axis}, to")]);
+    let of_elite = [with_unit("fitness", unit), "generation".to_owned(), "snake".to_owned()];
+    let figure = Figure::of("Best snake for each kind of behaviour", chart)
+        .with_note(note)
+        .with_numbers(heads.chain(of_elite), archive.elites().map(|of| record(archive, of)));
     let pictures = ArchivePictures::of(archive, &settings.trial.agent);
     ChartView { pictures, ..ChartView::new(figure, vec![hits]) }
 }

@@ -2,7 +2,6 @@
 
 use super::bands::Bands;
 use snakes_core::genome::ControllerGenes;
-use snakes_lab::run::GenerationReport;
 
 /// Texts of the chart of species by generation.
 pub(super) const SPECIES: &Bands = &Bands {
@@ -17,20 +16,17 @@ pub(super) const SPECIES: &Bands = &Bands {
     best_axis: "Links and hidden nodes",
     best_names: ["links of the best network", "its hidden nodes"],
     best_columns: ["links of the best network", "hidden nodes of the best network"],
-    best_of: network_size,
+    best_of: |report| {
+        let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
+            return None;
+        };
+        Some([genes.network.enabled_links() as f64, genes.network.hidden().len() as f64])
+    },
     best_words: |[links, hidden]| {
         let nodes = if hidden == 1.0 { "node" } else { "nodes" };
         format!("{links} links\n{hidden} hidden {nodes}")
     },
 };
-
-/// Returns the numbers of enabled links and of hidden nodes in the best snake's network.
-fn network_size(report: &GenerationReport) -> Option<[f64; 2]> {
-    let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
-        return None;
-    };
-    Some([genes.network.enabled_links() as f64, genes.network.hidden().len() as f64])
-}
 
 /// Texts of the chart of the numbers of blocks by generation.
 pub(super) const BLOCKS: &Bands = &Bands {
@@ -48,16 +44,12 @@ pub(super) const BLOCKS: &Bands = &Bands {
     best_axis: "Blocks, and length in m",
     best_names: ["blocks of the best body", "its length in m"],
     best_columns: ["blocks of the best body", "length of the best body (m)"],
-    best_of: body_size,
+    best_of: |report| {
+        let body = report.champion.as_ref()?.body();
+        Some([body.limbs() as f64, f64::from(body.length_m())])
+    },
     best_words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
 };
-
-/// Returns the number of blocks of the best snake, and its length in metres.
-fn body_size(report: &GenerationReport) -> Option<[f64; 2]> {
-    let champion = report.champion.as_ref()?;
-    let body = champion.body();
-    Some([body.limbs() as f64, f64::from(body.length_m())])
-}
 
 #[cfg(test)]
 mod tests {

@@ -84,11 +84,6 @@ impl ChartKind {
         }
     }
 
-    /// Returns the first part of exported files' names.
-    pub fn file_name(self) -> String {
-        self.labels().0.to_lowercase()
-    }
-
     /// Returns the text that is shown while there is no data.
     pub fn empty_text(self) -> String {
         let first = " after the first generation";

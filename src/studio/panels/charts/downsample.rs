@@ -44,30 +44,22 @@ fn bucket(count: usize, each: usize) -> usize {
     if count <= MAX_POINTS { 1 } else { count.div_ceil(MAX_POINTS / each) }
 }
 
-/// Keeps the minimum and the maximum of each group, in their order, so that no peak is lost.
+/// Keeps the first and the last point and, of each group between them, the minimum and the maximum in their order, so
+/// that no peak is lost.
 fn line(points: &[[f64; 2]]) -> Vec<PlotPoint> {
     let size = bucket(points.len(), 2);
-    if size == 1 {
+    let ([first, between @ .., last], 2..) = (points, size) else {
         return points.iter().map(|&at| at.into()).collect();
-    }
-    let extremes = points.chunks(size).flat_map(|neighbours| {
+    };
+    let extremes = between.chunks(size).flat_map(|neighbours| {
         let by_height = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
         let (min, max) = (neighbours.iter().min_by(by_height), neighbours.iter().max_by(by_height));
         let is_in_order = min.map(|at| at[0]) <= max.map(|at| at[0]);
         let [first, second] = if is_in_order { [min, max] } else { [max, min] };
         [first, second.filter(|second| first != Some(second))]
     });
-    let mut drawn: Vec<PlotPoint> = extremes.flatten().map(|&at| at.into()).collect();
-    // The first and the last point are always kept.
-    if let (Some(&first), Some(&last)) = (points.first(), points.last()) {
-        if drawn.first().is_some_and(|at| at.x > first[0]) {
-            drawn.insert(0, first.into());
-        }
-        if drawn.last().is_some_and(|at| at.x < last[0]) {
-            drawn.push(last.into());
-        }
-    }
-    drawn
+    let kept = [Some(first)].into_iter().chain(extremes).chain([Some(last)]);
+    kept.flatten().map(|&at| at.into()).collect()
 }
 
 /// Keeps the lowest lower end and the highest upper end of each group.

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::{Color32, Pos2, Stroke};
 use egui_plot::{
     Arrows, Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints,
-    PlotTransform, PlotUi, Points, Polygon, VLine,
+    PlotTransform, PlotUi, Points, VLine,
 };
 
 use super::downsample::DrawnSeries;
@@ -151,11 +151,18 @@ struct ChartCanvas<'a> {
 }
 
 impl ChartCanvas<'_> {
-    /// Paints cells, and the bodies in them, on a background of empty cells. Polygons of the plot would leave visible
-    /// seams between neighbouring cells.
+    /// Paints boxes, and cells with the bodies in them on a background of empty cells. Polygons of the plot would leave
+    /// visible seams between neighbouring cells.
     fn cells(&self, view: &ChartView, chart: &Chart) {
         let Self { painter, transform, palette } = self;
         for series in &chart.series {
+            if let Shape::Boxes(boxes) = &series.shape {
+                // The edge keeps neighbouring blocks of the same colour apart.
+                let (fill, edge) = (palette.role(series.role), Stroke::new(1.0, palette.field));
+                for area in boxes.iter().map(|area| self.on_screen(HitShape::Area(*area))) {
+                    painter.rect(area, 0.0, fill, edge, egui::StrokeKind::Middle);
+                }
+            }
             let Shape::Cells(cells) = &series.shape else { continue };
             painter.rect_filled(*transform.frame(), 0.0, palette.empty_cell);
             for (index, (area, share, _)) in cells.iter().enumerate() {
@@ -194,6 +201,7 @@ impl ChartCanvas<'_> {
             painter.galley(plate.min + MARK_PADDING, text, palette.text_weak);
         }
     }
+
     /// Returns the rectangle of a hit target on the screen. A point is a rectangle without extent.
     fn on_screen(&self, target: HitShape) -> egui::Rect {
         let place = |x: f64, y: f64| self.transform.position_from_point(&PlotPoint::new(x, y));
@@ -317,29 +325,16 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
             let arrows = Arrows::new(&series.name, ends(0), ends(1)).color(color);
             plot.add(arrows.tip_length(ARROW_TIP).allow_hover(false));
         }
-        Shape::Boxes(boxes) => {
-            for [left, right, bottom, top] in boxes {
-                let corners =
-                    vec![[*left, *bottom], [*right, *bottom], [*right, *top], [*left, *top]];
-                // The edge keeps neighbouring blocks of the same colour apart.
-                let edge = Stroke::new(1.0, palette.field);
-                let block = Polygon::new("", corners).fill_color(color).stroke(edge);
-                plot.polygon(block.allow_hover(false));
-            }
-        }
-        // Cells are painted over the plot.
-        Shape::Cells(_) => {}
+        // Boxes and cells are painted over the plot.
+        Shape::Boxes(_) | Shape::Cells(_) => {}
     }
 }
 
 /// Returns the screen position of a chart position, for tests. `area` is the rectangle of the chart.
 #[cfg(test)]
 pub(super) fn screen_position(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
-    let share = |value: f64, range: &std::ops::RangeInclusive<f64>| {
-        ((value - range.start()) / (range.end() - range.start())) as f32
-    };
-    egui::pos2(
-        area.left() + area.width() * share(x, &chart.x.range),
-        area.bottom() - area.height() * share(y, &chart.y.range),
-    )
+    let ends = |from: f32, to: f32| f64::from(from)..=f64::from(to);
+    let x = egui::remap(x, chart.x.range.clone(), ends(area.left(), area.right()));
+    let y = egui::remap(y, chart.y.range.clone(), ends(area.bottom(), area.top()));
+    egui::pos2(x as f32, y as f32)
 }

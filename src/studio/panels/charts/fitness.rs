@@ -61,13 +61,8 @@ fn hit(report: &GenerationReport, unit: &'static str) -> Option<ChartHit> {
     };
     let target = HitShape::Column([f64::from(report.generation), best]);
     let Some(champion) = &report.champion else { return Some(ChartHit::new(target, words)) };
-    let (generation, individual) = (report.generation, champion.origin.individual);
-    Some(ChartHit::of(
-        target,
-        words,
-        Pick::Generation(generation),
-        IndividualId { generation, individual },
-    ))
+    let place = IndividualId { generation, individual: champion.origin.individual };
+    Some(ChartHit::of(target, words, Pick::Generation(generation), place))
 }
 
 /// Returns the axis of generations up to the last one, which is at least the second.

@@ -173,7 +173,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
             Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
         }
         ChartKind::Stairs => Some(stairs::view(
-            run.settings().evolution.strategy,
+            settings.evolution.strategy,
             run.reports(),
             exploration?.stairs.as_ref()?,
         )),
@@ -205,7 +205,7 @@ fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut V
             ("CSV", "Save the numbers as a table", ChartFormat::Csv),
             ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
         ] {
-            let (figure, name) = (Arc::clone(figure), kind.file_name());
+            let (figure, name) = (Arc::clone(figure), kind.labels().0.to_lowercase());
             let export = ChartExport { figure, name, format, is_of_run: *is_of_run };
             let export = Command::Run(RunCommand::ExportChart(export));
             CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);

@@ -1,7 +1,6 @@
 //! Tests of the charts panel: select, hover, click, export.
 
 use egui_kittest::kittest::Queryable;
-use snakes_core::evolve::StrategyKind;
 
 use super::*;
 use crate::studio::commands::pick::Pick;
@@ -12,7 +11,7 @@ use crate::studio::panels::testing::{self, Sent, shows};
 use crate::studio::state::current_run::{
     bodies_run, compared_run, explored_run, prepared_run, species_run,
 };
-use snakes_core::evolve::{IndividualId, RunPlan, Settings};
+use snakes_core::evolve::{IndividualId, RunPlan, Settings, StrategyKind};
 use snakes_lab::run::{Experiment, LocalPool, RunControl};
 
 /// Runs this number of generations for 0.5 s each. `change` changes the settings, which are also returned.
@@ -153,7 +152,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
             else {
                 panic!("{kind:?}: {sent:?}")
             };
-            assert_eq!((name, *format), (&kind.file_name(), ChartFormat::Csv));
+            assert_eq!((name, *format), (&kind.labels().0.to_lowercase(), ChartFormat::Csv));
             assert!(figure.table().len() > 1, "{kind:?} has rows");
         }
     }
@@ -256,40 +255,26 @@ fn a_long_name_in_a_legend_wraps() {
 }
 
 #[test]
-fn both_axes_of_every_chart_have_titles_with_units_in_a_narrow_panel() {
+fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_does() {
     let run = explored_run();
-    for (kind, y, x) in [
-        (ChartKind::Fitness, "Distance of the middle block (m)", "Generation"),
-        (ChartKind::Spread, "Snakes", "Distance of the middle block (m)"),
-        (ChartKind::Ancestors, "Distance of the middle block (m)", "Generation"),
-        (ChartKind::Parents, "Value within its range (0 lowest, 1 highest)", "Gene"),
-        (ChartKind::Front, "Energy (kJ)", "Final distance (m)"),
-        (ChartKind::Runs, "Distance of the middle block (m)", "Generation"),
+    let distance = "Distance of the middle block (m)";
+    let of_point = "Click any point to replay that snake.";
+    for (kind, texts) in [
+        (ChartKind::Fitness, &[distance, "Generation", of_point][..]),
+        (ChartKind::Spread, &["Snakes", distance, "Click a bar to replay its best snake."]),
+        (ChartKind::Ancestors, &[distance, "Generation", of_point]),
+        (ChartKind::Parents, &["Value within its range (0 lowest, 1 highest)", "Gene"]),
+        (ChartKind::Front, &["Energy (kJ)", "Final distance (m)", of_point]),
+        (ChartKind::Archive, &["Click a coloured cell to replay its snake."]),
+        (ChartKind::Runs, &[distance, "Generation", "Point at a line to read it."]),
     ] {
         with(&run, kind, 365.0, |harness| {
-            for title in [y, x] {
-                let found = harness.query_all_by_label(title).next();
-                let rect = found.unwrap_or_else(|| panic!("{kind:?}: {title}")).rect();
-                assert!(rect.width() < 360.0, "{kind:?}: {title} needs {rect:?}");
+            for text in texts {
+                let found = harness.query_all_by_label(text).next();
+                let rect = found.unwrap_or_else(|| panic!("{kind:?}: {text}")).rect();
+                assert!(rect.width() < 360.0, "{kind:?}: {text} needs {rect:?}");
             }
             assert_nothing_is_wider_than(harness, 365.0);
-        });
-    }
-}
-
-#[test]
-fn a_legend_says_what_a_click_does() {
-    let run = explored_run();
-    for (kind, hint) in [
-        (ChartKind::Fitness, "Click any point to replay that snake."),
-        (ChartKind::Ancestors, "Click any point to replay that snake."),
-        (ChartKind::Spread, "Click a bar to replay its best snake."),
-        (ChartKind::Front, "Click any point to replay that snake."),
-        (ChartKind::Archive, "Click a coloured cell to replay its snake."),
-        (ChartKind::Runs, "Point at a line to read it."),
-    ] {
-        with(&run, kind, 365.0, |harness| {
-            assert!(harness.query_all_by_label(hint).next().is_some(), "{kind:?}: {hint}");
         });
     }
 }

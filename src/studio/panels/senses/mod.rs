@@ -13,6 +13,8 @@ mod rule_row;
 mod value_bar;
 mod wave_view;
 
+use std::borrow::Cow;
+
 use bevy_egui::egui;
 
 use super::on_stage::OnStage;
@@ -26,7 +28,6 @@ use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveSenses, Activity, SenseOrgan};
 use snakes_core::genome::ControllerKind;
-use snakes_core::score::Rollout;
 
 use exam::exam;
 use readouts::readouts;
@@ -105,14 +106,13 @@ impl SensesPanel {
         };
         switches(ui, view, commands);
         exam(ui, view.lane, exams, commands);
-        let started;
-        let rollout = if rollout.perception().limbs.is_empty() {
-            started = with_first_senses(rollout);
-            &started
-        } else {
-            rollout
-        };
-        readouts(ui, view, rollout);
+        let mut rollout = Cow::Borrowed(rollout);
+        if rollout.perception().limbs.is_empty() {
+            // Nothing is sensed before the first step. Without the step of a copy, the panel would be empty for a moment
+            // and scroll to its top whenever a replay starts again.
+            rollout.to_mut().advance();
+        }
+        readouts(ui, view, &rollout);
         self.controller(ui, view, rollout.activity(view.joint()).as_ref());
     }
 
@@ -132,14 +132,6 @@ impl SensesPanel {
             None => {}
         }
     }
-}
-
-/// Returns a copy of the rollout after its first step, because nothing is sensed before. Without the copy, the panel
-/// would be empty for a moment and scroll to its top whenever a replay starts again.
-fn with_first_senses(rollout: &Rollout) -> Rollout {
-    let mut started = rollout.clone();
-    started.advance();
-    started
 }
 
 /// Describes in a sentence which controllers sense their surroundings.

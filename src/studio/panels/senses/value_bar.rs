@@ -74,8 +74,9 @@ impl ValueBar<'_> {
         );
         if bar.width() > 1.0 {
             painter.rect_filled(bar, BAR / 2.0, palette.field_hovered);
-            let zero = bar.left() + bar.width() * self.share(0.0);
-            let end = bar.left() + bar.width() * self.share(self.value);
+            let [zero, end] = [0.0, self.value].map(|value| {
+                egui::remap_clamp(value, self.range[0]..=self.range[1], bar.x_range())
+            });
             let filled = egui::Rect::from_x_y_ranges(zero.min(end)..=zero.max(end), bar.y_range());
             painter.rect_filled(filled, BAR / 2.0, color);
             if self.range[0] < 0.0 {
@@ -89,12 +90,5 @@ impl ValueBar<'_> {
         if !self.hint.is_empty() {
             response.on_hover_text(&self.hint);
         }
-    }
-
-    /// Returns the position of a value on the bar, from 0 to 1.
-    fn share(&self, value: f32) -> f32 {
-        let [least, most] = self.range;
-        let width = most - least;
-        if width > 0.0 { ((value - least) / width).clamp(0.0, 1.0) } else { 0.0 }
     }
 }

@@ -102,13 +102,8 @@ fn wave_row(ui: &mut egui::Ui, choice: &WaveChoiceActivity, index: usize, most: 
     let name = format!("Wave {}", index + 1);
     painter.text(egui::pos2(left, upper), Align2::LEFT_CENTER, &name, body.clone(), palette.text);
     let frequency = format!("{} Hz", decimals(wave.frequency_hz, 2));
-    painter.text(
-        egui::pos2(left, lower),
-        Align2::LEFT_CENTER,
-        &frequency,
-        small,
-        palette.text_weak,
-    );
+    let below = egui::pos2(left, lower);
+    painter.text(below, Align2::LEFT_CENTER, &frequency, small, palette.text_weak);
     let share = in_percent(wave.share);
     let right = egui::pos2(area.right(), area.center().y - 2.0);
     painter.text(right, Align2::RIGHT_CENTER, &share, body, palette.text);

@@ -16,7 +16,6 @@ use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::icons::{Icon, small_icon_button};
-use crate::studio::ui::text_rows::problem;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Settings;
 use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind, SettingValue};
@@ -198,13 +197,6 @@ impl Sheet {
         let hint = format!("Reset to the preset's value: {in_words}");
         let button = small_icon_button(ui, Icon::Reset, &format!("Reset {name}"), &hint);
         button.clicked().then(|| preset.to_string())
-    }
-
-    /// Draws the reason why the text of a control is invalid, if it is.
-    pub(super) fn problem(&self, ui: &mut egui::Ui, id: &str) {
-        if let Some(reason) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
-            problem(ui, reason);
-        }
     }
 }
 

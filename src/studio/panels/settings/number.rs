@@ -155,11 +155,10 @@ impl Sheet {
             // The field is aligned with the other fields.
             ui.add_space(width - VALUE_WIDTH);
         }
-        let value = match &self.changing {
-            Some(changing) if changing.id == control.id => rounded(changing.so_far),
-            _ => control.value.to_owned(),
-        };
-        let typed = self.text_field(ui, control, &value, VALUE_WIDTH);
+        let held = self.changing.as_ref().filter(|changing| changing.id == control.id);
+        let value = held.map(|changing| rounded(changing.so_far));
+        let value = value.as_deref().unwrap_or(control.value);
+        let typed = self.text_field(ui, control, value, VALUE_WIDTH);
         slid.or(typed)
     }
 

@@ -3,6 +3,7 @@
 use bevy_egui::egui;
 
 use super::form::{Sheet, Shown};
+use crate::studio::ui::text_rows::problem;
 use crate::studio::ui::theme;
 
 /// Minimum width of a row in one line, in points.
@@ -46,7 +47,9 @@ impl Sheet {
         });
         let (name, new) = line.inner;
         let new = if is_wide { new } else { control(self, ui, name).or(new) };
-        self.problem(ui, id);
+        if let Some(reason) = self.typed.get(id).and_then(|typed| typed.problem.as_deref()) {
+            problem(ui, reason);
+        }
         new
     }
 

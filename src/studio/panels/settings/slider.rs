@@ -19,10 +19,8 @@ impl Sheet {
         is_whole: bool,
     ) -> Option<String> {
         let value: f32 = control.value.parse().unwrap_or_default();
-        let mut so_far = match &self.changing {
-            Some(changing) if changing.id == control.id => changing.so_far,
-            _ => value,
-        };
+        let held = self.changing.as_ref().filter(|changing| changing.id == control.id);
+        let mut so_far = held.map_or(value, |changing| changing.so_far);
         let before = so_far;
         let mut slider = scale.slider(&mut so_far);
         if is_whole {

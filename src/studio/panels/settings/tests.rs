@@ -37,29 +37,6 @@ pub(in crate::studio::panels) fn assert_shows<S>(panel: &Harness<'_, S>, texts: 
     }
 }
 
-/// Asserts that a part of a panel has at least `least` texts, and that no two of them overlap by more than `touch` points.
-pub(in crate::studio::panels) fn assert_no_texts_overlap<S>(
-    panel: &Harness<'_, S>,
-    part: egui::Rect,
-    least: usize,
-    touch: f32,
-) {
-    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-        egui::Shape::Text(text) if part.contains(text.pos) => {
-            let rect = clipped.shape.visual_bounding_rect().shrink(touch);
-            Some((text.galley.text().to_owned(), rect))
-        }
-        _ => None,
-    });
-    let texts: Vec<_> = texts.collect();
-    assert!(texts.len() >= least, "{texts:?}");
-    for (index, (text, rect)) in texts.iter().enumerate() {
-        for (other, beside) in &texts[index + 1..] {
-            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
-        }
-    }
-}
-
 /// Clicks on the element with this label.
 pub(in crate::studio::panels) fn click<S>(panel: &mut Harness<'_, S>, label: &str) {
     panel.get_by_label(label).click();
@@ -97,12 +74,6 @@ fn run_with_all_given() -> CurrentRun {
     run
 }
 
-/// Finds a setting by its full name.
-fn setting(run: &CurrentRun, field: &str) -> ListedSetting {
-    let all = list(run.next_settings());
-    all.into_iter().find(|listed| listed.path == field).expect("a setting")
-}
-
 /// Returns an allowed number that differs from the current one.
 fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) -> String {
     let [least, most] = range.slider.unwrap_or([range.least, range.most]);
@@ -114,7 +85,8 @@ fn another(range: &NumberRange, now: &str, is_allowed: impl Fn(&str) -> bool) ->
 
 /// Creates a panel with one setting.
 fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
-    let listed = setting(run, field);
+    let all = list(run.next_settings());
+    let listed = all.into_iter().find(|listed| listed.path == field).expect("a setting");
     let mut sheet = Sheet::default();
     let builder = Harness::builder().with_size(egui::vec2(320.0, 400.0));
     // Frames are so short that a slider does not come to rest within a drag.

@@ -152,18 +152,19 @@ mod tests {
     }
 
     /// Opens the field for the name of a preset, and types into it.
-    fn type_name(panel: &mut Sent<'_>, name: &str) {
-        clicked(panel, "Save as preset…");
+    fn with_name<'a>(run: &'a CurrentRun, name: &str) -> Sent<'a> {
+        let mut panel = panel(run);
+        clicked(&mut panel, "Save as preset…");
         // The field has the focus, and the suggested name is selected.
         panel.event(egui::Event::Text(name.to_owned()));
         panel.run();
+        panel
     }
 
     #[test]
     fn a_name_that_is_not_allowed_is_offered_in_an_allowed_form() {
         let run = prepared_run();
-        let mut panel = panel(&run);
-        type_name(&mut panel, "My ice: 1/2");
+        let mut panel = with_name(&run, "My ice: 1/2");
         clicked(&mut panel, "Use the name my-ice-1-2");
         let sent = clicked(&mut panel, "Save");
         let stored = Command::Plan(PlanCommand::StorePreset("my-ice-1-2".to_owned()));
@@ -202,8 +203,7 @@ mod tests {
     #[test]
     fn settings_are_saved_under_a_name() {
         let run = prepared_run();
-        let mut panel = panel(&run);
-        type_name(&mut panel, "my-slope-2");
+        let mut panel = with_name(&run, "my-slope-2");
         let stored = Command::Plan(PlanCommand::StorePreset("my-slope-2".to_owned()));
         assert_eq!(clicked(&mut panel, "Save"), [stored]);
         assert!(panel.query_by_label("Name").is_none(), "done");
@@ -235,8 +235,7 @@ mod tests {
             ("climb", "A preset named climb already exists"),
         ] {
             let run = prepared_run();
-            let mut panel = panel(&run);
-            type_name(&mut panel, name);
+            let mut panel = with_name(&run, name);
             assert!(shows(&panel, said), "{name}");
             assert_eq!(clicked(&mut panel, "Save"), []);
         }

@@ -117,37 +117,31 @@ impl<'m> StairsMap<'m> {
 
     /// Draws the title, the count and the axes of the map.
     fn labels(&self, ui: &egui::Ui) {
-        let palette = theme::of(ui);
-        let cells = self.cells;
+        let (palette, cells) = (theme::of(ui), self.cells);
         let body = egui::TextStyle::Body.resolve(ui.style());
-        let small = egui::FontId::proportional(theme::SMALL_SIZE);
-        let text =
-            |at: egui::Pos2, align: egui::Align2, text: String, font: &egui::FontId, color| {
-                ui.painter().text(at, align, text, font.clone(), color);
-            };
-        let top = cells.top() - 2.0 * LINE;
-        let left = egui::Align2::LEFT_TOP;
-        text(egui::pos2(cells.left(), top), left, self.title.to_owned(), &body, palette.text);
+        let top = egui::pos2(cells.left(), cells.top() - 2.0 * LINE);
+        ui.painter().text(top, egui::Align2::LEFT_TOP, self.title, body, palette.text);
+        let small = |x: f32, y: f32, align: egui::Align2, text: String| {
+            let font = egui::FontId::proportional(theme::SMALL_SIZE);
+            ui.painter().text(egui::pos2(x, y), align, text, font, palette.text_weak);
+        };
+        let above = cells.top() - theme::GAP / 2.0;
         let count = format!("{} of {} landed", self.grid.landed(), self.grid.trials());
-        let at = egui::pos2(cells.left(), cells.top() - theme::GAP / 2.0);
-        text(at, egui::Align2::LEFT_BOTTOM, count, &small, palette.text_weak);
+        small(cells.left(), above, egui::Align2::LEFT_BOTTOM, count);
         for (column, tread_m) in self.grid.treads_m.iter().enumerate() {
-            let at = self.cell(0, column).center_bottom();
-            let at = at + egui::vec2(0.0, theme::GAP / 4.0);
-            text(at, egui::Align2::CENTER_TOP, tread_m.to_string(), &small, palette.text_weak);
+            let at = self.cell(0, column).center_bottom() + egui::vec2(0.0, theme::GAP / 4.0);
+            small(at.x, at.y, egui::Align2::CENTER_TOP, tread_m.to_string());
         }
-        let at = egui::pos2(cells.center().x, cells.bottom() + LINE - theme::GAP / 4.0);
-        text(at, egui::Align2::CENTER_TOP, "Tread (m)".to_owned(), &small, palette.text_weak);
-        if !self.has_rises {
-            return;
+        let below = cells.bottom() + LINE - theme::GAP / 4.0;
+        small(cells.center().x, below, egui::Align2::CENTER_TOP, "Tread (m)".to_owned());
+        if self.has_rises {
+            let right = cells.left() - theme::GAP / 2.0;
+            for (row, rise_m) in self.grid.rises_m.iter().enumerate() {
+                let middle = self.cell(row, 0).center().y;
+                small(right, middle, egui::Align2::RIGHT_CENTER, rise_m.to_string());
+            }
+            small(right, above, egui::Align2::RIGHT_BOTTOM, "Rise (m)".to_owned());
         }
-        let right = cells.left() - theme::GAP / 2.0;
-        for (row, rise_m) in self.grid.rises_m.iter().enumerate() {
-            let at = egui::pos2(right, self.cell(row, 0).center().y);
-            text(at, egui::Align2::RIGHT_CENTER, rise_m.to_string(), &small, palette.text_weak);
-        }
-        let at = egui::pos2(right, cells.top() - theme::GAP / 2.0);
-        text(at, egui::Align2::RIGHT_BOTTOM, "Rise (m)".to_owned(), &small, palette.text_weak);
     }
 
     /// Draws a cell with its number of landings.

@@ -2,9 +2,8 @@
 
 use super::lane_column::in_joules;
 use super::*;
-use crate::studio::panels::settings::tests::{
-    assert_no_texts_overlap, assert_nothing_is_wider_than, assert_shows,
-};
+use crate::studio::panels::champions::tests::assert_no_texts_overlap;
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows};
 use crate::studio::panels::testing::{climber, climber_lane, shows};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::decimals::in_percent;
