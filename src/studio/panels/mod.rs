@@ -47,6 +47,7 @@ use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
+use super::state::run_names::with_title;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
 use super::ui::accessible::named;
@@ -228,7 +229,8 @@ fn draw(
                 Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
                 _ => on_stage.is_on(command, *data.theme),
             };
-            let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.seed());
+            let preset = with_title(&data.run.preset_in_words());
+            let about = format!("{preset}, seed {}", data.run.seed());
             let share = data.shares.progress();
             let right = (about.as_str(), share.as_ref());
             menu(ui, situation, &is_on, &data.files.recent, right, viewer.commands);

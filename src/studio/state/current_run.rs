@@ -179,10 +179,10 @@ impl CurrentRun {
         &self.plan_now.settings
     }
 
-    /// Returns the stopped runs that can be resumed; `None` until the runs are listed.
-    pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
-        let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
-        Some(self.others.runs()?.iter().filter(is_other))
+    /// Returns the stopped runs that can be resumed, each with its readable name; `None` until the runs are listed.
+    pub fn stopped(&self) -> Option<impl Iterator<Item = (&RunSummary, &String)>> {
+        let runs = self.others.runs()?.iter().zip(self.others.names());
+        Some(runs.filter(|(run, _)| run.is_stopped() && run.folder != self.source.folder))
     }
 
     /// Returns the reports of the finished generations, the first generation first.

@@ -149,13 +149,13 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
     } else if item.problem().is_some() {
         DAMAGED
     } else {
-        is_over.then_some("This run cannot be resumed; the reason is given below")
+        is_over.then_some("This run cannot be continued; the reason is given below")
     };
     let has_none = item.run().is_some_and(|run| run.champions.is_empty());
     [
         LibraryAction {
-            name: "Resume",
-            hint: "Resume this run where it stopped; the current run stays saved",
+            name: "Continue",
+            hint: "Continue this run where it stopped; the current run stays saved",
             key: None,
             refusal,
             act: LibraryActionKind::Send(Command::Run(RunCommand::Continue(folder.to_owned()))),

@@ -2,18 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::studio::state::run_names::{difference, name_of_listed, tell_apart};
 use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
 use snakes_lab::run::BackgroundTask;
 
+/// Runs of the saves folder, with the description of each one's settings, and each one's readable name.
+type Listing = (Vec<RunSummary>, Vec<String>, Vec<String>);
+
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<(Vec<RunSummary>, Vec<String>)>>,
+    listing: Option<BackgroundTask<Listing>>,
     /// All runs in the saves folder; `None` until they are listed.
     runs: Option<Vec<RunSummary>>,
     /// Description of the settings of each listed run.
     settings: Vec<String>,
+    /// Readable name of each listed run.
+    names: Vec<String>,
     compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
     version: u64,
@@ -48,8 +54,14 @@ impl ComparedRuns {
     pub fn list(&mut self, saves: SavesFolder) -> Result<(), String> {
         let listing = BackgroundTask::start(move || {
             let runs = saves.runs();
-            let settings = runs.iter().map(|run| settings_in_words(&run.plan)).collect();
-            (runs, settings)
+            let settings: Vec<String> =
+                runs.iter().map(|run| settings_in_words(&run.plan)).collect();
+            let named = runs.iter().zip(&settings);
+            let mut names: Vec<String> =
+                named.map(|(run, settings)| name_of_listed(run, settings)).collect();
+            let differences = runs.iter().map(|run| difference(&run.folder, run.name.is_some()));
+            tell_apart(names.iter_mut().zip(differences));
+            (runs, settings, names)
         });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);
@@ -80,8 +92,9 @@ impl ComparedRuns {
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
         if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
-            let (runs, settings) = runs.unwrap_or_default();
-            (self.runs, self.settings, self.listing) = (Some(runs), settings, None);
+            let (runs, settings, names) = runs.unwrap_or_default();
+            (self.runs, self.listing) = (Some(runs), None);
+            (self.settings, self.names) = (settings, names);
             self.version += 1;
         }
         for run in &mut self.compared {
@@ -101,6 +114,11 @@ impl ComparedRuns {
     /// Returns the description of the settings of each listed run: see [`settings_in_words`].
     pub fn settings(&self) -> &[String] {
         &self.settings
+    }
+
+    /// Returns the readable name of each listed run.
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// Returns the runs that are compared with the current one.
