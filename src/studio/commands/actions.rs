@@ -142,6 +142,15 @@ impl Action {
         is_possible.then(|| self.command.clone())
     }
 
+    /// Returns whether the action shows or hides something on the stage.
+    pub fn shows_on_stage(&self) -> bool {
+        matches!(
+            self.command,
+            View(ViewCommand::ToggleOverlay(_) | ViewCommand::ToggleSmoothEdges)
+                | Window(WindowCommand::ToggleTorques)
+        )
+    }
+
     /// Returns the displayed shortcut, or an empty text.
     pub fn key(&self) -> &'static str {
         match self.keys {
@@ -179,9 +188,27 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
+/// Tooltip of the action that enlarges all texts.
+pub(crate) const LARGER_HINT: &str =
+    "All texts a quarter larger; at the largest size, the usual size again";
+
 /// Builds the actions of a menu.
 fn in_menu(menu: Menu, rows: impl IntoIterator<Item = ActionRow>) -> Vec<Action> {
-    let action = |(name, keys, command)| Action { menu, name, keys, hint: "", command };
+    let hint_of = |command: &Command| match command {
+        View(ViewCommand::ToggleOverlay(of)) => of.hint(),
+        View(ViewCommand::ToggleSmoothEdges) => {
+            "Smooth edges with four samples per pixel; slow without a graphics card"
+        }
+        Window(WindowCommand::ToggleTorques) => {
+            "Torques of each joint over the whole trial, below the player"
+        }
+        Window(WindowCommand::Enlarge) => LARGER_HINT,
+        _ => "",
+    };
+    let action = |(name, keys, command)| {
+        let hint = hint_of(&command);
+        Action { menu, name, keys, hint, command }
+    };
     rows.into_iter().map(action).collect()
 }
 
@@ -304,11 +331,12 @@ fn camera_rows() -> [ActionRow; 5] {
 }
 
 /// Returns the other rows of the view menu.
-fn window_rows() -> [ActionRow; 8] {
+fn window_rows() -> [ActionRow; 9] {
     [
         ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
         ("Anti-aliasing", &["A"], View(ViewCommand::ToggleSmoothEdges)),
         ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
+        ("Larger for a projector", &[], Window(WindowCommand::Enlarge)),
         (
             "Larger panels",
             &["Ctrl +", "Ctrl ="],

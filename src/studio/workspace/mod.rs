@@ -107,6 +107,7 @@ impl Workspace {
             }
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
+            WindowCommand::Enlarge => self.scale.enlarge(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
             WindowCommand::Fold { section, is_open: true } => {
                 self.unfolded.insert((*section).to_owned());

@@ -19,7 +19,7 @@ use crate::studio::ui::theme;
 use snakes_core::save::library::run_of_plan;
 
 /// Function that returns whether the setting that a command toggles is on, or `None` for other commands.
-type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
+pub(crate) type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
 
 /// Draws the menus, and collects the user's commands. `is_on` returns whether the setting that a command toggles is on.
 /// `recent` are the files that were opened recently. `about` is shown at the right end.

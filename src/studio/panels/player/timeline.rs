@@ -44,6 +44,8 @@ pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
     /// Whether the strip has a row with the torques of each joint.
     pub shows_torques: bool,
+    /// Selected limb, whose joints alone have a row; `None` for all joints.
+    pub limb: Option<usize>,
 }
 
 /// Width of the button that lists further readings, in points.
@@ -73,7 +75,7 @@ impl TimelinePanel {
             at_right(ui, |ui| readings(ui, lane));
         });
         let height = if self.shows_torques { theme::TORQUE_STRIP_HEIGHT } else { THIN };
-        let moment = self.torque_strip.ui(ui, lane, playback.time_s(), span, height);
+        let moment = self.torque_strip.ui(ui, (lane, self.limb), playback.time_s(), span, height);
         commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }
 
@@ -219,10 +221,12 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         more_readings(ui, others);
     }
     // The readings are added from right to left.
-    for (name, value, hint) in shown.iter().rev() {
+    for (index, (name, value, hint)) in shown.iter().enumerate().rev() {
         ui.label(egui::RichText::new(value).monospace()).on_hover_text(*hint);
         ui.label(weak(ui, *name)).on_hover_text(*hint);
-        ui.add_space(theme::GAP / 2.0);
+        if index > 0 {
+            ui.add(egui::Separator::default().spacing(theme::GAP * 1.5));
+        }
     }
 }
 

@@ -1,7 +1,5 @@
 //! An entry of the library list: its texts and sort keys.
 
-use std::time::Duration;
-
 use crate::studio::state::run_names::{date, difference, run_name, with_title};
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::EntryNotes;
@@ -259,6 +257,7 @@ impl LibraryItem {
 mod tests {
     use super::*;
     use snakes_core::save::library::read_entry;
+    use std::time::Duration;
 
     #[test]
     fn the_search_finds_name_preset_controller_and_damage() {
