@@ -47,7 +47,7 @@ pub(crate) fn menu(
                 // By default, egui limits a menu to a height of 400 points.
                 ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+                    ui.spacing_mut().item_spacing.y = 0.0;
                     for action in listed() {
                         entry(ui, action, situation, (has_toggles, is_on), commands);
                         if action.name == BEFORE_RECENT {
