@@ -85,7 +85,7 @@ pub(super) use super::commands::panel::PanelKind;
 pub(super) use help::tour::highlighted_panel;
 
 /// All panels, with their state between frames.
-#[derive(Resource)]
+#[derive(Resource, Default)]
 struct Panels {
     evolution: EvolutionPanel,
     fitness: FitnessChart,
@@ -107,35 +107,11 @@ struct Panels {
     letters: theme::GlyphWarmUp,
 }
 
-impl FromWorld for Panels {
-    fn from_world(world: &mut World) -> Self {
-        let comparison =
-            world.get_resource::<OpenedComparison>().and_then(|opened| opened.0.as_ref());
-        Self {
-            evolution: EvolutionPanel::default(),
-            fitness: FitnessChart::default(),
-            charts: ChartsPanel::new(comparison),
-            champions: ChampionsPanel::default(),
-            saves: LibraryPanel::default(),
-            world: WorldPanel::default(),
-            senses: SensesPanel::default(),
-            body: BodyPanel::default(),
-            stairs: StairsPanel::default(),
-            machines: MachinesPanel::default(),
-            timeline: TimelinePanel::default(),
-            palette: CommandPalette::default(),
-            tour: Tour::default(),
-            cards: CardStates::default(),
-            panel_rects: Vec::new(),
-            is_styled: false,
-            letters: theme::GlyphWarmUp::default(),
-        }
-    }
-}
-
 pub(super) fn plugin(app: &mut App) {
+    let comparison = app.world().get_resource::<OpenedComparison>();
+    let charts = ChartsPanel::new(comparison.and_then(|opened| opened.0.as_ref()));
     app.add_plugins(bevy_egui::EguiPlugin::default())
-        .init_resource::<Panels>()
+        .insert_resource(Panels { charts, ..Panels::default() })
         .add_systems(EguiPrimaryContextPass, draw);
 }
 
@@ -186,9 +162,9 @@ fn draw(
     context.set_zoom_factor(scale);
     let mut commands = Vec::new();
     let on_stage = &data.on_stage;
-    let situation =
-        Situation::of(&data.run, &on_stage.mode, &on_stage.way_back, &workspace, &on_stage.history);
-    let situation = Situation { is_sharing: data.shares.busy().is_some(), ..situation };
+    let (scene, files) =
+        ((&*on_stage.mode, &*on_stage.way_back), (&*on_stage.history, &*data.shares));
+    let situation = Situation::of(&data.run, scene, &workspace, files);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),

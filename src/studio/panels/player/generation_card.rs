@@ -84,7 +84,7 @@ const ICE: &str = "0.05";
 const LARGE_BUTTON: egui::Vec2 = egui::vec2(220.0, 34.0);
 
 /// Describes how many snakes of a generation are on the stage.
-fn how_many(size: u32, shown: usize) -> String {
+pub(super) fn how_many(size: u32, shown: usize) -> String {
     if shown == size as usize {
         format!("All {size} snakes at once")
     } else {

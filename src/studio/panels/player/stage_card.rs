@@ -135,9 +135,10 @@ fn header(ui: &mut egui::Ui, title: &str, is_folded: bool) -> bool {
 /// Draws the button at the upper right corner of a card that closes it. Returns whether it was clicked.
 fn close_button(ui: &mut egui::Ui, title: &str) -> bool {
     let card = ui.min_rect();
-    let size = egui::Vec2::splat(SIDE);
+    let size = egui::vec2(SIDE, ui.spacing().interact_size.y);
     let place = egui::Rect::from_min_size(card.right_top() - egui::vec2(SIDE, 0.0), size);
-    let close = ui.put(place, egui::Button::new("×").frame(false).small());
+    let sign = egui::RichText::new("×").size(theme::TITLE_SIZE * 1.2);
+    let close = ui.put(place, egui::Button::new(sign).frame(false).small());
     let close = named(close, egui::WidgetType::Button, &format!("Close {title}"));
     close.on_hover_text("Close this card; \"Show\" above the stage brings it back").clicked()
 }

@@ -193,22 +193,27 @@ fn joints_of(body: &BodyPlan, limb: Option<usize>) -> Vec<usize> {
     (0..body.joints.len()).filter(is_shown).collect()
 }
 
+/// Returns "head" or "tail" for the joints at the ends of a body. If only each joint of a certain number has a name, the
+/// last of them is at the tail.
+fn end_of(body: &BodyPlan, joint: usize, every: usize) -> &'static str {
+    match joint {
+        // The body of a creature has no head and tail ends.
+        _ if body.is_branching() => "",
+        0 => "head",
+        _ if joint + every >= body.joints.len() => "tail",
+        _ => "",
+    }
+}
+
 /// Writes the names of the joints beside their rows, from head to tail, in short form beside a narrow strip. If the
 /// rows are lower than a line of text, neighbouring rows share a name.
 fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, shown: &[usize], is_wide: bool) {
-    let joints = body.joints.len();
     let row_height = area.height() / shown.len().max(1) as f32;
     let every = (theme::SMALL_SIZE / row_height.max(0.1)).ceil().max(1.0) as usize;
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let painter = ui.painter_at(area.expand2(egui::vec2(0.0, theme::SMALL_SIZE)));
     for (row, joint) in shown.iter().copied().enumerate().step_by(every) {
-        let end = match joint {
-            // The body of a creature has no head and tail ends.
-            _ if body.is_branching() => "",
-            0 => "head",
-            _ if joint + every >= joints => "tail",
-            _ => "",
-        };
+        let end = end_of(body, joint, every);
         let number = joint + 1;
         let name = match (is_wide, end) {
             (true, "") => format!("Joint {number}"),
@@ -297,16 +302,15 @@ fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
     let Some(history) = lane.history().filter(|_| is_known) else { return text };
     let sample = (time_s / (lane.step_s() * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
-        for (joint, torque) in (1..).zip(torques) {
+        for (joint, torque) in torques.iter().enumerate() {
             // Turns -0.0 into 0.0.
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
-            let end = match joint {
-                _ if lane.body().is_branching() => "",
-                1 => " (head)",
-                _ if joint == torques.len() => " (tail)",
-                _ => "",
+            let end = match end_of(lane.body(), joint, 1) {
+                "" => String::new(),
+                end => format!(" ({end})"),
             };
-            text += &format!("\nJoint {joint}{end}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
+            let number = joint + 1;
+            text += &format!("\nJoint {number}{end}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
         }
     }
     text
