@@ -185,7 +185,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         speed: chosen.playback.speed(),
         loops: if presents { before.loops } else { chosen.playback.loops() },
         smooth_edges: is_smooth.filter(|_| has_chosen),
-        tour_is_over: chosen.workspace.tour_is_over,
+        tour_is_over: !chosen.workspace.awaits_tour,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
         finished_lessons: chosen.lessons.finished.iter().cloned().collect(),
@@ -225,7 +225,7 @@ mod tests {
         let file = PreferencesFile::at(&folder.path().join("studio.ron"));
         let mut first = app(&file);
         first.world_mut().resource_mut::<Workspace>().scale.choose(1.5);
-        first.world_mut().resource_mut::<Workspace>().tour_is_over = true;
+        first.world_mut().resource_mut::<Workspace>().awaits_tour = false;
         first.world_mut().resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
         first
             .world_mut()
