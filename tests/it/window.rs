@@ -323,7 +323,8 @@ fn a_stopped_run_can_be_resumed_from_the_list() {
     studio.click_label("New run");
     studio.wait_for_title("seed 8 - 4 of 4 generations, finished");
     studio.scroll_and_click("Button", "Open an earlier run");
-    let is_it = |place: &Place| place.role == "Button" && place.label.starts_with("quick, seed 7");
+    let is_it =
+        |place: &Place| place.role == "Button" && place.label.starts_with("A quick try 7, ");
     studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());
     studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
     assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);

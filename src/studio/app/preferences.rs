@@ -157,7 +157,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
         speed: chosen.playback.speed(),
         loops: if presents { before.loops } else { chosen.playback.loops },
         quality: chosen.quality.chosen.map(|quality| quality.name().to_owned()),
-        tour_is_over: chosen.workspace.tour_is_over,
+        tour_is_over: !chosen.workspace.awaits_tour,
         recent: chosen.files.recent.to_texts(),
         unfolded: chosen.workspace.unfolded.iter().cloned().collect(),
         finished_lessons: chosen.lessons.finished.iter().cloned().collect(),
@@ -199,7 +199,7 @@ mod tests {
         let mut first = app(&file);
         let world = first.world_mut();
         world.resource_mut::<Workspace>().scale.choose(1.5);
-        world.resource_mut::<Workspace>().tour_is_over = true;
+        world.resource_mut::<Workspace>().awaits_tour = false;
         world.resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
         world.resource_mut::<Lessons>().finished.insert("Friction: how much?".to_owned());
         world.resource_mut::<Overlays>().toggle(Overlay::Trail);

@@ -142,6 +142,14 @@ impl Action {
         is_possible.then(|| self.command.clone())
     }
 
+    /// Returns whether the action shows or hides something on the stage.
+    pub fn shows_on_stage(&self) -> bool {
+        matches!(
+            self.command,
+            View(ViewCommand::ToggleOverlay(_)) | Window(WindowCommand::ToggleTorques)
+        )
+    }
+
     /// Returns the displayed shortcut, or an empty text.
     pub fn key(&self) -> &'static str {
         match self.keys {
@@ -179,12 +187,21 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
+/// Tooltip of the action that enlarges all texts.
+pub(crate) const LARGER_HINT: &str =
+    "All texts a quarter larger; at the largest size, the usual size again";
+
 /// Returns all actions, grouped by menu.
 pub(crate) fn actions() -> &'static [Action] {
     static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
         let action = |menu, (name, keys, command)| {
             let hint = match command {
                 Share(ShareCommand::Ask(format)) => format.info().sentence,
+                View(ViewCommand::ToggleOverlay(of)) => of.hint(),
+                Window(WindowCommand::ToggleTorques) => {
+                    "Torques of each joint over the whole trial, below the player"
+                }
+                Window(WindowCommand::Enlarge) => LARGER_HINT,
                 _ => "",
             };
             Action { menu, name, keys, hint, command }
@@ -278,6 +295,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
             ("Next picture quality", &["A"], View(ViewCommand::NextQuality)),
             ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
+            ("Larger for a projector", &[], Window(WindowCommand::Enlarge)),
             ("Larger panels", &["Ctrl +", "Ctrl ="], scale(true)),
             ("Smaller panels", &["Ctrl -"], scale(false)),
             ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),

@@ -16,6 +16,8 @@ pub(crate) enum FileCommand {
     Answer(FileQuestion, Vec<PathBuf>),
     /// Show this folder in the file manager.
     OpenFolder(PathBuf),
+    /// Write the worksheet of this lesson as a page, and open the page in the browser; the first lesson is 0.
+    PrintWorksheet(usize),
     /// Show the folder of saves in the file manager.
     ShowSaves,
     /// Copy the picture in this file to the clipboard.

@@ -259,6 +259,8 @@ pub(super) enum WindowCommand {
         /// Whether the scale becomes larger rather than smaller.
         larger: bool,
     },
+    /// Multiply the UI scale by 1.25, or reset it if it cannot become larger.
+    Enlarge,
     /// Reset the UI scale to 1.
     ResetScale,
     /// Show or hide the torques of each joint over time, in the player.

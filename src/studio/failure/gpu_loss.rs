@@ -54,7 +54,7 @@ fn report_restart(mut notices: ResMut<Notices>) {
     if restarts() > 0 {
         notices.problem(
             "The graphics driver failed and the studio restarted. The run with which it was opened continues; \
-             any other run is listed under \"Resume a stopped run\"."
+             any other run is listed under \"Open an earlier run\"."
                 .to_owned(),
         );
     }

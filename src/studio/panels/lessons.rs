@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 use egui_plot::{Line, PlotPoints};
 
+use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
     Asks, FITNESS_OF_THE_LANDED, Found, LESSON_ORDER, LESSONS, LessonScene, LessonView, Lessons,
@@ -177,12 +178,14 @@ fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Comm
 
 /// Draws the section about the worksheet to print.
 fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
-    heading(ui, "Worksheet to print");
+    heading(ui, "Worksheet");
     ui.horizontal_wrapped(|ui| {
-        explain(ui, &format!("One page: docs/worksheets/{}.md", index + 1));
+        let hint = "Opens the worksheet in the browser, which prints it on one sheet of paper";
+        let print = Command::File(FileCommand::PrintWorksheet(index));
+        CommandButton::new("Print the worksheet", hint, print).show(ui, commands);
         let hint = "Copy its text (Markdown), to paste it into a text processor";
         let copied = Command::Notify(format!("Worksheet {} copied.", index + 1));
-        if CommandButton::small("Copy worksheet", hint, copied).show(ui, commands) {
+        if CommandButton::new("Copy worksheet", hint, copied).show(ui, commands) {
             ui.ctx().copy_text(LESSONS[index].worksheet.to_owned());
         }
     });

@@ -47,6 +47,7 @@ use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
+use super::state::run_names::with_title;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
 use super::ui::accessible::named;
@@ -63,13 +64,14 @@ use click_limits::{leave_keyboard_to_stage, set_click_limits};
 use help::command_palette::CommandPalette;
 use help::key_list::key_overlay;
 use help::menu::menu;
-use help::tour::Tour;
+use help::tour::{TOUR_CARD, Tour};
 use lessons::lessons;
 use library::LibraryPanel;
 use machines::MachinesPanel;
 use on_stage::OnStage;
-use player::cards::{CardSituation, around_stage, lesson_card};
+use player::cards::{CardSituation, around_stage};
 use player::presented_caption::{PresentedCaption, caption_band};
+use player::stage_card::CardStates;
 use player::timeline::{TimelinePanel, TimelineSpan};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
@@ -83,7 +85,7 @@ pub(super) use super::commands::panel::PanelKind;
 pub(super) use help::tour::highlighted_panel;
 
 /// All panels, with their state between frames.
-#[derive(Resource)]
+#[derive(Resource, Default)]
 struct Panels {
     evolution: EvolutionPanel,
     fitness: FitnessChart,
@@ -98,40 +100,18 @@ struct Panels {
     timeline: TimelinePanel,
     palette: CommandPalette,
     tour: Tour,
+    cards: CardStates,
     /// Rectangles of the panels in this frame, in points.
     panel_rects: Vec<(PanelKind, egui::Rect)>,
     is_styled: bool,
     letters: theme::GlyphWarmUp,
 }
 
-impl FromWorld for Panels {
-    fn from_world(world: &mut World) -> Self {
-        let comparison =
-            world.get_resource::<OpenedComparison>().and_then(|opened| opened.0.as_ref());
-        Self {
-            evolution: EvolutionPanel::default(),
-            fitness: FitnessChart::default(),
-            charts: ChartsPanel::new(comparison),
-            champions: ChampionsPanel::default(),
-            saves: LibraryPanel::default(),
-            world: WorldPanel::default(),
-            senses: SensesPanel::default(),
-            body: BodyPanel::default(),
-            stairs: StairsPanel::default(),
-            machines: MachinesPanel::default(),
-            timeline: TimelinePanel::default(),
-            palette: CommandPalette::default(),
-            tour: Tour::default(),
-            panel_rects: Vec::new(),
-            is_styled: false,
-            letters: theme::GlyphWarmUp::default(),
-        }
-    }
-}
-
 pub(super) fn plugin(app: &mut App) {
+    let comparison = app.world().get_resource::<OpenedComparison>();
+    let charts = ChartsPanel::new(comparison.and_then(|opened| opened.0.as_ref()));
     app.add_plugins(bevy_egui::EguiPlugin::default())
-        .init_resource::<Panels>()
+        .insert_resource(Panels { charts, ..Panels::default() })
         .add_systems(EguiPrimaryContextPass, draw);
 }
 
@@ -182,9 +162,9 @@ fn draw(
     context.set_zoom_factor(scale);
     let mut commands = Vec::new();
     let on_stage = &data.on_stage;
-    let situation =
-        Situation::of(&data.run, &on_stage.mode, &on_stage.way_back, &workspace, &on_stage.history);
-    let situation = Situation { is_sharing: data.shares.busy().is_some(), ..situation };
+    let (scene, files) =
+        ((&*on_stage.mode, &*on_stage.way_back), (&*on_stage.history, &*data.shares));
+    let situation = Situation::of(&data.run, scene, &workspace, files);
     let mut root = egui::Ui::new(
         context.clone(),
         "root".into(),
@@ -201,7 +181,14 @@ fn draw(
     if let Some(label) = workspace.sought.take() {
         panels.world.set_search(label);
     }
-    panels.timeline.shows_torques = workspace.shows_torques();
+    let (shows_torques, is_larger) = (workspace.shows_torques(), workspace.scale.is_larger());
+    panels.timeline.shows_torques = shows_torques;
+    panels.timeline.limb = on_stage.selection.limb;
+    let is_on = |command: &Command| match command {
+        Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
+        Command::Window(WindowCommand::Enlarge) => Some(is_larger),
+        _ => on_stage.is_on(command, *data.theme),
+    };
     let mut viewer = Viewer {
         small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,
@@ -223,16 +210,16 @@ fn draw(
     } else {
         let frame = bar_frame(theme::of_context(&context), theme::GAP as i8 / 4);
         egui::Panel::top("menu").frame(frame).show(&mut root, |ui| {
-            let shows_torques = workspace.shows_torques();
-            let is_on = |command: &Command| match command {
-                Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
-                _ => on_stage.is_on(command, *data.theme),
-            };
-            let about = format!("{}, seed {}", data.run.preset_in_words(), data.run.plan_now.seed);
+            let preset = with_title(&data.run.preset_in_words());
+            let about = format!("{preset}, seed {}", data.run.plan_now.seed);
             let share = data.shares.progress();
             let right = (about.as_str(), share.as_ref());
             menu(ui, situation, &is_on, &data.files.recent, right, viewer.commands);
         });
+        let mut seen = lanes.iter().filter(|lane| !lane.is_ghost);
+        let senses =
+            |lane: &&Lane| lane.staged.champion().genome.controller.kind().senses_surroundings();
+        workspace.layout.offer(PanelKind::Senses, seen.any(senses));
         let style = style(&root);
         let size = root.available_size();
         DockArea::new(workspace.layout.state_in(size, is_settled))
@@ -247,18 +234,20 @@ fn draw(
     if let Some(stage) = viewer.stage {
         let (mut cards, mut messages_room) = (Vec::new(), stage);
         if let Some(lane) = focused.filter(|_| !is_presenting) {
-            let is_touring = matches!(workspace.modal(), Some(Modal::Tour(_)));
-            let (theme, progress) = (*data.theme, data.run.progress());
-            let messages = area.messages_size();
-            let shows_torques = workspace.shows_torques();
-            let of = CardSituation { theme, progress, is_touring, messages, shows_torques };
-            let around = around_stage(&context, stage, on_stage, &lanes, lane, &of, &mut commands);
+            let tour = matches!(workspace.modal(), Some(Modal::Tour(_)))
+                .then(|| context.memory(|memory| memory.area_rect(egui::Id::new(TOUR_CARD))));
+            let is_in_sight = |kind| panels.panel_rects.iter().any(|(of, _)| *of == kind);
+            let lesson = data.lessons.view().filter(|_| !is_in_sight(PanelKind::Lessons));
+            let of = CardSituation {
+                is_on: &is_on,
+                progress: data.run.progress(),
+                lesson: lesson.map(|view| view.index),
+                tour: tour.flatten(),
+                messages: area.messages_size(),
+            };
+            let (snakes, state) = ((&lanes[..], lane), (&of, &mut panels.cards));
+            let around = around_stage(&context, stage, on_stage, snakes, state, &mut commands);
             (cards, messages_room) = (around.cards, around.messages_room);
-            let is_in_sight =
-                panels.panel_rects.iter().any(|(kind, _)| *kind == PanelKind::Lessons);
-            if let Some(view) = data.lessons.view().filter(|_| !is_in_sight) {
-                lesson_card(&context, around.below_bar, view.index, &mut commands);
-            }
         }
         area.set(&context, stage, cards, messages_room);
     }

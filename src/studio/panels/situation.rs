@@ -25,21 +25,18 @@ pub(crate) struct CurrentSituation<'w> {
 impl CurrentSituation<'_> {
     /// Returns the current situation.
     pub fn situation(&self) -> Situation {
-        let is_sharing = self.shares.busy().is_some();
-        let (mode, way_back) = (&self.mode, &self.way_back);
-        let situation = Situation::of(&self.run, mode, way_back, &self.workspace, &self.history);
-        Situation { is_sharing, ..situation }
+        let (stage, files) = ((&*self.mode, &*self.way_back), (&*self.history, &*self.shares));
+        Situation::of(&self.run, stage, &self.workspace, files)
     }
 }
 
 impl Situation {
-    /// Computes the situation from the run, the stage, the window and the undo history.
+    /// Computes the situation from the run, the stage, the window, the undo history and the file that is being written.
     pub fn of(
         run: &CurrentRun,
-        mode: &StageMode,
-        way_back: &WayBack,
+        (mode, way_back): (&StageMode, &WayBack),
         workspace: &Workspace,
-        history: &UndoHistory,
+        (history, shares): (&UndoHistory, &Shares),
     ) -> Self {
         Self {
             is_running: run.status() == RunStatus::Running,
@@ -51,7 +48,7 @@ impl Situation {
                 || workspace.is_bare
                 || workspace.is_presenting(),
             is_presenting: workspace.is_presenting() && workspace.modal().is_none(),
-            is_sharing: false,
+            is_sharing: shares.busy().is_some(),
             can_undo: history.next(UndoDirection::Back).is_some(),
             can_redo: history.next(UndoDirection::Forth).is_some(),
             digit: None,

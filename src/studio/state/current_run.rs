@@ -19,13 +19,13 @@ use super::milestones::Milestone;
 use super::options::Options;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
-use snakes_core::save::{ExistingRun, RunSummary};
+use snakes_core::save::ExistingRun;
 use snakes_core::schema::SettingValue;
 use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
 };
 
-pub(crate) use compared_runs::{ComparedRuns, MOST_COMPARED};
+pub(crate) use compared_runs::{ComparedRuns, ListedRun, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
 
 /// Number of latest generations whose ten best snakes are kept.
@@ -152,11 +152,10 @@ impl CurrentRun {
         &self.plan_now.settings
     }
 
-    /// Returns the stopped runs that can be resumed; `None` until the runs are listed.
-    pub fn stopped(&self) -> Option<impl Iterator<Item = &RunSummary>> {
-        let is_other = |run: &&RunSummary| run.is_stopped() && run.folder != self.source.folder;
-        let runs = self.others.runs.as_ref()?.iter();
-        Some(runs.map(|(run, _)| run).filter(is_other))
+    /// Returns the stopped runs that can be resumed, each with its readable name; `None` until the runs are listed.
+    pub fn stopped(&self) -> Option<impl Iterator<Item = &ListedRun>> {
+        let is_other = |of: &&ListedRun| of.run.is_stopped() && of.run.folder != self.source.folder;
+        Some(self.others.runs.as_ref()?.iter().filter(is_other))
     }
 
     /// Returns the reports of the finished generations, the first generation first.

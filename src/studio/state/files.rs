@@ -11,7 +11,9 @@ use std::path::{Path, PathBuf};
 use bevy::ecs::system::NonSendMarker;
 use bevy::prelude::*;
 
+use super::lessons::write_worksheet;
 use super::library::Library;
+use super::new_file::offer_path;
 use super::undo::UndoHistory;
 use crate::studio::commands::Command;
 use crate::studio::commands::WindowCommand;
@@ -39,7 +41,7 @@ pub(crate) struct Files {
     unasked: Option<(FileQuestion, String)>,
     /// Question of the open file dialog, and its answer in the background.
     asked: Option<(FileQuestion, BackgroundTask<DialogAnswer>)>,
-    /// Folders that the file manager is opening, and the results in the background.
+    /// Folders and pages that other programs are opening, and the results in the background.
     opening: Vec<BackgroundTask<Result<(), String>>>,
     copying: CopyTask,
 }
@@ -117,10 +119,16 @@ impl Files {
                 self.recent.note(question, paths);
                 return done.unwrap_or(Ok(None));
             }
-            FileCommand::OpenFolder(folder) => self.open_folder(folder)?,
+            FileCommand::OpenFolder(folder) => self.open(folder)?,
+            FileCommand::PrintWorksheet(lesson) => {
+                let path = write_worksheet(library.saves(), *lesson)?;
+                let text = format!("{} opens in the browser, which prints it.", path.display());
+                offer_path(notices, "worksheet", text, &path);
+                self.open(&path)?;
+            }
             FileCommand::ShowSaves => {
                 library.prepare_folder()?;
-                self.open_folder(library.folder())?;
+                self.open(library.folder())?;
             }
             FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,
             FileCommand::CopyPath(path) => self.copying.start(Copied::Path(path.clone()))?,
@@ -128,10 +136,11 @@ impl Files {
         Ok(None)
     }
 
-    fn open_folder(&mut self, folder: &Path) -> Result<(), String> {
-        let folder = folder.to_owned();
-        let task = BackgroundTask::start(move || dialog::open_folder(&folder));
-        self.opening.push(task.map_err(|error| format!("The folder cannot be shown: {error}"))?);
+    /// Opens a folder or a page with the program of the operating system for it.
+    fn open(&mut self, path: &Path) -> Result<(), String> {
+        let path = path.to_owned();
+        let task = BackgroundTask::start(move || dialog::open(&path));
+        self.opening.push(task.map_err(|error| format!("No program can be started: {error}"))?);
         Ok(())
     }
 

@@ -6,6 +6,7 @@ mod found;
 mod lesson;
 mod plays;
 mod prediction;
+mod printed;
 #[cfg(test)]
 mod worksheets;
 
@@ -32,6 +33,7 @@ pub(crate) use found::Found;
 pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
 pub(crate) use prediction::{Asks, Progress};
+pub(crate) use printed::write_worksheet;
 
 /// The lessons, of which at most one is open.
 #[derive(Resource, Debug, Default)]

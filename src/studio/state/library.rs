@@ -47,6 +47,8 @@ pub(crate) struct Library {
     listings: u64,
     /// Counter that is incremented when a sort or search key changes.
     sortings: u64,
+    /// Whether runs may read alike until they are told apart.
+    has_new_names: bool,
     batches: Vec<BatchJobs>,
     examination: Option<Examination>,
     /// Champions that are being read for the stage.
@@ -84,6 +86,7 @@ impl Library {
             revision: 0,
             listings: 0,
             sortings: 0,
+            has_new_names: false,
             batches: Vec::new(),
             examination: None,
             loading: None,
@@ -157,7 +160,7 @@ impl Library {
 
     /// Returns the user's own name for a run, if any.
     fn own_name(&self, place: &SavePlace) -> Option<String> {
-        self.item(place)?.notes().ok()?.own_name().map(str::to_owned)
+        self.item(place)?.own_name().map(str::to_owned)
     }
 
     /// Returns a counter of created, renamed and restored entries, and the latest of them.
@@ -193,6 +196,11 @@ impl Library {
     /// Returns how often the export of the selected entries was requested.
     pub fn export_requests(&self) -> u64 {
         self.export_requests
+    }
+
+    /// Returns the saves folder, in which files can be stored.
+    pub fn saves(&self) -> &SavesFolder {
+        &self.saves
     }
 
     /// Creates the saves folder, if it does not exist yet.

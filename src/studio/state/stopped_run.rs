@@ -27,7 +27,10 @@ fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: 
     // A list that cannot be read is reported, and the own run starts.
     let Some(stopped) = run.stopped() else { return };
     *is_done = true;
-    let latest = stopped.filter(|run| run.finished > 0).max_by_key(|run| run.saved_at).cloned();
+    let latest = stopped
+        .filter(|of| of.run.finished > 0)
+        .max_by_key(|of| of.run.saved_at)
+        .map(|of| (of.run.clone(), offer_text(&of.run, &of.name)));
     if run.status() != RunStatus::Ready {
         return;
     }
@@ -37,10 +40,10 @@ fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: 
         of.plan.preset == own.preset && (is_plain || of.plan.settings == own.settings)
     };
     let opened = match latest {
-        Some(latest) if is_alike(&latest) => run.open_stopped(&latest.folder),
-        Some(latest) => {
-            let go_on = Command::Run(RunCommand::Continue(latest.folder.clone()));
-            notices.lasting_offer(offer_text(&latest), "Continue", go_on);
+        Some((latest, _)) if is_alike(&latest) => run.open_stopped(&latest.folder),
+        Some((latest, offer)) => {
+            let go_on = Command::Run(RunCommand::Continue(latest.folder));
+            notices.lasting_offer(offer, "Continue", go_on);
             run.start()
         }
         None => run.start(),
@@ -48,13 +51,10 @@ fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: 
     notices.problems(opened.err());
 }
 
-/// Describes a stopped run in a sentence: "climb, seed 1 stopped after generation 41 of 200."
-fn offer_text(run: &RunSummary) -> String {
-    let (plan, generations) = (&run.plan, run.plan.most_generations_in_words());
-    format!(
-        "{}, seed {} stopped after generation {} of {generations}.",
-        plan.preset, plan.seed, run.finished
-    )
+/// Describes a stopped run in a sentence: "Climb 1, 27 Nov, 26 m: stopped after generation 41 of 200."
+fn offer_text(run: &RunSummary, name: &str) -> String {
+    let generations = run.plan.most_generations_in_words();
+    format!("{name}: stopped after generation {} of {generations}.", run.finished)
 }
 
 #[cfg(test)]
@@ -90,7 +90,9 @@ mod tests {
         let is_told = |world: &World| world.resource::<Notices>().len() > 0;
         let app = started(folder.path(), (2, 9_000), is_told);
         let notices = app.world().resource::<Notices>();
-        assert_eq!(notices.last(), Some("test, seed 1 stopped after generation 1 of 10000."));
+        let said = notices.last().unwrap_or_default();
+        assert!(said.starts_with("test 1, "), "{said}");
+        assert!(said.ends_with(" m: stopped after generation 1 of 10000."), "{said}");
         assert_eq!(notices.len(), 1);
         let run = app.world().resource::<CurrentRun>();
         assert_eq!((run.plan_now.seed, run.status()), (2, RunStatus::Running));

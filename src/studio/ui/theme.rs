@@ -90,8 +90,6 @@ pub const GAP: f32 = 8.0;
 pub const HEADING_SIZE: f32 = 22.0;
 /// Font size of a section title, in points.
 pub const TITLE_SIZE: f32 = 15.0;
-/// Font size of captions over the stage that viewers read from a distance, in points.
-pub const CAPTION_SIZE: f32 = 22.0;
 /// Font sizes of the presenting mode's caption, in points. The largest one at which the caption fits is used.
 pub const PRESENTED_SIZES: [f32; 4] = [40.0, 34.0, 29.0, 25.0];
 /// Font size of the line below the presenting mode's caption, in points.

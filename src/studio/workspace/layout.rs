@@ -23,6 +23,8 @@ pub(crate) struct Layout {
     chosen: Vec<PanelKind>,
     /// Panels that were in front of their places when `chosen` was last updated.
     in_front: Vec<PanelKind>,
+    /// Whether the panel that is offered was added for this; `None` while no panel is offered.
+    offered: Option<bool>,
 }
 
 /// Minimum window height for the champions below the other panels, in points.
@@ -47,6 +49,7 @@ impl Default for Layout {
             first: None,
             chosen: Vec::new(),
             in_front: Vec::new(),
+            offered: None,
         }
     }
 }
@@ -103,6 +106,8 @@ impl Layout {
         else {
             return;
         };
+        // An offered tab is no arrangement of the user. It is offered again in the next frame.
+        self.offer(PanelKind::Senses, false);
         if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {
             return;
         }
@@ -149,19 +154,7 @@ impl Layout {
             self.first = Some(kind);
             return;
         }
-        if !self.has(kind) {
-            let home = self.home_of(kind);
-            match home {
-                Some(path) => {
-                    let leaf = self.state.leaf_mut(path.node_path());
-                    leaf.into_iter().for_each(|leaf| leaf.tabs.push(kind));
-                }
-                None => {
-                    let root = NodeIndex::root();
-                    let _ = self.state.main_surface_mut().split_left(root, 0.27, vec![kind]);
-                }
-            }
-        }
+        self.add(kind);
         if let Some(path) = self.state.find_tab(&kind) {
             let _ = self.state.set_active_tab(path);
             self.state.set_focused_node_and_surface(path.node_path());
@@ -171,6 +164,38 @@ impl Layout {
                 leaf.scroll =
                     if path.tab.0 < PanelKind::INITIAL.len() { 0.0 } else { TO_LAST_TABS };
             }
+        }
+    }
+
+    /// Adds a panel as the last tab beside related ones, unless the layout contains it.
+    fn add(&mut self, kind: PanelKind) {
+        if self.has(kind) {
+            return;
+        }
+        match self.home_of(kind) {
+            Some(path) => {
+                let leaf = self.state.leaf_mut(path.node_path());
+                leaf.into_iter().for_each(|leaf| leaf.tabs.push(kind));
+            }
+            None => {
+                let root = NodeIndex::root();
+                let _ = self.state.main_surface_mut().split_left(root, 0.27, vec![kind]);
+            }
+        }
+    }
+
+    /// Adds the tab of a panel when it becomes useful, but does not bring it to the front. Removes the tab when the panel
+    /// is not useful any more, unless the user has chosen it.
+    pub fn offer(&mut self, kind: PanelKind, is_useful: bool) {
+        if self.is_to_be_laid_out || is_useful == self.offered.is_some() {
+            return;
+        }
+        let is_added = self.offered.take() == Some(true);
+        if is_useful {
+            self.offered = Some(!self.has(kind));
+            self.add(kind);
+        } else if is_added && !self.chosen.contains(&kind) {
+            self.close(kind);
         }
     }
 

@@ -21,7 +21,7 @@ use scale::UiScale;
 const TORQUES: &str = "Torques of the player";
 
 /// State of the window: panel layout, UI scale, modal view.
-#[derive(Resource, Debug)]
+#[derive(Resource, Debug, Default)]
 pub(super) struct Workspace {
     /// Layout of the panels.
     pub layout: Layout,
@@ -29,8 +29,8 @@ pub(super) struct Workspace {
     pub scale: UiScale,
     /// Whether the panels are hidden.
     pub is_bare: bool,
-    /// Whether the tour was finished or skipped, now or in an earlier run of the program.
-    pub tour_is_over: bool,
+    /// Whether the tour was neither finished nor skipped, now or in an earlier run of the program.
+    pub awaits_tour: bool,
     /// Titles of the sections whose advanced settings are unfolded.
     pub unfolded: BTreeSet<String>,
     /// Whether the stage is presented in full screen.
@@ -42,26 +42,10 @@ pub(super) struct Workspace {
     modal: Option<Modal>,
 }
 
-impl Default for Workspace {
-    fn default() -> Self {
-        Self {
-            layout: Layout::default(),
-            scale: UiScale::default(),
-            is_bare: false,
-            tour_is_over: true,
-            unfolded: BTreeSet::new(),
-            is_presenting: false,
-            is_black: false,
-            sought: None,
-            modal: None,
-        }
-    }
-}
-
 impl Workspace {
     /// Creates the initial state, with or without the tour, and in the presenting mode or not.
     pub fn new(tour_is_over: bool, is_presenting: bool) -> Self {
-        Self { tour_is_over, is_presenting, ..Self::default() }
+        Self { awaits_tour: !tour_is_over, is_presenting, ..Self::default() }
     }
 
     /// Returns the open modal view. A tour is hidden in the presenting mode, because it points at panels.
@@ -107,6 +91,7 @@ impl Workspace {
             }
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
+            WindowCommand::Enlarge => self.scale.enlarge(),
             WindowCommand::ResetScale => self.scale.choose(1.0),
             WindowCommand::Fold { section, is_open: true } => {
                 self.unfolded.insert((*section).to_owned());
@@ -149,7 +134,7 @@ impl Workspace {
 
     fn leave_tour(&mut self) {
         if matches!(self.modal, Some(Modal::Tour(_))) {
-            self.tour_is_over = true;
+            self.awaits_tour = false;
         }
     }
 }
@@ -169,7 +154,7 @@ fn open_first(
     }
     if opened.0.is_some() {
         workspace.layout.open(PanelKind::Charts);
-    } else if !workspace.tour_is_over {
+    } else if workspace.awaits_tour {
         workspace.modal = Some(Modal::Tour(0));
     }
 }
@@ -180,17 +165,17 @@ mod tests {
 
     #[test]
     fn a_second_toggle_closes_a_modal_and_a_closed_tour_is_finished() {
-        let mut workspace = Workspace { tour_is_over: false, ..Workspace::default() };
+        let mut workspace = Workspace::new(false, false);
         workspace.toggle_modal(Modal::Keys);
         assert_eq!(workspace.modal(), Some(Modal::Keys));
         workspace.toggle_modal(Modal::Keys);
         assert_eq!(workspace.modal(), None);
-        assert!(!workspace.tour_is_over);
+        assert!(workspace.awaits_tour);
         workspace.toggle_modal(Modal::Tour(0));
         workspace.toggle_modal(Modal::Tour(1));
         assert_eq!(workspace.modal(), Some(Modal::Tour(1)));
         workspace.close_modal();
-        assert!(workspace.modal().is_none() && workspace.tour_is_over);
+        assert!(workspace.modal().is_none() && !workspace.awaits_tour);
     }
 
     #[test]

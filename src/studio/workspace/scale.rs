@@ -71,6 +71,20 @@ impl UiScale {
         ((share.x.min(share.y) * 20.0).floor() / 20.0).max(UI_SCALES[0])
     }
 
+    /// Returns whether the user chose larger texts than the usual ones.
+    pub fn is_larger(self) -> bool {
+        self.chosen > 1.0
+    }
+
+    /// Makes the scale a quarter larger, or the usual one if the window has no room for larger texts.
+    pub fn enlarge(&mut self) {
+        let before = self.shown();
+        self.chosen = (self.chosen * 1.25).min(UI_SCALES[UI_SCALES.len() - 1]);
+        if self.shown() <= before {
+            self.chosen = 1.0;
+        }
+    }
+
     /// Chooses the next larger or smaller scale.
     ///
     /// # Errors
@@ -119,6 +133,16 @@ mod tests {
         assert_eq!(scale.shown(), 1.5, "the largest for which there is room");
         while scale.change(false).is_ok() {}
         assert_eq!(scale.shown(), UI_SCALES[0]);
+    }
+
+    #[test]
+    fn a_projector_gets_larger_texts_in_steps_of_a_quarter_and_then_the_usual_ones() {
+        let mut scale = fitted(1280.0, 720.0, 1.0);
+        let mut shown = || {
+            scale.enlarge();
+            (scale.shown(), scale.is_larger())
+        };
+        assert_eq!([shown(), shown(), shown()], [(1.25, true), (1.5, true), (1.0, false)]);
     }
 
     #[test]

@@ -36,7 +36,7 @@ fn theme_scale_panels_and_overlays_survive_a_restart() {
     studio.picture_with(|picture| picture.brightness(menu) < 90);
     studio.click_label("Show");
     studio.wait_for_value("CheckBox", "Trail", "on");
-    assert_eq!(studio.value_of("CheckBox", "Contacts"), "off");
+    assert_eq!(studio.value_of("CheckBox", "Contacts and forces"), "off");
     // The menu restores a closed panel.
     studio.key("Escape");
     studio.choose("Panels", "Charts");

@@ -42,6 +42,7 @@ use torques::TorqueComparison;
 use view::{ChartView, Version};
 
 /// The charts panel, with the selected chart.
+#[derive(Default)]
 pub(super) struct ChartsPanel {
     kind: ChartKind,
     known: Option<(ChartKind, Version, Option<ChartView>)>,
@@ -56,10 +57,8 @@ impl ChartsPanel {
         Self {
             // A study with which the program was started is shown first.
             kind: if comparison.is_some() { ChartKind::Methods } else { ChartKind::default() },
-            known: None,
-            torques: TorqueComparison::default(),
             curves: comparison.map(CurvesPanel::new),
-            has_listed_runs: false,
+            ..Self::default()
         }
     }
 

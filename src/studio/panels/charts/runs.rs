@@ -7,7 +7,7 @@ use bevy_egui::egui;
 use super::fitness::{fitness_axis, generation_axis};
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::{Command, RunCommand};
-use crate::studio::state::current_run::{CurrentRun, MOST_COMPARED};
+use crate::studio::state::current_run::{CurrentRun, ListedRun, MOST_COMPARED};
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{GenerationRecord, RunPlan, Statistics};
@@ -104,7 +104,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         }
     }
     let Some(runs) = &others.runs else { return explain(ui, "Loading the list of runs…") };
-    let mut choices = runs.iter().filter(|(other, _)| other.folder != run.folder()).peekable();
+    let mut choices = runs.iter().filter(|other| other.run.folder != run.folder()).peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
@@ -115,7 +115,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
         }
     });
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
-        for (other, settings) in choices {
+        for ListedRun { run: other, settings, .. } in choices {
             let mut is_shown = others.compared.iter().any(|of| of.folder == other.folder);
             let name = other.name.clone().unwrap_or_else(|| title(settings, &other.plan));
             let name = format!("{name}, {}", other.generations_in_words());

@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use crate::studio::commands::actions::{Action, Situation, actions};
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
+use crate::studio::state::run_names::preset_title;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::{explain, weak};
 use crate::studio::ui::theme;
@@ -113,7 +114,9 @@ impl CommandPalette {
         let entry = |group, name, command| PaletteEntry { group, name, key: "", command };
         let presets = self.presets.iter().map(|(name, about)| {
             let command = Command::Plan(PlanCommand::SetPreset(name.clone()));
-            entry("Preset", format!("{name} - {}", first_sentence(about)), command)
+            // The name in files comes last, where only the search needs it.
+            let words = format!("{} - {} ({name})", preset_title(name), first_sentence(about));
+            entry("Preset", words, command)
         });
         let lessons = lessons.iter().enumerate().map(|(index, name)| {
             let command = Command::Lesson(LessonCommand::Begin(index));
@@ -163,6 +166,9 @@ fn matching(entries: &[PaletteEntry], typed: &str) -> Vec<PaletteEntry> {
     }
     ranked.into_iter().take(MAX_MATCHES).map(|(_, entry)| entry.clone()).collect()
 }
+
+#[cfg(test)]
+mod three_clicks;
 
 #[cfg(test)]
 mod tests {

@@ -19,7 +19,7 @@ use crate::studio::ui::theme;
 use snakes_core::save::library::run_of_plan;
 
 /// Function that returns whether the setting that a command toggles is on, or `None` for other commands.
-type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
+pub(crate) type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
 
 /// Draws the menus, and collects the user's commands. `is_on` returns whether the setting that a command toggles is on.
 /// `recent` are the files that were opened recently. `about` is shown at the right end.
@@ -47,7 +47,7 @@ pub(crate) fn menu(
                 // By default, egui limits a menu to a height of 400 points.
                 ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+                    ui.spacing_mut().item_spacing.y = 0.0;
                     for action in listed() {
                         entry(ui, action, situation, (has_toggles, is_on), commands);
                         if action.name == BEFORE_RECENT {

@@ -78,6 +78,9 @@ const STEPS: [TourStep; 5] = [
     },
 ];
 
+/// Name of the card of the tour, from which egui's ID is derived.
+pub(crate) const TOUR_CARD: &str = "tour";
+
 /// Period of the outline's pulsation, in seconds.
 const PULSE_S: f64 = 1.8;
 /// Assumed height of a card that has not been drawn yet, in points.
@@ -118,7 +121,7 @@ impl Tour {
         let palette = theme::of_context(context);
         let screen = context.content_rect();
         let target = target.map(|target| target.intersect(screen));
-        let id = egui::Id::new("tour");
+        let id = egui::Id::new(TOUR_CARD);
         let width = content_width(target, screen);
         let known = context.memory(|memory| memory.area_rect(id)).map(|area| area.size());
         let size = known.unwrap_or(egui::vec2(width + theme::GAP * 4.0, CARD_HEIGHT));

@@ -58,6 +58,8 @@ fn lesson_buttons_guess_watch_change_the_scene_and_leave() {
     let guessed = after(&[LessonCommand::Begin(0), LessonCommand::Guess(1)]);
     let now = Command::Lesson(LessonCommand::ShowResult);
     assert_eq!(sent(&guessed, "Show the result now"), [now]);
+    let print = Command::File(FileCommand::PrintWorksheet(0));
+    assert_eq!(sent(&of, "Print the worksheet"), [print]);
     let copied = Command::Notify("Worksheet 1 copied.".to_owned());
     assert_eq!(sent(&of, "Copy worksheet"), [copied]);
 }

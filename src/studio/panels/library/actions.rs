@@ -25,6 +25,24 @@ pub struct LibraryAction {
     pub act: LibraryActionKind,
 }
 
+impl LibraryAction {
+    fn new(name: &'static str, hint: &'static str, act: LibraryActionKind) -> Self {
+        Self { name, hint, key: None, refusal: None, act }
+    }
+
+    fn command(name: &'static str, hint: &'static str, command: LibraryCommand) -> Self {
+        Self::new(name, hint, LibraryActionKind::Send(Command::Library(command)))
+    }
+
+    fn key(self, key: Press) -> Self {
+        Self { key: Some(key), ..self }
+    }
+
+    fn unless(self, refusal: Option<&'static str>) -> Self {
+        Self { refusal, ..self }
+    }
+}
+
 /// Effect of an action on the selected saves.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LibraryActionKind {
@@ -48,35 +66,28 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
     let places: Vec<SavePlace> = chosen.iter().map(|item| item.place().clone()).collect();
     let replay_refusal = chosen.iter().find_map(|item| replay_refusal(item));
     let single = if chosen.len() == 1 { None } else { SELECT_ONE };
-    let mut actions = vec![match chosen.len() {
-        1 => LibraryAction {
-            name: "Replay",
-            hint: "Show it on the stage; for a run, its best snake (Enter or double-click)",
-            key: Some(Press::Enter),
-            refusal: replay_refusal,
-            act: library_command(LibraryCommand::Replay(first.place().clone())),
-        },
-        several => LibraryAction {
-            name: "Race",
-            hint: "Replay them side by side; for a run, its best snake (Enter)",
-            key: Some(Press::Enter),
-            refusal: if several > MAX_LANES {
-                Some("At most ten snakes fit on the stage")
-            } else {
-                replay_refusal
-            },
-            act: library_command(LibraryCommand::Race(places.clone())),
-        },
-    }];
-    actions.push(LibraryAction {
-        name: "New run from this",
-        hint: "Start a run whose first generation descends from this snake",
-        key: None,
-        refusal: single.or(replay_refusal),
-        act: LibraryActionKind::Send(Command::Plan(PlanCommand::StartFromSave(
-            first.place().clone(),
-        ))),
-    });
+    let place = first.place().clone();
+    let mut actions = vec![
+        match chosen.len() {
+            1 => {
+                let hint =
+                    "Show it on the stage; for a run, its best snake (Enter or double-click)";
+                LibraryAction::command("Replay", hint, LibraryCommand::Replay(place.clone()))
+                    .unless(replay_refusal)
+            }
+            several => {
+                let hint = "Replay them side by side; for a run, its best snake (Enter)";
+                let many = (several > MAX_LANES).then_some("At most ten snakes fit on the stage");
+                LibraryAction::command("Race", hint, LibraryCommand::Race(places.clone()))
+                    .unless(many.or(replay_refusal))
+            }
+        }
+        .key(Press::Enter),
+    ];
+    let hint = "Start a run whose first generation descends from this snake";
+    let start = LibraryActionKind::Send(Command::Plan(PlanCommand::StartFromSave(place.clone())));
+    let start = LibraryAction::new("New run from this", hint, start);
+    actions.push(start.unless(single.or(replay_refusal)));
     if places.iter().all(|place| place.run().is_none()) {
         let refusal = if places.len() > MAX_LANES {
             Some("At most ten champions can be examined at once")
@@ -85,14 +96,10 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
         } else {
             replay_refusal
         };
-        actions.push(LibraryAction {
-            name: "Examine",
-            hint: "Test each champion in some 300 other trials: other step rates, stairs, friction, and shoves. The \
-                   results are stored in its file and shown in its details",
-            key: None,
-            refusal,
-            act: library_command(LibraryCommand::Examine(places.clone())),
-        });
+        let hint = "Test each champion in some 300 other trials: other step rates, stairs, friction, and shoves. The \
+                    results are stored in its file and shown in its details";
+        let examine = LibraryCommand::Examine(places.clone());
+        actions.push(LibraryAction::command("Examine", hint, examine).unless(refusal));
     }
     if let (Some(folder), 1) = (first.place().run(), chosen.len()) {
         actions.extend(of_run(library, first, folder));
@@ -100,44 +107,33 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
     let has = |meant: fn(&SavePlace) -> bool| places.iter().any(meant);
     let has_run = has(|place| place.run().is_some());
     let has_shipped = has(|place| matches!(place, SavePlace::Shipped(_)));
+    let is_open = places.iter().any(|place| library.is_current(place));
+    let kept = [
+        has_shipped.then_some("Built-in champions cannot be deleted"),
+        is_open.then_some("This run is open in this window; start another one first"),
+    ];
+    let fixed = "A built-in champion cannot be renamed; duplicate it first";
+    let rename_hint = match has_run {
+        true => "Give it a name of your own; its folder keeps its name (F2)",
+        false => "Change the name (F2)",
+    };
+    let delete_hint =
+        "Move it to the .deleted folder inside the saves folder; Ctrl Z restores it (Del)";
     actions.extend([
-        LibraryAction {
-            name: "Rename",
-            hint: if has_run {
-                "Give it a name of your own; its folder keeps its name (F2)"
-            } else {
-                "Change the name (F2)"
-            },
-            key: Some(Press::F2),
-            refusal: single
-                .or(has_shipped
-                    .then_some("A built-in champion cannot be renamed; duplicate it first")),
-            act: LibraryActionKind::Rename(first.place().clone()),
-        },
-        LibraryAction {
-            name: "Duplicate",
-            hint: "Make a copy (Ctrl D)",
-            key: Some(Press::D),
-            refusal: has_run.then_some("Runs cannot be duplicated, but they can be exported"),
-            act: library_command(LibraryCommand::Duplicate(places.clone())),
-        },
-        LibraryAction {
-            name: "Export",
-            hint: "Copy it to another folder",
-            key: None,
-            refusal: None,
-            act: LibraryActionKind::Export,
-        },
-        LibraryAction {
-            name: "Delete",
-            hint: "Move it to the .deleted folder inside the saves folder; Ctrl Z restores it (Del)",
-            key: Some(Press::Delete),
-            refusal: has_shipped.then_some("Built-in champions cannot be deleted").or_else(|| {
-                let goes_on = places.iter().any(|place| library.is_current(place));
-                goes_on.then_some("This run is open in this window; start another one first")
-            }),
-            act: library_command(LibraryCommand::Delete(places)),
-        },
+        LibraryAction::new("Rename", rename_hint, LibraryActionKind::Rename(place))
+            .key(Press::F2)
+            .unless(single.or(has_shipped.then_some(fixed))),
+        LibraryAction::command(
+            "Duplicate",
+            "Make a copy (Ctrl D)",
+            LibraryCommand::Duplicate(places.clone()),
+        )
+        .key(Press::D)
+        .unless(has_run.then_some("Runs cannot be duplicated, but they can be exported")),
+        LibraryAction::new("Export", "Copy it to another folder", LibraryActionKind::Export),
+        LibraryAction::command("Delete", delete_hint, LibraryCommand::Delete(places))
+            .key(Press::Delete)
+            .unless(kept.into_iter().flatten().next()),
     ]);
     actions
 }
@@ -149,24 +145,15 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
     } else if item.problem().is_some() {
         DAMAGED
     } else {
-        is_over.then_some("This run cannot be resumed; the reason is given below")
+        is_over.then_some("This run cannot be continued; the reason is given below")
     };
-    let has_none = item.run().is_some_and(|run| run.champions.is_empty());
+    let go_on = Command::Run(RunCommand::Continue(folder.to_owned()));
+    let go_on_hint = "Continue this run where it stopped; the current run stays saved";
+    let list_hint = "List the best snake of each generation, to replay and race";
+    let list = LibraryActionKind::ShowChampions(folder.to_owned());
     [
-        LibraryAction {
-            name: "Resume",
-            hint: "Resume this run where it stopped; the current run stays saved",
-            key: None,
-            refusal,
-            act: LibraryActionKind::Send(Command::Run(RunCommand::Continue(folder.to_owned()))),
-        },
-        LibraryAction {
-            name: "Champions",
-            hint: "List the best snake of each generation, to replay and race",
-            key: None,
-            refusal: if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) },
-            act: LibraryActionKind::ShowChampions(folder.to_owned()),
-        },
+        LibraryAction::new("Continue", go_on_hint, LibraryActionKind::Send(go_on)).unless(refusal),
+        LibraryAction::new("Champions", list_hint, list).unless(replay_refusal(item)),
     ]
 }
 
@@ -174,8 +161,4 @@ fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryActio
 fn replay_refusal(item: &LibraryItem) -> Option<&'static str> {
     let has_none = item.run().is_some_and(|run| run.champions.is_empty());
     if has_none { NO_CHAMPION } else { item.problem().and(DAMAGED) }
-}
-
-fn library_command(command: LibraryCommand) -> LibraryActionKind {
-    LibraryActionKind::Send(Command::Library(command))
 }

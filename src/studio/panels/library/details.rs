@@ -7,11 +7,14 @@ use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::LibraryItem;
+use crate::studio::state::run_names::{preset_title, with_title};
 use crate::studio::ui::buttons::CommandButton;
-use crate::studio::ui::text_rows::{explain, problem, row};
+use crate::studio::ui::decimals::in_percent;
+use crate::studio::ui::text_rows::{explain, problem, row, title_text};
 use crate::studio::ui::theme;
 use snakes_core::save::library::{RunDetails, SavePlace};
-use snakes_core::schema::Choices;
+use snakes_core::schema::{Choice, Choices};
+use snakes_core::score::{ExamSuite, SuiteResult};
 
 /// Draws a button for each action. Returns the action that was clicked.
 pub fn buttons(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {
@@ -51,35 +54,43 @@ fn clicked_of(
 pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
-    let folder = item.place().shown_name();
-    if item.name() != folder {
-        explain(ui, &format!("Folder {folder}"));
-    }
     if let Some(reason) = item.problem() {
         return problem(ui, reason);
     }
     if !item.is_read() {
         return explain(ui, "Loading…");
     }
-    let mut lines = Vec::new();
+    // Lines that are always shown, and those that a click unfolds.
+    let (mut lines, mut folded) = (Vec::new(), Vec::new());
+    let mut exam: &[SuiteResult] = &[];
+    let folder = item.place().shown_name();
+    if item.name() != folder {
+        folded.push(format!("Folder {folder}"));
+    }
     if let Some(champion) = item.champion() {
         let origin = &champion.origin;
         let (climbed, steps) = (champion.climbed, champion.steps);
         lines.push(format!("{}; {climbed} of {steps} steps", champion.reached));
-        lines.push(format!(
-            "Preset {}, seed {}, generation {}, snake {}",
-            origin.preset,
+        let (about, command) = match champion.note.as_deref().unwrap_or_default() {
+            note if note.starts_with(FOUND_BY) => ("", note),
+            note => note.split_once(&format!(" {FOUND_BY}")).unwrap_or((note, "")),
+        };
+        lines.extend((!about.is_empty()).then(|| about.to_owned()));
+        exam = &champion.exam;
+        folded.push(format!(
+            "{}, seed {}, generation {}, snake {}",
+            preset_title(&origin.preset),
             origin.seed,
             origin.generation,
             origin.individual + 1
         ));
         let (controller, engine) = (champion.controller.name(), champion.engine);
         let (duration_s, physics) = (champion.duration_s, champion.physics.choice().name);
-        lines.push(format!(
+        folded.push(format!(
             "Duration {duration_s} s, controller {controller}, physics {physics}, engine {engine}"
         ));
-        lines.extend(champion.exam.as_ref().map(|exam| format!("Exam: {exam}")));
-        lines.extend(champion.note.clone());
+        let command = command.trim_start_matches(FOUND_BY).trim();
+        folded.extend((!command.is_empty()).then(|| format!("{FOUND_BY} {command}")));
     }
     if let Some(run) = item.run() {
         lines.push(match run.best {
@@ -89,24 +100,62 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
             }
             None => item.generation_text(),
         });
-        let method = run.strategy.map(|method| format!(", {}", method.title()));
-        let (preset, seed, controller) = (&run.preset, run.seed, run.controller.name());
-        lines.push(format!(
-            "Preset {preset}, seed {seed}{}, controller {controller}",
-            method.unwrap_or_default()
-        ));
         lines.push(match &run.ended {
             _ if is_open => "Open in this window: the Watch panel controls it".to_owned(),
-            Some(why) => format!("Cannot be resumed: {why}"),
-            None => "Can be resumed".to_owned(),
+            Some(why) => format!("Cannot be continued: {why}"),
+            None => "Can be continued".to_owned(),
         });
+        let method = run.strategy.map(|method| format!(", {}", method.title()));
+        let (preset, seed, controller) = (with_title(&run.preset), run.seed, run.controller.name());
+        let method = method.unwrap_or_default();
+        folded.push(format!("{preset}, seed {seed}{method}, controller {controller}"));
     }
     if item.place().path().is_none() {
         lines.push("Built-in champion; it cannot be changed".to_owned());
     }
-    for line in lines {
-        explain(ui, &line);
+    lines.iter().for_each(|line| explain(ui, line));
+    if !exam.is_empty() {
+        exam_table(ui, exam);
     }
+    egui::CollapsingHeader::new("Details").show(ui, |ui| {
+        folded.iter().for_each(|line| explain(ui, line));
+    });
+}
+
+/// Words before the command that found a champion, in the note of its file.
+const FOUND_BY: &str = "Found by:";
+
+/// Draws the results of an exam: per suite, on how many trials the champion landed, or which share of its way it kept.
+fn exam_table(ui: &mut egui::Ui, exam: &[SuiteResult]) {
+    ui.label(title_text("Exam"));
+    let spacing = [theme::GAP * 1.5, theme::GAP / 4.0];
+    egui::Grid::new("exam").num_columns(2).min_row_height(0.0).spacing(spacing).show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = 0.0;
+        let mut row = |name: &str, hint: &str, value: String| {
+            explain(ui, name);
+            ui.label(value).on_hover_text(hint);
+            ui.end_row();
+        };
+        for result in exam {
+            let Choice { title, sentence, .. } = result.suite.choice();
+            let is_of_ways = result.suite != ExamSuite::HeldOut && !result.each.is_empty();
+            row(
+                title,
+                &sentence,
+                match is_of_ways {
+                    true => format!("at least {} of the way kept", in_percent(result.kept)),
+                    false => format!("{} of {} landed", result.landed, result.trials),
+                },
+            );
+            let ways = result.each.iter().filter(|_| is_of_ways);
+            let ways = ways.map(|(condition, kept)| (condition.as_str(), in_percent(*kept)));
+            let classes = result.classes().into_iter();
+            let classes = classes.map(|(class, landed, of)| (class, format!("{landed} of {of}")));
+            for (name, value) in ways.chain(classes) {
+                row(&format!("    {name}"), &sentence, value);
+            }
+        }
+    });
 }
 
 fn picture(ui: &mut egui::Ui, item: &LibraryItem) {

@@ -85,7 +85,7 @@ impl SortOrder {
         let by_key = match self.key {
             SortKey::Name => turned(by_name()),
             SortKey::Fitness => known(a.fitness(), b.fitness(), |a, b| turned(a.total_cmp(b))),
-            SortKey::Preset => known(a.preset(), b.preset(), |a, b| turned(a.cmp(b))),
+            SortKey::Preset => known(a.preset_title(), b.preset_title(), |a, b| turned(a.cmp(b))),
             SortKey::Generation => known(a.generation(), b.generation(), |a, b| turned(a.cmp(b))),
             SortKey::Date => {
                 let date =

@@ -114,7 +114,7 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
         return;
     }
     let date = write(ui, below, Align::Max, &item.date_text(), weak, true);
-    let about = [item.preset().unwrap_or_default(), &item.generation_text()].join(", ");
+    let about = [item.preset_title().unwrap_or_default(), item.generation_text()].join(", ");
     let left = below.with_max_x(below.right() - date - theme::GAP);
     write(ui, left, Align::Min, about.trim_matches([',', ' ']), weak, true);
 }
@@ -129,7 +129,7 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     }
     for (key, text, color) in [
         (SortKey::Fitness, item.fitness_text(), palette.text),
-        (SortKey::Preset, item.preset().unwrap_or_default().to_owned(), weak),
+        (SortKey::Preset, item.preset_title().unwrap_or_default(), weak),
         (SortKey::Generation, item.generation_text(), weak),
         (SortKey::Date, item.date_text(), weak),
     ] {

@@ -29,13 +29,16 @@ fn file(name: &str) -> SavePlace {
     SavePlace::Champion(PathBuf::from(format!("saves/{name}.ron")))
 }
 
+/// Readable name of the run in [`run_folder`].
+const RUN: &str = "Climb 8, 7 Jan, 12 m";
+
 fn run_folder() -> PathBuf {
     PathBuf::from("saves/climb-seed8-0123abcd")
 }
 
 /// Returns the details of a run that was stopped after two of ten generations.
 fn stopped_run() -> EntryDetails {
-    let Ok(EntryDetails::Champion(of)) = read_entry(&SavePlace::Shipped("fast")) else {
+    let Ok(EntryDetails::Champion(of)) = shipped("fast") else {
         panic!("a built-in champion");
     };
     EntryDetails::Run(Box::new(RunDetails {
@@ -54,26 +57,28 @@ fn stopped_run() -> EntryDetails {
     }))
 }
 
+/// A save with the day of its last change since 1970, and what is read from it.
+type TestSave = (SavePlace, u64, Result<EntryDetails, EntryProblem>);
+
+fn library_of(saves: Vec<TestSave>) -> Library {
+    let entries = saves.iter().map(|(place, day, _)| entry(place.clone(), *day)).collect();
+    let read = saves.into_iter().map(|(place, _, read)| LibraryEvent::Read(place, read));
+    let listed = std::iter::once(LibraryEvent::Listed(entries));
+    Library::of(listed.chain(read).chain([LibraryEvent::Done(1)]).collect())
+}
+
+fn shipped(name: &'static str) -> Result<EntryDetails, EntryProblem> {
+    read_entry(&SavePlace::Shipped(name)).map_err(EntryProblem::from)
+}
+
 /// Creates a library with two champions, a damaged file, a run and a built-in champion. The first champion is the newest entry.
 fn library() -> Library {
-    let shipped = SavePlace::Shipped("fast");
-    let champion = read_entry(&shipped).map_err(EntryProblem::from);
-    let run = SavePlace::Run(run_folder());
-    let entries = vec![
-        entry(shipped.clone(), 0),
-        entry(file("alpha"), 9),
-        entry(file("beta"), 8),
-        entry(file("broken"), 7),
-        entry(run.clone(), 6),
-    ];
-    Library::of(vec![
-        LibraryEvent::Listed(entries),
-        LibraryEvent::Read(shipped, champion.clone()),
-        LibraryEvent::Read(file("alpha"), champion.clone()),
-        LibraryEvent::Read(file("beta"), champion),
-        LibraryEvent::Read(file("broken"), Err(EntryProblem::damaged("cut off at line 3"))),
-        LibraryEvent::Read(run, Ok(stopped_run())),
-        LibraryEvent::Done(1),
+    library_of(vec![
+        (SavePlace::Shipped("fast"), 0, shipped("fast")),
+        (file("alpha"), 9, shipped("fast")),
+        (file("beta"), 8, shipped("fast")),
+        (file("broken"), 7, Err(EntryProblem::damaged("cut off at line 3"))),
+        (SavePlace::Run(run_folder()), 6, Ok(stopped_run())),
     ])
 }
 
@@ -129,7 +134,7 @@ fn each_button_sends_its_command_for_the_selected_save() {
         ("alpha", "Replay", LibraryCommand::Replay(file("alpha"))),
         ("beta", "Duplicate", LibraryCommand::Duplicate(vec![file("beta")])),
         ("broken", "Delete", LibraryCommand::Delete(vec![file("broken")])),
-        ("climb-seed8-0123abcd", "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
+        (RUN, "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
         ("fast", "Duplicate", LibraryCommand::Duplicate(vec![SavePlace::Shipped("fast")])),
     ] {
         let found = sent(&library, |harness| {
@@ -148,12 +153,9 @@ fn each_button_sends_its_command_for_the_selected_save() {
 #[test]
 fn impossible_actions_are_disabled() {
     let library = library();
-    for (row, button) in [
-        ("broken", "Replay"),
-        ("fast", "Delete"),
-        ("fast", "Rename"),
-        ("climb-seed8-0123abcd", "Duplicate"),
-    ] {
+    for (row, button) in
+        [("broken", "Replay"), ("fast", "Delete"), ("fast", "Rename"), (RUN, "Duplicate")]
+    {
         let found = sent(&library, |harness| {
             select(harness, row);
             assert!(harness.get_by_label(button).accesskit_node().is_disabled(), "{button}");
@@ -167,8 +169,8 @@ fn impossible_actions_are_disabled() {
 fn a_stopped_run_is_resumed_and_lists_its_champions() {
     let library = library();
     let mut harness = harness(&library, [420.0, 900.0]);
-    select(&mut harness, "climb-seed8-0123abcd");
-    clicked(&mut harness, "Resume");
+    select(&mut harness, RUN);
+    clicked(&mut harness, "Continue");
     assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
     harness.state_mut().clear();
     clicked(&mut harness, "Champions");
@@ -187,13 +189,47 @@ fn a_stopped_run_is_resumed_and_lists_its_champions() {
 fn the_details_of_the_run_that_is_open_in_this_window_say_so() {
     let library = library();
     let item = library.item(&SavePlace::Run(run_folder())).expect("listed");
-    for (is_open, words) in [(true, "Open in this window"), (false, "Can be resumed")] {
+    for (is_open, words) in [(true, "Open in this window"), (false, "Can be continued")] {
         let mut harness = Harness::new_ui(|ui| details::details(ui, item, is_open));
         harness.run();
         assert!(shows(&harness, words), "{words}");
-        let other = if is_open { "Can be resumed" } else { "Open in this window" };
+        let other = if is_open { "Can be continued" } else { "Open in this window" };
         assert!(!shows(&harness, other), "not {other}");
     }
+}
+
+#[test]
+fn different_runs_never_read_alike_and_their_folders_are_behind_details() {
+    let runs = ["climb-seed8-0123abcd", "climb-seed8-99ffabcd", "mine"];
+    let run = |folder| (SavePlace::Run(Path::new("saves").join(folder)), 6, Ok(stopped_run()));
+    let library = library_of(runs.map(run).into());
+    let names: Vec<&str> = library.items().iter().map(LibraryItem::name).collect();
+    assert_eq!(names, [format!("{RUN} (0123abcd)"), format!("{RUN} (99ffabcd)"), "mine".into()]);
+    let mut harness = Harness::new_ui(|ui| details::details(ui, &library.items()[0], false));
+    assert!(!shows(&harness, "climb-seed8"));
+    harness.get_by_label("Details").click();
+    harness.run();
+    assert!(shows(&harness, "Folder climb-seed8-0123abcd"));
+}
+
+#[test]
+fn an_exam_is_a_table_and_the_command_that_found_a_champion_is_behind_details() {
+    let library = library_of(vec![(SavePlace::Shipped("robust"), 0, shipped("robust"))]);
+    let item = &library.items()[0];
+    let exam = &item.champion().expect("read").exam;
+    let mut harness = Harness::new_ui(|ui| details::details(ui, item, false));
+    let top = |label: &str| harness.get_by_label(label).rect().center().y;
+    for result in exam.iter().filter(|result| result.each.is_empty()) {
+        let title = snakes_core::schema::Choices::choice(result.suite).title;
+        let landed = format!("{} of {} landed", result.landed, result.trials);
+        let beside = harness.get_all_by_label(&landed).map(|of| of.rect().center().y);
+        assert!(beside.into_iter().any(|y| (y - top(title)).abs() < 3.0), "{title}: {landed}");
+    }
+    assert!(shows(&harness, "reaches the landing in 98 of 100 varied trials."));
+    assert!(!shows(&harness, "snakes --no-render"));
+    harness.get_by_label("Details").click();
+    harness.run();
+    assert!(shows(&harness, "Found by: snakes --no-render"));
 }
 
 #[test]
@@ -282,7 +318,7 @@ fn everything_fits_into_a_narrow_or_low_panel() {
     let library = library();
     for size in [[300.0, 700.0], [300.0, 200.0], [559.0, 400.0], [900.0, 300.0]] {
         let mut harness = harness(&library, size);
-        for name in ["alpha", "climb-seed8-0123abcd"] {
+        for name in ["alpha", RUN] {
             if size[1] > 300.0 {
                 select(&mut harness, name);
             }
@@ -325,12 +361,8 @@ fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
 
 #[test]
 fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
-    let champion = read_entry(&SavePlace::Shipped("fast")).map_err(EntryProblem::from);
-    let places: Vec<SavePlace> = (10..30).map(|number| file(&format!("save {number}"))).collect();
-    let read = places.iter().map(|place| LibraryEvent::Read(place.clone(), champion.clone()));
-    let entries = places.iter().map(|place| entry(place.clone(), 9)).collect();
-    let listed = std::iter::once(LibraryEvent::Listed(entries));
-    let library = Library::of(listed.chain(read).chain([LibraryEvent::Done(1)]).collect());
+    let saves = (10..30).map(|number| (file(&format!("save {number}")), 9, shipped("fast")));
+    let library = library_of(saves.collect());
     // The panel of a window of 1280 by 720 points.
     let mut harness = harness(&library, [384.0, 650.0]);
     let rows = |harness: &Test<'_>| {

@@ -3,24 +3,24 @@
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 
+use super::stage_card::CardStates;
+use crate::studio::commands::actions::{LARGER_HINT, Situation, actions};
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::quality::Quality;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::commands::{Command, ViewCommand, WindowCommand};
-use crate::studio::scene::overlays::Overlays;
+use crate::studio::panels::help::menu::IsOn;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::ui::buttons::{CommandButton, command_box};
-use crate::studio::ui::theme::Theme;
 
-/// Draws the camera bar, and collects the user's commands.
+/// Draws the camera bar, and collects the user's commands. A bar that `is_narrow` lacks what the View menu has, too.
 pub(crate) fn view_bar(
     ui: &mut egui::Ui,
     camera_mode: CameraMode,
-    overlays: &Overlays,
+    is_narrow: bool,
+    is_on: IsOn<'_>,
     quality: &StageQuality,
-    shows_torques: bool,
-    theme: Theme,
+    cards: &mut CardStates,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
@@ -42,24 +42,31 @@ pub(crate) fn view_bar(
         ui.separator();
         let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
         MenuButton::new("Show").config(stays).ui(ui, |ui| {
-            for overlay in Overlay::ALL {
-                let (is_shown, words) = (overlays.shows(overlay), (overlay.name(), overlay.hint()));
-                let toggle = Command::View(ViewCommand::ToggleOverlay(overlay));
-                command_box(ui, is_shown, words, toggle, commands);
+            for action in actions().iter().filter(|action| action.shows_on_stage()) {
+                let Some(command) = action.command(Situation::default()) else { continue };
+                let is_shown = is_on(&command).unwrap_or(false);
+                command_box(ui, is_shown, (action.name, action.hint), command, commands);
             }
-            ui.separator();
-            let hint = "Torques of each joint over the whole trial, below the player";
-            let (words, toggle) = (("Torques over time", hint), WindowCommand::ToggleTorques);
-            command_box(ui, shows_torques, words, Command::Window(toggle), commands);
+            let closed = egui::Button::new("Closed cards again");
+            let closed = ui.add_enabled(cards.has_closed(), closed);
+            if closed.on_disabled_hover_text("No card over the stage is closed").clicked() {
+                cards.open_all();
+            }
             ui.separator();
             quality_choice(ui, quality, commands);
         });
-        let (name, hint) = match theme {
-            Theme::Light => ("Dark", "Switch to the dark theme"),
-            Theme::Dark => ("Light", "Switch to the light theme"),
+        let theme = Command::View(ViewCommand::ToggleTheme);
+        let (name, hint) = match is_on(&theme) {
+            Some(true) => ("Light", "Switch to the light theme"),
+            _ => ("Dark", "Switch to the dark theme"),
         };
-        let toggle = Command::View(ViewCommand::ToggleTheme);
-        CommandButton::new(name, hint, toggle).show(ui, commands);
+        CommandButton::new(name, hint, theme).show(ui, commands);
+        let larger = Command::Window(WindowCommand::Enlarge);
+        let is_larger = is_on(&larger).unwrap_or(false);
+        if !is_narrow {
+            let button = egui::Button::new("Larger").selected(is_larger);
+            CommandButton::of(button, LARGER_HINT, larger).show(ui, commands);
+        }
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
         if ui.button("Picture").on_hover_text(hint).clicked() {
             commands.push(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)));
@@ -87,27 +94,52 @@ fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<
 mod tests {
     use super::*;
     use crate::studio::panels::testing::{clicked, panel};
+    use egui_kittest::kittest::{NodeT, Queryable};
 
     #[test]
     fn each_button_sends_its_command() {
         for (label, command) in [
             ("Side", Command::View(ViewCommand::SetCamera(CameraMode::Side))),
             ("Dark", Command::View(ViewCommand::ToggleTheme)),
+            ("Larger", Command::Window(WindowCommand::Enlarge)),
             ("Picture", Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage))),
         ] {
-            let mut bar = panel([800.0, 600.0], |ui, commands| {
-                let overlays = Overlays::default();
+            let mut cards = CardStates::default();
+            let mut bar = panel([800.0, 600.0], move |ui, commands| {
                 view_bar(
                     ui,
                     CameraMode::Follow,
-                    &overlays,
-                    &StageQuality::default(),
                     false,
-                    Theme::Light,
+                    &|_| None,
+                    &StageQuality::default(),
+                    &mut cards,
                     commands,
                 );
             });
             assert_eq!(clicked(&mut bar, label), [command], "{label}");
         }
+    }
+
+    #[test]
+    fn the_show_menu_switches_what_the_view_menu_does_and_brings_closed_cards_back() {
+        let mut cards = CardStates::default();
+        let mut bar = panel([800.0, 600.0], move |ui, commands| {
+            view_bar(
+                ui,
+                CameraMode::Follow,
+                false,
+                &|_| None,
+                &StageQuality::default(),
+                &mut cards,
+                commands,
+            );
+        });
+        clicked(&mut bar, "Show");
+        for action in actions().iter().filter(|action| action.shows_on_stage()) {
+            assert!(!action.hint.is_empty(), "{}", action.name);
+            let sent = clicked(&mut bar, action.name);
+            assert_eq!(sent.last().cloned(), action.command(Situation::default()));
+        }
+        assert!(bar.get_by_label("Closed cards again").accesskit_node().is_disabled());
     }
 }

@@ -1,6 +1,6 @@
-//! Placement of the card with a limb's readings, and of the messages beside it.
+//! Placement of the cards over the stage, and of the messages beside them.
 
-use bevy_egui::egui::{Pos2, Rect, Vec2, pos2, vec2};
+use bevy_egui::egui::{Align, Align2, Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::studio::ui::theme;
 
@@ -11,8 +11,8 @@ const FROM_LIMBS: f32 = theme::GAP * 1.5;
 /// Minimum width of messages, in points.
 const LEAST_MESSAGES: f32 = 200.0;
 
-/// Areas around the card with a limb's readings, in points.
-pub(super) struct AroundLimb<'a> {
+/// Areas around a card, in points.
+pub(super) struct CardRoom<'a> {
     /// Area in which the card can be placed.
     pub room: Rect,
     /// Areas of the other cards, which the card must not cover.
@@ -21,14 +21,17 @@ pub(super) struct AroundLimb<'a> {
     pub selected: Option<Rect>,
     /// Areas of all limbs on the stage.
     pub all: &'a [Rect],
+    /// Corner of the area that is chosen among equally good places.
+    pub corner: Align2,
 }
 
-impl AroundLimb<'_> {
+impl CardRoom<'_> {
     /// Returns a place for a card of this size that covers neither the selected limb nor, if possible, any other limb.
-    /// If all places are equally good, the lower right corner is chosen. A card at `now` is not moved without need.
+    /// If several places are equally good, the one nearest to the preferred corner is chosen. A card at `now` is not moved
+    /// without need.
     pub fn place(&self, size: Vec2, now: Option<Rect>) -> Rect {
         let candidates = self.candidates(size);
-        let default = Rect::from_min_size(self.room.max - size, size);
+        let default = self.corner.align_size_within_rect(size, self.room);
         // The size of the card may have changed since.
         let distance = |place: &Rect, now: Rect| {
             let corners = [place.min - now.min, place.max - now.max];
@@ -67,15 +70,20 @@ impl AroundLimb<'_> {
         (self.selected.as_ref().map_or(0.0, of), self.all.iter().map(of).sum())
     }
 
-    /// Returns the places at the right and the left edge that cover no other card, the preferred ones first.
+    /// Returns the places at the left and the right edge that cover no other card, the preferred ones first.
     fn candidates(&self, size: Vec2) -> Vec<Rect> {
         let (room, last) = (self.room, self.room.max - size);
         let beside =
             self.taken.iter().flat_map(|card| [card.bottom() + GAP, card.top() - GAP - size.y]);
-        let tops: Vec<f32> = [last.y, room.top()].into_iter().chain(beside).collect();
+        let mut tops: Vec<f32> = [last.y, room.top()].into_iter().chain(beside).collect();
+        let first = self.corner.align_size_within_rect(size, room).top();
+        tops.sort_by(|a, b| (a - first).abs().total_cmp(&(b - first).abs()));
+        let mut lefts = [room.left(), last.x];
+        if self.corner.x() == Align::Max {
+            lefts.reverse();
+        }
         let at = |x: f32, y: f32| Rect::from_min_size(pos2(x, y), size);
-        let all =
-            [last.x, room.left()].into_iter().flat_map(|x| tops.iter().map(move |y| at(x, *y)));
+        let all = lefts.into_iter().flat_map(|x| tops.iter().map(move |y| at(x, *y)));
         let is_free = |place: &Rect| {
             room.expand(0.5).contains_rect(*place)
                 && !self.taken.iter().any(|card| card.intersects(*place))
@@ -145,10 +153,10 @@ mod tests {
         middles.map(|(x, y)| Rect::from_center_size(pos2(x, y), vec2(46.0, 42.0))).to_vec()
     }
 
-    fn around(limbs: &[Rect], selected: usize) -> AroundLimb<'_> {
-        let all = limbs;
+    fn around(limbs: &[Rect], selected: usize) -> CardRoom<'_> {
         let taken = std::slice::from_ref(&BAR);
-        AroundLimb { room: STAGE.shrink(12.0), taken, selected: limbs.get(selected).copied(), all }
+        let (selected, corner) = (limbs.get(selected).copied(), Align2::RIGHT_BOTTOM);
+        CardRoom { room: STAGE.shrink(12.0), taken, selected, all: limbs, corner }
     }
 
     #[test]

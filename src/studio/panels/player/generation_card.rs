@@ -10,7 +10,6 @@ use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::following::Following;
 use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::text_rows::{explain, title_text};
-use crate::studio::ui::theme;
 
 /// Draws the card of the generation on the stage. `best` is the lane of the best snake, `shown` the number of lanes.
 pub(crate) fn generation_card(
@@ -21,10 +20,8 @@ pub(crate) fn generation_card(
     shown: usize,
     commands: &mut Vec<Command>,
 ) {
-    let StageMode::Generation { number, size } = mode else { return };
-    let (caption, detail) = captions(*number, *size, shown);
-    ui.label(egui::RichText::new(caption).size(theme::CAPTION_SIZE).strong());
-    ui.label(detail);
+    let StageMode::Generation { size, .. } = mode else { return };
+    ui.label(how_many(*size, shown));
     ui.label(format!("Best: {}", best.staged.champion().reached()));
     if let Some((part, parts)) = following.story_part() {
         explain(ui, &format!("Story, part {part} of {parts}"));
@@ -86,14 +83,13 @@ const ICE: &str = "0.05";
 /// Size of the buttons after a landing, in points.
 const LARGE_BUTTON: egui::Vec2 = egui::vec2(220.0, 34.0);
 
-/// Returns the caption of a generation, and a text about the number of its snakes on the stage.
-fn captions(number: u32, size: u32, shown: usize) -> (String, String) {
-    let detail = if shown == size as usize {
+/// Describes how many snakes of a generation are on the stage.
+pub(super) fn how_many(size: u32, shown: usize) -> String {
+    if shown == size as usize {
         format!("All {size} snakes at once")
     } else {
         format!("{shown} of {size} snakes, from the best to the worst")
-    };
-    (format!("Generation {number}"), detail)
+    }
 }
 
 /// Draws the card that is shown until the first generation is evaluated: `done` of `all` snakes are.
@@ -102,7 +98,6 @@ pub(crate) fn waiting_card(
     (done, all): (u32, u32),
     commands: &mut Vec<Command>,
 ) {
-    ui.label(egui::RichText::new("Generation 1").size(theme::CAPTION_SIZE).strong());
     ui.label(format!("{done} of {all} random snakes tried. They appear here in a moment."));
     let hint = "Watch a snake of an earlier run that climbs the stairs";
     let play = Command::Player(PlayerCommand::Toggle);
@@ -126,8 +121,7 @@ mod tests {
 
     #[test]
     fn the_card_says_how_many_snakes_are_shown() {
-        let (caption, all) = captions(3, 30, 30);
-        assert_eq!((caption.as_str(), all.as_str()), ("Generation 3", "All 30 snakes at once"));
-        assert_eq!(captions(1, 100, 40).1, "40 of 100 snakes, from the best to the worst");
+        assert_eq!(how_many(30, 30), "All 30 snakes at once");
+        assert_eq!(how_many(100, 40), "40 of 100 snakes, from the best to the worst");
     }
 }

@@ -11,7 +11,7 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::lane_dot::lane_dot;
-use crate::studio::ui::text_rows::{explain, title_text};
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::score::KeyframeHistory;
 use snakes_core::world::Stairs;
@@ -63,13 +63,6 @@ pub(crate) fn leaderboard(
     commands: &mut Vec<Command>,
 ) {
     let palette = theme::of(ui);
-    let heading = match mode {
-        // A generation has a separate card.
-        StageMode::Solo | StageMode::Generation { .. } => return,
-        StageMode::Race => "Race",
-        StageMode::WhatIf { .. } => "What if",
-    };
-    ui.label(title_text(heading));
     let beginning = common_beginning(lanes).filter(|_| *mode != StageMode::Race);
     if let Some(beginning) = beginning {
         explain(ui, &beginning);

@@ -5,7 +5,7 @@ use bevy_egui::egui;
 use crate::studio::stage::contact_meter::SPAN_S;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::decimals::{decimals, in_percent};
-use crate::studio::ui::text_rows::{title_text, weak};
+use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use snakes_core::world::JointState;
 
@@ -66,6 +66,17 @@ impl CardSize {
     }
 }
 
+/// Returns the title of the card of a limb; the head is 0.
+pub(super) fn limb_title(lane: &Lane, limb: usize) -> String {
+    let (body, count) = (&lane.body, lane.body.limbs());
+    let part = match limb {
+        0 => ", the head",
+        last if last + 1 == count && !body.is_branching() => ", the tail",
+        _ => "",
+    };
+    format!("Limb {} of {count}{part}", limb + 1)
+}
+
 /// Draws the readings of a limb; the head is 0. While the stage plays (`is_playing`), the readings of contacts change
 /// only a few times per second.
 pub(super) fn limb_card(
@@ -79,14 +90,6 @@ pub(super) fn limb_card(
     let poses = body.limb_poses(lane.replay.poses());
     let Some(pose) = poses.get(limb) else { return };
     ui.set_min_width(size.width());
-    let count = body.limbs();
-    let part = match limb {
-        0 => ", the head",
-        last if last + 1 == count && !body.is_branching() => ", the tail",
-        _ => "",
-    };
-    let title = format!("Limb {} of {count}{part}", limb + 1);
-    ui.label(title_text(title));
     let mut rows = Vec::new();
     if size == CardSize::Full {
         let [width_m, length_m, height_m] = body.limb_size_m(limb);

@@ -9,6 +9,7 @@ pub mod leaderboard;
 pub mod limb_card;
 pub mod overlay_legend;
 pub mod presented_caption;
+pub mod stage_card;
 mod strip_marks;
 pub mod timeline;
 pub mod torque_strip;

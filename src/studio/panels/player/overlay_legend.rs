@@ -30,7 +30,7 @@ enum Sample {
 /// Draws the meaning of every visible overlay. `is_pulled` tells whether the mouse has pulled a snake.
 pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: bool) {
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
-    // The rows are as low as their samples, because the legend may cover the snake.
+    // The rows are as low as their samples, so that the legend is small.
     ui.spacing_mut().interact_size.y = SAMPLE.y;
     for overlay in Overlay::ALL.into_iter().filter(|overlay| overlays.shows(*overlay)) {
         let name = overlay.name();

@@ -3,6 +3,7 @@
 
 use bevy_egui::egui;
 
+use super::generation_card::how_many;
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -70,10 +71,7 @@ impl PresentedCaption {
             StageMode::WhatIf { .. } => Self::of_what_if(lanes, time_s),
         };
         if let StageMode::Generation { size, .. } = &*on_stage.mode {
-            caption.details.push(CaptionPart::plain(match lanes.len() == *size as usize {
-                true => format!("All {size} snakes at once"),
-                false => format!("{} of {size} snakes", lanes.len()),
-            }));
+            caption.details.push(CaptionPart::plain(how_many(*size, lanes.len())));
         }
         if let Some((part, parts)) = on_stage.following.story_part().filter(|(_, parts)| *parts > 1)
         {

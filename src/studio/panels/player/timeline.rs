@@ -44,6 +44,8 @@ pub(crate) struct TimelinePanel {
     torque_strip: TorqueStrip,
     /// Whether the strip has a row with the torques of each joint.
     pub shows_torques: bool,
+    /// Selected limb, whose joints alone have a row; `None` for all joints.
+    pub limb: Option<usize>,
 }
 
 /// Width of the button that lists further readings, in points.
@@ -73,7 +75,7 @@ impl TimelinePanel {
             at_right(ui, |ui| readings(ui, lane));
         });
         let height = if self.shows_torques { theme::TORQUE_STRIP_HEIGHT } else { THIN };
-        let moment = self.torque_strip.ui(ui, lane, playback.time_s(), span, height);
+        let moment = self.torque_strip.ui(ui, (lane, self.limb), playback.time_s(), span, height);
         commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
     }
 
@@ -165,7 +167,6 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     if let Some(reason) = evaluation.disqualified {
         return disqualification(ui, &format!("disqualified: {}", reason.words()));
     }
-    let unit = trial.fitness.unit();
     // A recording stores only the final evaluation.
     let is_on_record = lane.staged.recording().is_some() && !lane.replay.is_over();
     if is_on_record {
@@ -186,13 +187,16 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     };
     let fitness_hint =
         format!("Fitness if the trial ended now: {}{cost}{more}", trial.fitness.words());
+    let fitness = evaluation.fitness;
+    let (fitness_name, fitness_text) = match trial.fitness {
+        // Near zero, the fitness has no minus.
+        of if of.is_along_y() => ("way", format!("{} m", decimals(fitness, 2))),
+        of @ Fitness::Share => ("way", of.text(fitness).trim_end_matches(" of the way").to_owned()),
+        of => ("fitness", format!("{}{}", decimals(fitness, 2), of.unit())),
+    };
     // The readings are ordered by importance, because a narrow window has room for only some of them.
     let all = [
-        (
-            "fitness",
-            Some(format!("{}{unit}", decimals(evaluation.fitness, 2))),
-            fitness_hint.as_str(),
-        ),
+        (fitness_name, Some(fitness_text), fitness_hint.as_str()),
         ("steps", steps, "Steps that the middle block has climbed"),
         ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Speed of the middle block"),
         (
@@ -219,10 +223,12 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         more_readings(ui, others);
     }
     // The readings are added from right to left.
-    for (name, value, hint) in shown.iter().rev() {
+    for (index, (name, value, hint)) in shown.iter().enumerate().rev() {
         ui.label(egui::RichText::new(value).monospace()).on_hover_text(*hint);
         ui.label(weak(ui, *name)).on_hover_text(*hint);
-        ui.add_space(theme::GAP / 2.0);
+        if index > 0 {
+            ui.add(egui::Separator::default().spacing(theme::GAP * 1.5));
+        }
     }
 }
 
@@ -341,9 +347,9 @@ mod tests {
         let lane = climber_lane(0, "climber");
         let is_shown =
             |width: f32, name: &str| timeline(&lane, SPAN, width).query_by_label(name).is_some();
-        assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
+        assert!(is_shown(900.0, "way") && is_shown(900.0, "energy"));
         assert!(!is_shown(900.0, "More readings"));
-        assert!(is_shown(540.0, "fitness") && !is_shown(540.0, "energy"));
+        assert!(is_shown(540.0, "way") && !is_shown(540.0, "energy"));
         for width in [400.0, 540.0] {
             let mut timeline = timeline(&lane, SPAN, width);
             clicked(&mut timeline, "More readings");

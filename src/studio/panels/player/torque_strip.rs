@@ -29,6 +29,7 @@ struct DrawnStrip {
     rect: Rect,
     end_s: f64,
     is_dark: bool,
+    joints: Vec<usize>,
     shapes: Vec<Shape>,
     events: Vec<ClimbEvent>,
 }
@@ -52,12 +53,12 @@ const NAMES_WIDTH: [f32; 2] = [82.0, 42.0];
 const WIDE: f32 = 480.0;
 
 impl TorqueStrip {
-    /// Draws the strip in the available width, with its legend above unless the height is [`THIN`]. Returns the time that was clicked or dragged to,
-    /// in simulated seconds.
+    /// Draws the strip in the available width, with its legend above unless the height is [`THIN`]. A selected limb limits
+    /// the torques to those of its joints. Returns the time that was clicked or dragged to, in simulated seconds.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
-        lane: &Lane,
+        (lane, limb): (&Lane, Option<usize>),
         now_s: f64,
         TimelineSpan { end_s, hides_future }: TimelineSpan,
         height: f32,
@@ -96,13 +97,15 @@ impl TorqueStrip {
         painter.rect_filled(played, 4.0, palette.field.lerp_to_gamma(palette.accent_soft, 0.5));
         seconds(&painter, rect, end_s, &x_of, palette);
         let of_whole = Rect::from_x_y_ranges(whole.left()..=plot.left(), plot.y_range());
+        let joints = joints_of(&lane.body, limb);
         if has_torques {
-            names(ui, of_whole, &lane.body, is_wide);
+            names(ui, of_whole, &lane.body, &joints, is_wide);
         }
         let mut climb = Vec::new();
         match lane.history() {
             Some(history) => {
-                let drawn = self.drawn(history, lane, plot, end_s, ui.visuals().dark_mode);
+                let drawn =
+                    self.drawn(history, (lane, joints), plot, end_s, ui.visuals().dark_mode);
                 let seen = if hides_future { played } else { rect };
                 let seen = painter.with_clip_rect(seen.intersect(painter.clip_rect()));
                 if has_torques {
@@ -154,7 +157,7 @@ impl TorqueStrip {
     fn drawn(
         &mut self,
         history: &Arc<KeyframeHistory>,
-        lane: &Lane,
+        (lane, joints): (&Lane, Vec<usize>),
         plot: Rect,
         end_s: f64,
         is_dark: bool,
@@ -162,6 +165,7 @@ impl TorqueStrip {
         let known = self.drawn.take().filter(|drawn| {
             Arc::ptr_eq(&drawn.history, history)
                 && (drawn.rect, drawn.end_s, drawn.is_dark) == (plot, end_s, is_dark)
+                && drawn.joints == joints
         });
         let drawn = known.unwrap_or_else(|| {
             let palette = if is_dark { theme::Theme::Dark } else { theme::Theme::Light }.palette();
@@ -170,7 +174,8 @@ impl TorqueStrip {
                 rect: plot,
                 end_s,
                 is_dark,
-                shapes: shapes(history, lane, plot, end_s, palette),
+                shapes: shapes(history, (lane, &joints), plot, end_s, palette),
+                joints,
                 events: events(lane),
             }
         });
@@ -178,29 +183,44 @@ impl TorqueStrip {
     }
 }
 
+/// Returns the indices of the joints whose torques are shown: those of the selected limb, or all.
+fn joints_of(body: &BodyPlan, limb: Option<usize>) -> Vec<usize> {
+    let is_shown = |index: &usize| {
+        let joint = &body.joints[*index];
+        let limbs = [joint.parent, joint.child].map(|part| body.parts[part].limb);
+        limb.is_none_or(|limb| limbs.contains(&limb))
+    };
+    (0..body.joints.len()).filter(is_shown).collect()
+}
+
+/// Returns "head" or "tail" for the joints at the ends of a body. If only each joint of a certain number has a name, the
+/// last of them is at the tail.
+fn end_of(body: &BodyPlan, joint: usize, every: usize) -> &'static str {
+    match joint {
+        // The body of a creature has no head and tail ends.
+        _ if body.is_branching() => "",
+        0 => "head",
+        _ if joint + every >= body.joints.len() => "tail",
+        _ => "",
+    }
+}
+
 /// Writes the names of the joints beside their rows, from head to tail, in short form beside a narrow strip. If the
 /// rows are lower than a line of text, neighbouring rows share a name.
-fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, is_wide: bool) {
-    let joints = body.joints.len();
-    let row_height = area.height() / joints.max(1) as f32;
+fn names(ui: &egui::Ui, area: Rect, body: &BodyPlan, shown: &[usize], is_wide: bool) {
+    let row_height = area.height() / shown.len().max(1) as f32;
     let every = (theme::SMALL_SIZE / row_height.max(0.1)).ceil().max(1.0) as usize;
     let font = egui::FontId::proportional(theme::SMALL_SIZE);
     let painter = ui.painter_at(area.expand2(egui::vec2(0.0, theme::SMALL_SIZE)));
-    for joint in (0..joints).step_by(every) {
-        let end = match joint {
-            // The body of a creature has no head and tail ends.
-            _ if body.is_branching() => "",
-            0 => "head",
-            _ if joint + every >= joints => "tail",
-            _ => "",
-        };
+    for (row, joint) in shown.iter().copied().enumerate().step_by(every) {
+        let end = end_of(body, joint, every);
         let number = joint + 1;
         let name = match (is_wide, end) {
             (true, "") => format!("Joint {number}"),
             (true, end) => format!("Joint {number} ({end})"),
             (false, end) => format!("{number} {end}"),
         };
-        let at = egui::pos2(area.left(), area.top() + row_height * (joint as f32 + 0.5));
+        let at = egui::pos2(area.left(), area.top() + row_height * (row as f32 + 0.5));
         let color = theme::of(ui).text_weak;
         painter.text(at, egui::Align2::LEFT_CENTER, name.trim_end(), font.clone(), color);
     }
@@ -228,23 +248,23 @@ fn seconds(
     }
 }
 
-/// Returns the lines of all joints: one row per joint, one line per axis.
+/// Returns the lines of these joints: one row per joint, one line per axis.
 fn shapes(
     history: &KeyframeHistory,
-    lane: &Lane,
+    (lane, shown): (&Lane, &[usize]),
     plot: Rect,
     end_s: f64,
     palette: &theme::Palette,
 ) -> Vec<Shape> {
     let samples: Vec<&[JointTorque]> = history.torques().collect();
-    let joints = &lane.body.joints;
     let sample_s = lane.step_s * f64::from(history.sample_steps());
-    let row_height = plot.height() / joints.len().max(1) as f32;
+    let row_height = plot.height() / shown.len().max(1) as f32;
     let columns = (plot.width() / COLUMN_WIDTH).max(1.0) as usize;
     let mut shapes = Vec::new();
     let zero_color = palette.text_weak.gamma_multiply(0.5);
-    for (joint, plan) in joints.iter().enumerate() {
-        let middle = plot.top() + row_height * (joint as f32 + 0.5);
+    for (row, joint) in shown.iter().copied().enumerate() {
+        let plan = &lane.body.joints[joint];
+        let middle = plot.top() + row_height * (row as f32 + 0.5);
         let zero = [egui::pos2(plot.left(), middle), egui::pos2(plot.right(), middle)];
         shapes.push(Shape::line_segment(zero, Stroke::new(1.0, zero_color)));
         let axes: [(TorqueAxis, f32, Color32); 2] = [
@@ -282,16 +302,15 @@ fn hover_text(lane: &Lane, time_s: f64, is_known: bool) -> String {
     let Some(history) = lane.history().filter(|_| is_known) else { return text };
     let sample = (time_s / (lane.step_s * f64::from(history.sample_steps()))) as usize;
     if let Some(torques) = history.torques().nth(sample) {
-        for (joint, torque) in (1..).zip(torques) {
+        for (joint, torque) in torques.iter().enumerate() {
             // Turns -0.0 into 0.0.
             let [bend_nm, twist_nm] = [torque.bend_nm, torque.twist_nm].map(|nm| nm.round() + 0.0);
-            let end = match joint {
-                _ if lane.body.is_branching() => "",
-                1 => " (head)",
-                _ if joint == torques.len() => " (tail)",
-                _ => "",
+            let end = match end_of(&lane.body, joint, 1) {
+                "" => String::new(),
+                end => format!(" ({end})"),
             };
-            text += &format!("\nJoint {joint}{end}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
+            let number = joint + 1;
+            text += &format!("\nJoint {number}{end}: bend {bend_nm:+} N·m, twist {twist_nm:+} N·m");
         }
     }
     text

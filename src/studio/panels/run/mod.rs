@@ -10,12 +10,12 @@ use bevy_egui::egui;
 use super::settings::Sheet;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
-use crate::studio::state::current_run::{CurrentRun, RunStatus, news_of};
+use crate::studio::state::current_run::{CurrentRun, ListedRun, RunStatus, news_of};
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::number_field::NumberField;
 use crate::studio::ui::text_rows::{explain, folded, problem, row, title_text, weak};
 use crate::studio::ui::theme;
-use snakes_core::evolve::{EvolutionSettings, RunPlan};
+use snakes_core::evolve::EvolutionSettings;
 use snakes_core::genome::GenomeSpace;
 use snakes_core::schema::Section;
 use snakes_lab::run::THREADS_RANGE;
@@ -289,17 +289,14 @@ fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Comma
         if stopped.peek().is_none() {
             explain(ui, "There are no unfinished runs.");
         }
-        for summary in stopped {
-            let RunPlan { preset, seed, .. } = &summary.plan;
-            let name = || format!("{preset}, seed {seed}");
-            let name = summary.name.clone().unwrap_or_else(name);
+        for ListedRun { run: summary, name, .. } in stopped {
             let generations = summary.generations_in_words();
             let behind = generations.trim_end_matches(" generations");
             let hint = format!(
                 "{generations} are finished. The current run stays saved.\n{}",
                 summary.folder.display()
             );
-            if row(ui, false, &name, behind).on_hover_text(hint).clicked() {
+            if row(ui, false, name, behind).on_hover_text(hint).clicked() {
                 commands.push(Command::Run(RunCommand::Continue(summary.folder.clone())));
             }
         }

@@ -18,16 +18,18 @@ use std::borrow::Cow;
 use bevy_egui::egui;
 
 use super::on_stage::OnStage;
+use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::state::stairs_exams::StairsExams;
-use crate::studio::ui::buttons::command_box;
+use crate::studio::ui::buttons::{CommandButton, command_box};
 use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveSenses, Activity, SenseOrgan};
 use snakes_core::genome::ControllerKind;
+use snakes_core::save::library::SavePlace;
 
 use exam::exam;
 use readouts::readouts;
@@ -92,12 +94,14 @@ impl SensesPanel {
     ) {
         title(ui, "Senses");
         let Some(view) = view else {
-            return explain(ui, "What the snake on the stage senses will appear here.");
+            explain(ui, "What the snake on the stage senses will appear here.");
+            return feeler_button(ui, commands);
         };
         lane_choice(ui, view, commands);
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
             explain(ui, &sensing_controllers());
+            feeler_button(ui, commands);
             return exam(ui, view.lane, exams, commands);
         }
         let Some(rollout) = view.lane.replay.rollout() else {
@@ -142,6 +146,16 @@ fn sensing_controllers() -> String {
         "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Watch panel.",
         titles.join(", ")
     )
+}
+
+/// Name of a built-in champion that senses its surroundings.
+const FEELER: &str = "feeler";
+
+/// Draws the button that shows a snake with senses.
+fn feeler_button(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let show = Command::Library(LibraryCommand::Replay(SavePlace::Shipped(FEELER)));
+    let hint = "Replay a built-in champion whose limbs react to what they touch";
+    CommandButton::new("Show me a snake that feels", hint, show).show(ui, commands);
 }
 
 /// Describes in a sentence a controller that does not sense its surroundings.

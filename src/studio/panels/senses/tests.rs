@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows, click};
-use crate::studio::panels::testing::{self, Sent, random_snake, set, shows};
+use crate::studio::panels::testing::{self, Sent, clicked, random_snake, set, shows};
 use egui_kittest::kittest::{NodeT, Queryable};
 use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
 use snakes_core::genome::{ControllerGenes, Genome};
 use snakes_core::learn::classifiers::{Zcs, ZcsSettings};
 use snakes_core::rng::{Purpose, stream};
+use snakes_core::save::library::load_entry;
 use std::sync::Arc;
 
 /// Creates a lane of a random snake with this controller, at 0.5 s, in a world with changed settings.
@@ -92,9 +93,13 @@ fn a_snake_that_follows_only_its_genes_says_so() {
         [(ControllerKind::Gait, "feels only its joints"), (ControllerKind::Wave, "feels nothing")]
     {
         let lane = lane_of(kind, &[], |_| ());
-        let panel = panel(&lane, 0);
+        let mut panel = panel(&lane, 0);
         assert!(shows(&panel, text), "{kind}");
         assert!(!shows(&panel, "Sight"), "{kind}");
+        let show = Command::Library(LibraryCommand::Replay(SavePlace::Shipped(FEELER)));
+        assert_eq!(clicked(&mut panel, "Show me a snake that feels"), [show]);
+        let (feeler, _) = load_entry(&SavePlace::Shipped(FEELER)).expect("shipped");
+        assert!(feeler.champion.genome.controller.kind().senses_surroundings());
     }
 }
 

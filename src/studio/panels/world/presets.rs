@@ -5,6 +5,7 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::{OwnName, own_files};
 use crate::studio::state::current_run::CurrentRun;
+use crate::studio::state::run_names::{PRESET_TITLES, with_title};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
@@ -20,7 +21,7 @@ pub(super) fn preset_choice(
     ui.horizontal_wrapped(|ui| {
         ui.label("Preset");
         let list = egui::ComboBox::from_id_salt("preset")
-            .selected_text(in_words(run))
+            .selected_text(with_title(&run.next_preset_in_words()))
             .width(theme::COMBO_WIDTH)
             .height(theme::list_height(ui))
             .show_ui(ui, |ui| presets(ui, &run.context.presets, run.next_preset(), commands));
@@ -49,7 +50,7 @@ fn presets(
     // The rows are close together, so that all fit into a small window.
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
-    for (group, of_group) in &GROUPS {
+    for (group, of_group) in &PRESET_TITLES {
         if !group.is_empty() {
             explain(ui, group);
         }
@@ -67,79 +68,12 @@ fn presets(
         .extend(preset.map(|preset| Command::Plan(PlanCommand::SetPreset(preset.name.clone()))));
 }
 
-/// The built-in presets by group, each with its readable title. The first group is for a first look.
-const GROUPS: [(&str, &[(&str, &str)]); 6] = [
-    (
-        "",
-        &[
-            ("climb", "Climb"),
-            ("ice", "Smooth ice"),
-            ("mud", "Deep mud"),
-            ("house", "Stairs of a house"),
-            ("bodies", "Bodies that evolve"),
-            ("creatures", "Branching creatures"),
-        ],
-    ),
-    (
-        "Surfaces",
-        &[
-            ("rubber", "Rubber mat"),
-            ("trampoline", "Trampoline"),
-            ("moon", "The Moon"),
-            ("thick-air", "Thick air"),
-            ("panda-manual", "Surface of the engine's manual"),
-        ],
-    ),
-    (
-        "Stairs",
-        &[
-            ("ladder", "Steps that grow"),
-            ("mixed-stairs", "Many stairs, limbs with neurons"),
-            ("generalist", "Any stairs"),
-            ("poet", "Stairs that evolve, too (POET)"),
-        ],
-    ),
-    ("Bodies", &[("squishy", "Soft blocks")]),
-    (
-        "Brains",
-        &[
-            ("senses", "Reflexes"),
-            ("limb-neurons", "Neurons in the limbs"),
-            ("neat", "Networks that grow (NEAT)"),
-            ("q-learning", "Trial and error (Q-learning)"),
-            ("xcs", "Rules by accuracy (XCS)"),
-            ("zcs", "Rules by strength (ZCS)"),
-            ("waves-by-rules", "Rules that choose waves"),
-        ],
-    ),
-    (
-        "Research",
-        &[
-            ("report", "The report's experiment"),
-            ("steady", "The report's method, calmer snake"),
-            ("quick", "A quick try"),
-        ],
-    ),
-];
-
-/// Returns the readable title of a preset, or its name if it is one of the user's.
-pub(crate) fn title(name: &str) -> &str {
-    let mut all = GROUPS.iter().flat_map(|(_, presets)| presets.iter());
-    all.find(|(of, _)| *of == name).map_or(name, |(_, title)| title)
-}
-
-/// Describes the preset of the next run by its title, and whether its settings were changed.
-fn in_words(run: &CurrentRun) -> String {
-    let (name, words) = (run.next_preset(), run.next_preset_in_words());
-    let changes = words.strip_prefix(name).unwrap_or_default();
-    format!("{}{changes}", title(name))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::studio::panels::testing::{self, Sent, clicked, press, shows};
     use crate::studio::state::current_run::prepared_run;
+    use crate::studio::state::run_names::preset_title;
     use egui_kittest::kittest::Queryable;
 
     fn panel(run: &CurrentRun) -> Sent<'_> {
@@ -180,7 +114,7 @@ mod tests {
             let mut panel = panel(&run);
             panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Preset").click();
             panel.run();
-            let sent = clicked(&mut panel, title(&name));
+            let sent = clicked(&mut panel, preset_title(&name));
             let commands = [PlanCommand::ListPresets, PlanCommand::SetPreset(name)];
             assert_eq!(sent, commands.map(Command::Plan));
         }
@@ -191,7 +125,7 @@ mod tests {
         let run = prepared_run();
         let mut built_in: Vec<&str> =
             run.context.presets.built_in().iter().map(|preset| preset.name.as_str()).collect();
-        let listed = || GROUPS.iter().flat_map(|(_, presets)| presets.iter());
+        let listed = || PRESET_TITLES.iter().flat_map(|(_, presets)| presets.iter());
         let mut names: Vec<&str> = listed().map(|(name, _)| *name).collect();
         built_in.sort_unstable();
         names.sort_unstable();

@@ -2,17 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::studio::state::run_names::{difference, name_of_listed, tell_apart};
 use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
 use snakes_lab::run::BackgroundTask;
 
+/// A run of the saves folder.
+#[derive(Debug)]
+pub(crate) struct ListedRun {
+    /// Summary of the run.
+    pub run: RunSummary,
+    /// Description of the run's settings: see [`settings_in_words`].
+    pub settings: String,
+    /// Readable name, which no other listed run has.
+    pub name: String,
+}
+
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<Vec<(RunSummary, String)>>>,
-    /// All runs in the saves folder, and the description of the settings of each (see [`settings_in_words`]); `None`
-    /// until they are listed.
-    pub runs: Option<Vec<(RunSummary, String)>>,
+    listing: Option<BackgroundTask<Vec<ListedRun>>>,
+    /// All runs in the saves folder; `None` until they are listed.
+    pub runs: Option<Vec<ListedRun>>,
     /// Runs that are compared with the current one.
     pub compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
@@ -47,11 +58,17 @@ impl ComparedRuns {
     /// Starts to list all runs.
     pub fn list(&mut self, saves: SavesFolder) -> Result<(), String> {
         let listing = BackgroundTask::start(move || {
-            let described = |run: RunSummary| {
-                let words = settings_in_words(&run.plan);
-                (run, words)
+            let listed = |run: RunSummary| {
+                let settings = settings_in_words(&run.plan);
+                ListedRun { name: name_of_listed(&run, &settings), run, settings }
             };
-            saves.runs().into_iter().map(described).collect()
+            let mut runs: Vec<ListedRun> = saves.runs().into_iter().map(listed).collect();
+            let names = runs.iter_mut().map(|ListedRun { run, name, .. }| {
+                let difference = difference(&run.folder, run.name.is_some());
+                (name, difference)
+            });
+            tell_apart(names);
+            runs
         });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);

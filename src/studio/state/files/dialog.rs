@@ -1,4 +1,4 @@
-//! File dialogs of the operating system, and its file manager.
+//! File dialogs of the operating system, and its programs that open folders and pages.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use snakes_lab::run::BackgroundTask;
 /// Paths that the user chose in a dialog, none if it was cancelled, or the reason why there is no dialog.
 pub type DialogAnswer = Result<Vec<PathBuf>, String>;
 
-/// Time after which a file manager that is still starting counts as opened.
+/// Time after which a program that is still starting counts as opened.
 const OPENED_AFTER: Duration = Duration::from_secs(10);
 
 /// Opens the file dialog for a question. The window keeps running meanwhile. Must be called on the main thread.
@@ -58,16 +58,14 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
     })
 }
 
-/// Shows a folder in the operating system's file manager.
+/// Opens a folder in the operating system's file manager, or a page in its browser.
 ///
 /// # Errors
-/// The folder does not exist, or no file manager can show it.
-pub fn open_folder(folder: &Path) -> Result<(), String> {
-    let why = |error: io::Error| {
-        format!("{}: cannot be shown in a file manager: {error}", folder.display())
-    };
-    if !folder.is_dir() {
+/// The path does not exist, or no program can open it.
+pub fn open(path: &Path) -> Result<(), String> {
+    let why = |error: io::Error| format!("{}: cannot be opened: {error}", path.display());
+    if !path.exists() {
         return Err(why(io::ErrorKind::NotFound.into()));
     }
-    open::that_detached_with_timeout(folder, OPENED_AFTER).map_err(why)
+    open::that_detached_with_timeout(path, OPENED_AFTER).map_err(why)
 }

@@ -115,7 +115,7 @@ fn a_folder_that_does_not_exist_is_reported() {
     let mut tried = Tried::new();
     tried.apply(&FileCommand::OpenFolder("/nowhere/at/all".into())).expect("begun");
     let report = tried.report();
-    assert!(report.starts_with("/nowhere/at/all: cannot be shown in a file manager"), "{report}");
+    assert!(report.starts_with("/nowhere/at/all: cannot be opened"), "{report}");
 }
 
 #[test]

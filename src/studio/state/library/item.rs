@@ -1,7 +1,6 @@
 //! An entry of the library list: its texts and sort keys.
 
-use std::time::Duration;
-
+use crate::studio::state::run_names::{date, difference, run_name, with_title};
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::EntryNotes;
 use snakes_core::save::library::{
@@ -15,6 +14,8 @@ pub struct LibraryItem {
     /// Entry after the file has changed, until the file is read again.
     awaited: Option<LibraryEntry>,
     name: String,
+    /// Name of the entry without the addition that tells it apart from others of the same name.
+    plain_name: String,
     /// Contents of the entry or the error of reading it; `None` until it is read.
     read: Option<Result<EntryDetails, EntryProblem>>,
     /// Name of the entry in lower case, which is its sort key.
@@ -26,8 +27,9 @@ pub struct LibraryItem {
 impl LibraryItem {
     /// Creates an entry that has not been read yet.
     pub fn new(entry: LibraryEntry) -> Self {
-        let (name, sorted_as, words) = Default::default();
-        let mut item = Self { entry, awaited: None, name, read: None, words, sorted_as };
+        let (name, plain_name, sorted_as, words) = Default::default();
+        let mut item =
+            Self { entry, awaited: None, name, plain_name, read: None, words, sorted_as };
         item.describe();
         item
     }
@@ -60,25 +62,51 @@ impl LibraryItem {
 
     fn describe(&mut self) {
         let folder = self.place().shown_name();
-        let own = self.notes().map(|notes| notes.name.clone()).unwrap_or_default();
-        self.name = if own.is_empty() { folder.clone() } else { own };
-        self.sorted_as = self.name.to_lowercase();
+        let own = self.own_name().map(str::to_owned);
+        let name = own.or_else(|| self.readable_name(&folder)).unwrap_or_else(|| folder.clone());
+        if name != self.plain_name {
+            (self.sorted_as, self.name, self.plain_name) =
+                (name.to_lowercase(), name.clone(), name);
+        }
         let kind = match self.place() {
             SavePlace::Shipped(_) => "champion built-in",
             SavePlace::Champion(_) => "champion",
             SavePlace::Run(_) => "run",
         };
-        let mut words = vec![self.name.as_str(), kind];
-        if self.name != folder {
+        let mut words = vec![self.plain_name.as_str(), kind];
+        if self.plain_name != folder {
             words.push(&folder);
         }
         words.extend(self.notes().ok().map(|notes| notes.text.as_str()));
         words.extend(self.problem_words());
         words.extend(self.preset());
+        let titled = self.preset_title();
+        words.extend(titled.as_deref());
         words.extend(self.controller().map(ControllerKind::name));
         let method = self.run().and_then(|run| run.strategy);
         words.extend(method.map(|method| method.title()));
         self.words = words.join("\n").to_lowercase();
+    }
+
+    /// Returns the readable name of a run in a folder that the program named.
+    fn readable_name(&self, folder: &str) -> Option<String> {
+        let RunDetails { preset, seed, rewarded, best, .. } = self.run()?;
+        let of_program = format!("{}-seed{seed}-", preset.split(", ").next()?);
+        let best = best.map(|(_, fitness)| (*rewarded, fitness));
+        let name = || run_name(preset, *seed, self.entry.modified, best);
+        folder.starts_with(&of_program).then(name)
+    }
+
+    /// Returns the user's own name for the entry, if any.
+    pub fn own_name(&self) -> Option<&str> {
+        self.notes().ok().and_then(EntryNotes::own_name)
+    }
+
+    /// Returns the name of a run without an addition, and the addition that would tell it apart from others of this name.
+    pub fn name_to_tell_apart(&mut self) -> Option<(&mut String, String)> {
+        let difference = difference(self.place().run()?, self.own_name().is_some());
+        self.name.clone_from(&self.plain_name);
+        Some((&mut self.name, difference))
     }
 
     /// Returns place, size and modification time of the entry.
@@ -91,7 +119,7 @@ impl LibraryItem {
         &self.entry.place
     }
 
-    /// Returns the user's name for the entry, or else the name of its file or folder.
+    /// Returns the user's name for the entry, or else a readable one of a run, or else the name of the file or folder.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -178,8 +206,13 @@ impl LibraryItem {
         }
     }
 
+    /// Returns the title of the preset with which the champion's run or the run began, and what differs from the preset.
+    pub fn preset_title(&self) -> Option<String> {
+        self.preset().map(with_title)
+    }
+
     /// Returns the name of the preset with which the champion's run or the run began.
-    pub fn preset(&self) -> Option<&str> {
+    fn preset(&self) -> Option<&str> {
         let of_run = || self.run().map(|run| run.preset.as_str());
         self.champion().map(|champion| champion.origin.preset.as_str()).or_else(of_run)
     }
@@ -213,48 +246,18 @@ impl LibraryItem {
         let kind = if self.place().run().is_some() { "run" } else { "" };
         let (fitness, generation) = (self.fitness_text(), self.generation_text());
         let date = self.date_text();
-        let parts =
-            [&self.name, kind, &fitness, self.preset().unwrap_or_default(), &generation, &date];
+        let preset = self.preset_title().unwrap_or_default();
+        let parts = [&self.name, kind, &fitness, &preset, &generation, &date];
         let said: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         said.join(", ")
     }
-}
-
-/// Formats the time since the beginning of 1970 as a date in UTC: "21 Nov 2026".
-pub fn date(since_1970: Duration) -> String {
-    const MONTHS: [&str; 12] =
-        ["Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Jan", "Feb"];
-    // Days since the first of March of the year 0. If years begin in March, a leap day is the last day of its year.
-    let days = since_1970.as_secs() / 86_400 + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era =
-        (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month + 2) / 5 + 1;
-    let year = era * 400 + year_of_era + u64::from(month >= 10);
-    let month = MONTHS.get(month as usize).copied().unwrap_or_default();
-    format!("{day} {month} {year}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use snakes_core::save::library::read_entry;
-
-    #[test]
-    fn dates_are_those_of_the_calendar() {
-        for (seconds, expected) in [
-            (0, "1 Jan 1970"),
-            (951_782_400, "29 Feb 2000"),
-            (1_709_251_199, "29 Feb 2024"),
-            (1_709_251_200, "1 Mar 2024"),
-            (1_798_761_599, "31 Dec 2026"),
-            (4_107_542_400, "1 Mar 2100"),
-        ] {
-            assert_eq!(date(Duration::from_secs(seconds)), expected);
-        }
-    }
+    use std::time::Duration;
 
     #[test]
     fn the_search_finds_name_preset_controller_and_damage() {
@@ -273,7 +276,7 @@ mod tests {
         }
         assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
         assert!(!good.has_all(&["damaged"]));
-        assert_eq!(good.label(), "fast, 26.00 m, climb, generation 102, built-in");
+        assert_eq!(good.label(), "fast, 26.00 m, Climb, generation 102, built-in");
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");

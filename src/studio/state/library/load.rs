@@ -5,6 +5,7 @@ use std::path::Path;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::run_names::preset_title;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::{SavePlace, load_entry};
 use snakes_core::save::{LoadedChampion, load_generation};
@@ -44,7 +45,8 @@ pub fn champion_of(
         (Some(generation), Some(own)) => format!("{own}, generation {generation}"),
         (Some(generation), None) => {
             let origin = &loaded.champion.origin;
-            format!("{}, seed {}, generation {generation}", origin.preset, origin.seed)
+            let (preset, seed) = (preset_title(&origin.preset), origin.seed);
+            format!("{preset} {seed}, generation {generation}")
         }
     };
     Ok(shown(&loaded, &name, &format!("{place:?}{generation:?}")))

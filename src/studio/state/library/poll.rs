@@ -9,6 +9,7 @@ use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::run_names::tell_apart;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::LibraryEntry;
@@ -101,7 +102,14 @@ impl Library {
 
     pub(super) fn learn(&mut self, event: LibraryEvent) {
         match event {
-            LibraryEvent::Done(_) => self.unread = 0,
+            LibraryEvent::Done(_) => {
+                self.unread = 0;
+                if std::mem::take(&mut self.has_new_names) {
+                    let runs = self.items.iter_mut();
+                    tell_apart(runs.filter_map(LibraryItem::name_to_tell_apart));
+                    self.revision += 1;
+                }
+            }
             LibraryEvent::NotListed(problem) => {
                 self.problem = Some(problem);
                 self.is_listed = true;
@@ -116,6 +124,7 @@ impl Library {
                 self.unread = self.unread.saturating_sub(1);
                 let is_sorted_anew = self.items[index].learn(read);
                 self.sortings += u64::from(is_sorted_anew);
+                self.has_new_names |= is_sorted_anew;
                 self.revision += 1;
             }
         }
@@ -143,6 +152,7 @@ impl Library {
             }
             self.is_listed = true;
             self.problem = None;
+            self.has_new_names = true;
             self.listings += 1;
             self.revision += 1;
         }

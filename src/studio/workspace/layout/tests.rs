@@ -52,6 +52,31 @@ fn a2_further_panels_open_as_tabs_beside_those_of_their_side_and_never_below_the
 }
 
 #[test]
+fn a_tab_is_offered_beside_the_others_while_it_is_useful_and_stays_once_it_was_chosen() {
+    let mut layout = laid_out(1280.0);
+    let size = egui::vec2(1280.0, 720.0);
+    let tabs = |layout: &Layout| layout.tab_bars().pop().expect("a bar").1;
+    layout.offer(PanelKind::Senses, true);
+    layout.state_in(size, true);
+    assert_eq!(tabs(&layout)[4..], [PanelKind::Senses], "beside the four others");
+    assert!(layout.front_panels().contains(&PanelKind::Run), "the same panel is in front");
+    layout.close(PanelKind::Senses);
+    layout.offer(PanelKind::Senses, true);
+    assert!(!layout.has(PanelKind::Senses), "the user has closed it");
+    for is_chosen in [false, true] {
+        layout.offer(PanelKind::Senses, false);
+        layout.offer(PanelKind::Senses, true);
+        if is_chosen {
+            layout.open(PanelKind::Senses);
+            layout.state_in(size, true);
+        }
+        layout.offer(PanelKind::Senses, false);
+        assert_eq!(layout.has(PanelKind::Senses), is_chosen);
+    }
+    assert!(is_sound(&layout.state));
+}
+
+#[test]
 fn a_wider_window_widens_the_stage_but_not_the_panels() {
     let left = |layout: &Layout| {
         let path = layout.state.find_tab(&PanelKind::Run).expect("there");

@@ -13,10 +13,8 @@ use crate::save::champion::note;
 use crate::save::files::{numbered, read_text, refuse_link};
 use crate::save::plan::load_plan;
 use crate::save::record::load_log;
-use crate::save::{
-    LoadedChampion, SaveError, exam_in_words, load_generation, parse_champion, settings_in_words,
-};
-use crate::score::Fitness;
+use crate::save::{LoadedChampion, SaveError, load_generation, parse_champion, settings_in_words};
+use crate::score::{Fitness, SuiteResult};
 use crate::world::PhysicsEngine;
 
 /// Contents of a library entry.
@@ -51,8 +49,8 @@ pub struct ChampionDetails {
     pub physics: PhysicsEngine,
     /// Controller of the joints.
     pub controller: ControllerKind,
-    /// Results of the exam in one line. None if the file has no results.
-    pub exam: Option<String>,
+    /// Results of the exam, one per suite; empty if the file has no results.
+    pub exam: Vec<SuiteResult>,
     /// Comment of the user in the first line of the file. None if there is none.
     pub note: Option<String>,
     /// Movement of the champion, seen from the side.
@@ -181,7 +179,7 @@ fn champion(place: &SavePlace) -> Result<EntryDetails, SaveError> {
         engine: loaded.engine,
         physics: champion.trial.physics.engine,
         controller: champion.genome.controller.kind(),
-        exam: exam_in_words(&loaded.exam),
+        exam: loaded.exam,
         note: note(&text),
         thumbnail: Thumbnail::of_champion(champion, loaded.recording.as_ref()),
     })))

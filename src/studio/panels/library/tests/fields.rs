@@ -68,7 +68,7 @@ fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
     let run = SavePlace::Run(run_folder());
     for name in ["Ice: 1/2", ""] {
         let mut harness = harness(&library, [420.0, 900.0]);
-        select(&mut harness, "climb-seed8-0123abcd");
+        select(&mut harness, RUN);
         clicked(&mut harness, "Rename");
         press(&mut harness, Modifiers::NONE, Press::Backspace);
         if !name.is_empty() {
@@ -83,9 +83,7 @@ fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
 fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
     let library = library();
     let mut harness = harness(&library, [420.0, 900.0]);
-    for (row, place) in
-        [("alpha", file("alpha")), ("climb-seed8-0123abcd", SavePlace::Run(run_folder()))]
-    {
+    for (row, place) in [("alpha", file("alpha")), (RUN, SavePlace::Run(run_folder()))] {
         select(&mut harness, row);
         type_into(&mut harness, "Notes", "slips");
         assert_eq!(taken(&mut harness), []);

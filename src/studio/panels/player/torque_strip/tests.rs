@@ -14,7 +14,9 @@ fn a_click_or_a_drag_seeks_to_the_time_under_the_pointer() {
     let lane = climber_lane(0, "climber");
     let mut strip_panel = TorqueStrip::default();
     let mut harness = Harness::builder().with_size(egui::vec2(600.0, 100.0)).build_ui_state(
-        |ui, commands: &mut Vec<f64>| commands.extend(strip_panel.ui(ui, &lane, 1.0, SPAN, 60.0)),
+        |ui, commands: &mut Vec<f64>| {
+            commands.extend(strip_panel.ui(ui, (&lane, None), 1.0, SPAN, 60.0))
+        },
         Vec::new(),
     );
     let strip = harness.get_by_label("Time, in simulated seconds").rect();
@@ -43,7 +45,7 @@ fn a_strip_that_grows_while_it_is_pressed_keeps_its_scale_until_the_release() {
             // When the pointer goes back for the first time, the pull that ended the trial is undone.
             let end_s = if moments.is_empty() { 4.0 } else { 15.0 };
             let span = TimelineSpan { end_s, ..SPAN };
-            moments.extend(strip_panel.ui(ui, &lane, 1.0, span, 60.0));
+            moments.extend(strip_panel.ui(ui, (&lane, None), 1.0, span, 60.0));
         },
         Vec::new(),
     );
@@ -72,7 +74,7 @@ fn the_legend_names_unit_and_marks_and_a_mark_has_a_hover_text() {
     for width in [900.0, 420.0] {
         let mut strip_panel = TorqueStrip::default();
         let mut harness = Harness::builder().with_size(egui::vec2(width, 140.0)).build_ui(|ui| {
-            strip_panel.ui(ui, &lane, 1.0, SPAN, theme::TORQUE_STRIP_HEIGHT);
+            strip_panel.ui(ui, (&lane, None), 1.0, SPAN, theme::TORQUE_STRIP_HEIGHT);
         });
         harness.run();
         let legend = harness.get_by_label_contains("Legend: ").rect();
@@ -99,7 +101,7 @@ fn with_a_hidden_future_marks_and_torques_appear_only_once_they_have_happened() 
     for (now_s, is_seen) in [(1.0, false), (landed_s + 0.1, true)] {
         let mut strip_panel = TorqueStrip::default();
         let mut harness = Harness::builder().with_size(egui::vec2(600.0, 140.0)).build_ui(|ui| {
-            strip_panel.ui(ui, &lane, now_s, span, theme::TORQUE_STRIP_HEIGHT);
+            strip_panel.ui(ui, (&lane, None), now_s, span, theme::TORQUE_STRIP_HEIGHT);
         });
         harness.run();
         let strip = harness.get_by_label("Time, in simulated seconds").rect();
@@ -109,5 +111,13 @@ fn with_a_hidden_future_marks_and_torques_appear_only_once_they_have_happened() 
         for text in ["Top of the stairs reached", "Joint 4 (tail): bend"] {
             assert_eq!(shows(&harness, text), is_seen, "{text} at {now_s} s");
         }
+    }
+}
+
+#[test]
+fn a_selected_limb_limits_the_rows_to_its_joints() {
+    let lane = climber_lane(0, "climber");
+    for (limb, joints) in [(None, vec![0, 1, 2, 3]), (Some(0), vec![0]), (Some(2), vec![1, 2])] {
+        assert_eq!(joints_of(&lane.body, limb), joints);
     }
 }
