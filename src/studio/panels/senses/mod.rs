@@ -97,7 +97,10 @@ impl SensesPanel {
         lane_choice(ui, view, commands);
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
-            explain(ui, &sensing_controllers());
+            let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
+            let titles = sensing.map(|kind| kind.title()).collect::<Vec<_>>().join(", ");
+            let sensing = "Controllers that sense touch, balance and the stairs ahead";
+            explain(ui, &format!("{sensing}: {titles}. Choose one in the Watch panel."));
             return exam(ui, view.lane, exams, commands);
         }
         let Some(rollout) = view.lane.rollout() else {
@@ -132,16 +135,6 @@ impl SensesPanel {
             None => {}
         }
     }
-}
-
-/// Describes in a sentence which controllers sense their surroundings.
-fn sensing_controllers() -> String {
-    let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
-    let titles: Vec<&str> = sensing.map(|kind| kind.title()).collect();
-    format!(
-        "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Watch panel.",
-        titles.join(", ")
-    )
 }
 
 /// Describes in a sentence a controller that does not sense its surroundings.
