@@ -18,7 +18,7 @@ use snakes_core::save::LoadedChampion;
 use snakes_lab::run::GenerationReport;
 
 use climbs::{Climb, Climbs, landed_s};
-use columns::{cells, heads, rows_width};
+use columns::{cells, heads};
 use summary::ReportSummary;
 
 /// The champions panel: the list, and its options.
@@ -128,7 +128,8 @@ impl ChampionsPanel {
     ) {
         let better = (self.lists_better_only || view.has_better_only()).then_some(&summary.better);
         let listed = better.map_or(view.reports.len(), |better| better.len());
-        let width = rows_width(ui);
+        // Room beside the rows is reserved for the scroll bar, so that the columns do not move when it appears.
+        let width = ui.available_width() - ui.spacing().scroll.allocated_width();
         heads(ui, width);
         let (height, rows) = (theme::CHAMPION_ROW_HEIGHT, view.opening.len() + listed);
         let area = egui::ScrollArea::vertical().auto_shrink(false);

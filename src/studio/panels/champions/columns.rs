@@ -45,12 +45,6 @@ pub(super) fn cells(champion: &Champion, time: Result<f64, &str>) -> [String; 3]
     [score, time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 
-/// Returns the width of the rows of a list, in points. Room beside the rows is reserved for the scroll bar, so that the
-/// columns do not move when it appears.
-pub(super) fn rows_width(ui: &egui::Ui) -> f32 {
-    ui.available_width() - ui.spacing().scroll.allocated_width()
-}
-
 /// Draws the headings of the columns above rows of this width, in points.
 pub(super) fn heads(ui: &mut egui::Ui, width: f32) {
     let size = egui::vec2(width, theme::SMALL_SIZE + 4.0);

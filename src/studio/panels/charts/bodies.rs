@@ -55,9 +55,8 @@ pub(super) fn view(
     let metre = METRE.min(WIDEST / widest_m);
     let mut blocks: [Vec<[f64; 4]>; 2] = Default::default();
     let (mut hits, mut tallest_m) = (Vec::new(), 1.0_f64);
-    for (column, (structure, (body, seen))) in
-        (1..).zip(structures.iter().zip(bodies.iter().zip(seen)))
-    {
+    let drawn = structures.iter().zip(&bodies);
+    for (column, ((structure, body), seen)) in (1..).zip(drawn.clone().zip(seen)) {
         let x = f64::from(column);
         let length_m = f64::from(body.length_m());
         tallest_m = tallest_m.max(length_m);
@@ -91,7 +90,7 @@ pub(super) fn view(
     };
     let fitness = with_unit("fitness", settings.trial.fitness.unit());
     let heads = ["generation", "snake", "change", "blocks", "length (m)", &fitness, "gain"];
-    let records = structures.iter().map(|structure| record(settings, structure));
+    let records = drawn.map(|(structure, body)| record(structure, body));
     let figure = Figure::of("Ancestry of the best body", Chart::new(x, y, series))
         .with_note(format!("{kind}{earlier}"))
         .with_numbers(heads, records);
@@ -198,8 +197,7 @@ fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
 }
 
 /// Returns the row of the table for a structure.
-fn record(settings: &Settings, structure: &Structure) -> Vec<String> {
-    let body = settings.trial.agent.body_plan(&structure.genome);
+fn record(structure: &Structure, body: &BodyPlan) -> Vec<String> {
     let number = |value: Option<f32>| value.map_or(String::new(), |value| value.to_string());
     let gain = structure.fitness.zip(structure.before).map(|(fitness, before)| fitness - before);
     vec![

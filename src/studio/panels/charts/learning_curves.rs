@@ -19,7 +19,6 @@ use snakes_lab::study::{controllers, curves, short_title};
 /// Panel of a study: its learning curves for the selected controller, and its table.
 pub(super) struct CurvesPanel {
     study: StudyRuns,
-    controllers: Vec<ControllerKind>,
     /// Controller whose learning curves are shown.
     controller: ControllerKind,
     /// Learning curves that are shown.
@@ -29,10 +28,9 @@ pub(super) struct CurvesPanel {
 impl CurvesPanel {
     /// Creates the panel for the runs of a study.
     pub fn new(study: &StudyRuns) -> Self {
-        let controllers = controllers(&study.arms);
         // Waves and gaits learn more than free signals, so the last controller is selected first.
-        let controller = controllers.last().copied().unwrap_or_default();
-        Self { view: view(study, controller), study: study.clone(), controllers, controller }
+        let controller = controllers(&study.arms).last().copied().unwrap_or_default();
+        Self { view: view(study, controller), study: study.clone(), controller }
     }
 
     /// Draws the panel. The chart of the curves is `height` points high.
@@ -42,7 +40,7 @@ impl CurvesPanel {
         }
         ui.horizontal(|ui| {
             ui.label("Controller");
-            for kind in &self.controllers {
+            for kind in &controllers(&self.study.arms) {
                 let choice = ui.selectable_value(&mut self.controller, *kind, kind.name());
                 if choice.on_hover_text(kind.words()).changed() {
                     self.view = view(&self.study, *kind);

@@ -59,7 +59,18 @@ impl TorqueComparison {
         }
         if !(of_version && of_selected) {
             self.updated_for = Some((version, selected.cloned()));
-            self.update_parent(run, selected.filter(|_| self.child.is_some()));
+            // The parent is replaced if it is another individual, or is not kept any more.
+            let child = selected.filter(|_| self.child.is_some());
+            let found = child.and_then(|child| parent(run, child)).zip(child);
+            let known = self.parent.as_ref().map(|known| (&known.name, &known.genome));
+            let is_same = known == found.as_ref().map(|((name, genome), _)| (name, genome));
+            if !is_same {
+                self.view = None;
+                self.parent = found.map(|((name, genome), child)| {
+                    let trial = &child.champion().trial;
+                    Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
+                });
+            }
         }
         match (&self.child, selected) {
             (Some(_), _) => Ok(()),
@@ -67,20 +78,6 @@ impl TorqueComparison {
             (None, None) => {
                 Err("The torques of the snake on the stage and of its parent will appear here.")
             }
-        }
-    }
-
-    /// Replaces the parent if it is another individual, or is not kept any more.
-    fn update_parent(&mut self, run: &CurrentRun, child: Option<&StagedChampion>) {
-        let found = child.and_then(|child| parent(run, child)).zip(child);
-        let known = self.parent.as_ref().map(|known| (&known.name, &known.genome));
-        let is_same = known == found.as_ref().map(|((name, genome), _)| (name, genome));
-        if !is_same {
-            self.view = None;
-            self.parent = found.map(|((name, genome), child)| {
-                let trial = &child.champion().trial;
-                Subject::new(name, genome, trial, |genome| Rollout::new(genome, trial))
-            });
         }
     }
 

@@ -100,7 +100,10 @@ impl SensesPanel {
         lane_choice(ui, view, commands);
         if !view.kind().senses_surroundings() {
             explain(ui, unsensing(view.kind()));
-            explain(ui, &sensing_controllers());
+            let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
+            let titles = sensing.map(|kind| kind.title()).collect::<Vec<_>>().join(", ");
+            let sensing = "Controllers that sense touch, balance and the stairs ahead";
+            explain(ui, &format!("{sensing}: {titles}. Choose one in the Watch panel."));
             feeler_button(ui, commands);
             return exam(ui, view.lane, exams, commands);
         }
@@ -136,26 +139,6 @@ impl SensesPanel {
             None => {}
         }
     }
-}
-
-/// Describes in a sentence which controllers sense their surroundings.
-fn sensing_controllers() -> String {
-    let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
-    let titles: Vec<&str> = sensing.map(|kind| kind.title()).collect();
-    format!(
-        "Controllers that sense touch, balance and the stairs ahead: {}. Choose one in the Watch panel.",
-        titles.join(", ")
-    )
-}
-
-/// Name of a built-in champion that senses its surroundings.
-const FEELER: &str = "feeler";
-
-/// Draws the button that shows a snake with senses.
-fn feeler_button(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
-    let show = Command::Library(LibraryCommand::Replay(SavePlace::Shipped(FEELER)));
-    let hint = "Replay a built-in champion whose limbs react to what they touch";
-    CommandButton::new("Show me a snake that feels", hint, show).show(ui, commands);
 }
 
 /// Describes in a sentence a controller that does not sense its surroundings.

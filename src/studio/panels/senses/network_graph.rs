@@ -29,10 +29,11 @@ const STRONGEST: f32 = 3.0;
 pub(super) fn network_graph(ui: &mut egui::Ui, network: &NetworkActivity) {
     let whose = network.joint.map_or_else(String::new, |joint| format!("Joint {}. ", joint + 1));
     let text = "Lines are weights, wider for larger ones; nodes show activity. Point at a node to see its links.";
-    let senses = if names_inputs(network) { "" } else { " At the left are all its senses." };
+    let names_inputs = count(network, NodeColumn::Input) <= MOST_NAMED;
+    let senses = if names_inputs { "" } else { " At the left are all its senses." };
     explain(ui, &format!("{whose}{text}{senses}"));
     legend(ui);
-    let places = Places::of(ui, network);
+    let places = Places::of(ui, network, names_inputs);
     let mut hovered = None;
     for (index, node) in network.nodes.iter().enumerate() {
         let area = egui::Rect::from_center_size(places.at[index], places.target(node.column));
@@ -69,11 +70,6 @@ fn count(network: &NetworkActivity, column: NodeColumn) -> usize {
     network.nodes.iter().filter(|node| node.column == column).count()
 }
 
-/// Returns whether the inputs have names beside them.
-fn names_inputs(network: &NetworkActivity) -> bool {
-    count(network, NodeColumn::Input) <= MOST_NAMED
-}
-
 /// Positions of the nodes.
 struct Places {
     at: Vec<Pos2>,
@@ -86,10 +82,9 @@ struct Places {
 
 impl Places {
     /// Allocates the area of the graph, and places the nodes in it.
-    fn of(ui: &mut egui::Ui, network: &NetworkActivity) -> Self {
+    fn of(ui: &mut egui::Ui, network: &NetworkActivity, names_inputs: bool) -> Self {
         let count = |column| count(network, column);
         let inputs = count(NodeColumn::Input);
-        let names_inputs = names_inputs(network);
         let height = (inputs as f32 * NAMED_ROW).clamp(LEAST_HEIGHT, MOST_HEIGHT);
         let size = egui::vec2(ui.available_width(), height + theme::GAP);
         let (room, _) = ui.allocate_exact_size(size, egui::Sense::hover());

@@ -55,7 +55,7 @@ impl Sheet {
 
     /// Draws a text field with comma-separated numbers. Returns the new list when the field loses the focus.
     pub(super) fn list(&mut self, ui: &mut egui::Ui, shown: &Shown) -> Option<String> {
-        let check = |text: &str| shown.check.typed(text);
+        let check = |text: &str| shown.values.typed(shown.listed, text);
         let plain = shown.text.trim_start_matches('[').trim_end_matches(']');
         self.usual_row(ui, shown, false, |sheet, ui, width, name| {
             let control = Control { value: plain, ..Control::of(shown, name, &check) };

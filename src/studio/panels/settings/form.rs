@@ -10,7 +10,6 @@ use std::sync::Arc;
 use bevy_egui::egui;
 
 use super::changing::Changing;
-use super::validation::Check;
 use super::values::Values;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::state::current_run::CurrentRun;
@@ -160,7 +159,7 @@ impl Sheet {
         let shown = Shown {
             listed,
             hint: hint(setting, answer),
-            check: Check { values: &values, listed },
+            values: &values,
             stored: listed.value.to_string(),
             text: setting.shown_value(&listed.value),
             is_from_next_generation: answer == Some(Ok(())),
@@ -205,8 +204,8 @@ pub(super) struct Shown<'a> {
     pub listed: &'a ListedSetting,
     /// Text of the setting's tooltip.
     pub hint: String,
-    /// Check for text that is typed for the setting.
-    pub check: Check<'a>,
+    /// All settings of the next run.
+    pub values: &'a Values,
     /// Value as text, in the unit of files.
     pub stored: String,
     /// Value as text, in the unit of panels.

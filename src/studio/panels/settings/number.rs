@@ -67,7 +67,7 @@ impl Sheet {
             |ui, width| number_name(ui, shown, range, each, width),
             |sheet, ui, width, name| {
                 if is_given && each.is_none() {
-                    let check = |text: &str| shown.check.typed(text);
+                    let check = |text: &str| shown.values.typed(shown.listed, text);
                     let control = Control::of(shown, name, &check);
                     return sheet.slider_and_field(ui, &control, shown, range, width);
                 }
@@ -111,8 +111,8 @@ impl Sheet {
             SettingValue::List(all).to_string()
         };
         let check = |text: &str| {
-            let text = shown.check.typed(text)?;
-            shown.check.whole(&with(&text)).map(|()| text)
+            let text = shown.values.typed(shown.listed, text)?;
+            shown.values.whole(shown.listed, &with(&text)).map(|()| text)
         };
         let new = self.row(
             ui,

@@ -5,22 +5,13 @@ use snakes_core::check::Invalid;
 use snakes_core::evolve::with_field;
 use snakes_core::schema::{ListedSetting, SettingKind, SettingValue};
 
-/// A setting that is being typed, with all other settings.
-#[derive(Clone, Copy)]
-pub(super) struct Check<'a> {
-    /// All settings of the next run, with their declarations.
-    pub values: &'a Values,
-    /// Declaration and present value of the setting.
-    pub listed: &'a ListedSetting,
-}
-
-impl Check<'_> {
-    /// Converts typed text, in the unit of panels, to the setting's text, in the unit of files.
+impl Values {
+    /// Converts text that is typed for a setting, in the unit of panels, to the setting's text, in the unit of files.
     ///
     /// # Errors
     /// The text is invalid; the message contains the setting, the value and the allowed range.
-    pub fn typed(&self, text: &str) -> Result<String, String> {
-        let (typed, setting) = (text.trim(), &self.listed.setting);
+    pub fn typed(&self, listed: &ListedSetting, text: &str) -> Result<String, String> {
+        let (typed, setting) = (text.trim(), &listed.setting);
         let unreadable = || {
             let allowed = setting.shown_range_in_words();
             format!("{} is \"{typed}\"; allowed: {allowed}", setting.label)
@@ -44,7 +35,7 @@ impl Check<'_> {
                 let inside = typed.trim_start_matches('[').trim_end_matches(']');
                 let text = match setting.display {
                     None => format!("[{inside}]"),
-                    Some(_) => self.stored_list(inside).ok_or_else(unreadable)?,
+                    Some(_) => stored_list(listed, inside).ok_or_else(unreadable)?,
                 };
                 let list = numbers(&text).ok_or_else(unreadable)?;
                 let is_allowed = |number: &f32| range.allows(*number);
@@ -61,32 +52,32 @@ impl Check<'_> {
                 typed.to_owned()
             }
         };
-        self.whole(&text).map(|()| text)
+        self.whole(listed, &text).map(|()| text)
     }
 
-    /// Converts a list to the unit of files. A number whose text has not changed keeps all its digits, although the
-    /// text in the unit of panels is rounded.
-    fn stored_list(&self, typed: &str) -> Option<String> {
-        let ListedSetting { setting, value, .. } = self.listed;
-        let now = if let SettingValue::List(numbers) = value { numbers.as_slice() } else { &[] };
-        let number = |(index, text): (usize, &str)| {
-            let text = text.trim();
-            let same = now.get(index).filter(|number| setting.shown_number(**number) == text);
-            same.map(f32::to_string).or_else(|| setting.stored_text(text))
-        };
-        let stored: Option<Vec<String>> = typed.split(',').enumerate().map(number).collect();
-        stored.map(|texts| format!("[{}]", texts.join(", ")))
-    }
-
-    /// Checks the text together with all other settings.
+    /// Checks the text of a setting, in the unit of files, together with all other settings.
     ///
     /// # Errors
     /// The text is invalid; the error is a message for the user.
-    pub fn whole(&self, text: &str) -> Result<(), String> {
-        let checked = with_field(&self.values.settings, &self.listed.path, text);
+    pub fn whole(&self, listed: &ListedSetting, text: &str) -> Result<(), String> {
+        let checked = with_field(&self.settings, &listed.path, text);
         let checked = checked.and_then(|settings| settings.check_start());
-        checked.map_err(|invalid| in_words(&invalid, &self.values.listed))
+        checked.map_err(|invalid| in_words(&invalid, &self.listed))
     }
+}
+
+/// Converts a list to the unit of files. A number whose text has not changed keeps all its digits, although the
+/// text in the unit of panels is rounded.
+fn stored_list(listed: &ListedSetting, typed: &str) -> Option<String> {
+    let ListedSetting { setting, value, .. } = listed;
+    let now = if let SettingValue::List(numbers) = value { numbers.as_slice() } else { &[] };
+    let number = |(index, text): (usize, &str)| {
+        let text = text.trim();
+        let same = now.get(index).filter(|number| setting.shown_number(**number) == text);
+        same.map(f32::to_string).or_else(|| setting.stored_text(text))
+    };
+    let stored: Option<Vec<String>> = typed.split(',').enumerate().map(number).collect();
+    stored.map(|texts| format!("[{}]", texts.join(", ")))
 }
 
 /// Replaces a decimal comma, as in "0,5", by a point.
@@ -119,7 +110,7 @@ mod tests {
         values.settings.trial.agent.limb_width_m = PerPart::Each(vec![1.0; 5]);
         values.listed = list(&values.settings);
         let listed = values.listed.iter().find(|listed| listed.path == field);
-        Check { values: &values, listed: listed.expect("a setting") }.typed(text)
+        values.typed(listed.expect("a setting"), text)
     }
 
     #[test]

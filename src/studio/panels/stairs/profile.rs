@@ -40,14 +40,9 @@ pub(super) struct Profile<'a> {
     pub pointed: Option<u32>,
 }
 
-/// An edge that is being dragged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Grab {
-    /// Step to which the edge belongs; the lowest is 0.
-    step: u32,
-    /// Position at which the pointer took hold of the edge: y and z, in metres.
-    from_m: [f32; 2],
-}
+/// An edge that is being dragged: the step to which it belongs, the lowest of which is 0, and the position at which the
+/// pointer took hold of the edge, as y and z in metres.
+pub(super) type Grab = (u32, [f32; 2]);
 
 /// Conversion from metres to points.
 #[derive(Debug, Clone, Copy)]
@@ -187,13 +182,13 @@ impl Profile<'_> {
             ui.painter().circle(at, radius, color, egui::Stroke::new(1.0, palette.field));
             if is_taken && let Some(pointer) = response.interact_pointer_pos() {
                 let pointer_m = scale.back_m(pointer);
-                let same = before.filter(|before| before.step == step);
-                let now = same.unwrap_or(Grab { step, from_m: pointer_m });
-                *grab = Some(now).filter(|_| response.dragged());
+                let same = before.filter(|(of, _)| *of == step);
+                let from_m = same.map_or(pointer_m, |(_, from_m)| from_m);
+                *grab = Some((step, from_m)).filter(|_| response.dragged());
                 let snap_m = if ui.input(|input| input.modifiers.shift) { FINE_M } else { SNAP_M };
                 // The movement is rounded, not the position, so that a coordinate that is not moved stays exactly as it is.
                 let moved_m =
-                    |axis: usize| ((pointer_m[axis] - now.from_m[axis]) / snap_m).round() * snap_m;
+                    |axis: usize| ((pointer_m[axis] - from_m[axis]) / snap_m).round() * snap_m;
                 let [y_m, z_m] = self.next.handle_m(step);
                 let to_m = [y_m + moved_m(0), z_m + moved_m(1)];
                 let stairs = self.next.with_handle_at(step, to_m);

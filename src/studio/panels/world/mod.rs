@@ -115,7 +115,12 @@ impl WorldPanel {
                 ground_switch(ui, run, commands);
             }
             if section == Stairs::SECTION {
-                stairs_row(ui, run, commands);
+                ui.horizontal_wrapped(|ui| {
+                    stairs_choice(ui, run, commands);
+                    let hint = "Drag the edges of the steps, change each step in a table, and save the stairs";
+                    let edit = Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs));
+                    CommandButton::new("Edit…", hint, edit).show(ui, commands);
+                });
             }
             if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
                 on_stage.ui(ui, *surface);
@@ -173,16 +178,6 @@ const READ_OUT: [(Section, ReadSurface); 3] = [
     (Trial::GROUND, ReadSurface::Ground),
     (AgentSettings::SKIN, ReadSurface::Skin),
 ];
-
-/// Draws the selection of known stairs, and the button that opens their editor.
-fn stairs_row(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        stairs_choice(ui, run, commands);
-        let hint = "Drag the edges of the steps, change each step in a table, and save the stairs";
-        let edit = Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs));
-        CommandButton::new("Edit…", hint, edit).show(ui, commands);
-    });
-}
 
 /// Draws the switch that gives the ground its own surface.
 fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
