@@ -154,6 +154,16 @@ fn unsensing(kind: ControllerKind) -> &'static str {
     }
 }
 
+/// Name of a built-in champion that senses its surroundings.
+const FEELER: &str = "feeler";
+
+/// Draws the button that shows a snake with senses.
+fn feeler_button(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    let show = Command::Library(LibraryCommand::Replay(SavePlace::Shipped(FEELER)));
+    let hint = "Replay a built-in champion whose limbs react to what they touch";
+    CommandButton::new("Show me a snake that feels", hint, show).show(ui, commands);
+}
+
 /// Draws the buttons that select the lane.
 fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
     if view.racers.len() < 2 {
