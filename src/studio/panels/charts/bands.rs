@@ -60,7 +60,12 @@ pub(super) fn view(
     let skipped = (known.len() - 1) % every;
     let drawn: Vec<&GenerationReport> =
         known.iter().skip(skipped).step_by(every).copied().collect();
-    let lives = lives(&known);
+    let mut lives = Lives::new();
+    for report in &known {
+        for species in &report.species {
+            lives.entry(species.id).or_insert([report.generation; 2])[1] = report.generation;
+        }
+    }
     let x = axis_of_finished(reports.len());
     let most = known.iter().map(|report| report.evaluations).max().unwrap_or(1);
     let y = Axis::count("Snakes", 0.0..=f64::from(most));
@@ -85,16 +90,6 @@ pub(super) fn view(
 
 /// First and last generation of each band, by the band's number.
 type Lives = BTreeMap<u32, [u32; 2]>;
-
-fn lives(reports: &[&GenerationReport]) -> Lives {
-    let mut lives = Lives::new();
-    for report in reports {
-        for species in &report.species {
-            lives.entry(species.id).or_insert([report.generation; 2])[1] = report.generation;
-        }
-    }
-    lives
-}
 
 /// Returns the number of snakes in the bands below this one, and in this band. Bands are stacked by their numbers.
 fn place(species: &[SpeciesCount], id: u32) -> [u32; 2] {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake, place_of};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::genome::{BodyChange, Genome};
@@ -181,10 +181,7 @@ fn of_records(reports: &[GenerationReport]) -> Vec<Structure> {
         let last = structures.last().map(|last| last.genome.body.block_ids());
         if last != Some(champion.genome.body.block_ids()) {
             structures.push(Structure {
-                place: IndividualId {
-                    generation: champion.origin.generation,
-                    individual: champion.origin.individual,
-                },
+                place: place_of(champion),
                 genome: Arc::new(champion.genome.clone()),
                 fitness: Some(fitness),
                 before: best,

@@ -111,7 +111,13 @@ impl ChartsPanel {
                 }
                 let view = self.known.as_ref().and_then(|(.., view)| view.as_ref());
                 let view = view.filter(|view| !view.figure.is_empty());
-                (view.ok_or_else(|| reason(kind, run)), shown)
+                let reason = || match kind {
+                    ChartKind::Front if run.exploration().is_some() => {
+                        "No snake has ended ahead of its starting position yet.".to_owned()
+                    }
+                    _ => kind.empty_text(),
+                };
+                (view.ok_or_else(reason), shown)
             }
         };
         match view {
@@ -182,16 +188,6 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),
         ChartKind::Torques | ChartKind::Methods => None,
-    }
-}
-
-/// Returns the reason why a chart of the run is empty.
-fn reason(kind: ChartKind, run: &CurrentRun) -> String {
-    match kind {
-        ChartKind::Front if run.exploration().is_some() => {
-            "No snake has ended ahead of its starting position yet.".to_owned()
-        }
-        _ => kind.empty_text(),
     }
 }
 

@@ -3,10 +3,9 @@
 
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape, Version, snake_of_generation};
+use super::view::{ChartHit, ChartView, HitShape, Version, place_of, snake_of_generation};
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
-use snakes_core::evolve::IndividualId;
 use snakes_core::genome::{Genome, JointCommands};
 use snakes_core::score::{KeyframeHistory, Rollout, Trial};
 use snakes_lab::plot::{Axis, Chart, Figure, Role, Series, Shape};
@@ -96,7 +95,7 @@ impl TorqueComparison {
 /// Returns the name and the genome of the nearest ancestor with different genes. An elite that survives unchanged is
 /// recorded as its own parent.
 fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)> {
-    let mut place = place_of(of);
+    let mut place = place_of(of.champion());
     if of.source() != ChampionSource::Run(run.number()) {
         return None;
     }
@@ -111,17 +110,11 @@ fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)
     }
 }
 
-/// Returns the place of a snake in the run that found it.
-fn place_of(staged: &StagedChampion) -> IndividualId {
-    let origin = &staged.champion().origin;
-    IndividualId { generation: origin.generation, individual: origin.individual }
-}
-
 impl Subject {
     /// Creates the subject for a snake on the stage, in the world in which it is shown. `run` is the number of the current run.
     fn staged(staged: &StagedChampion, run: u32) -> Self {
         let name = match staged.source() {
-            ChampionSource::Run(_) => snake_of_generation(place_of(staged)),
+            ChampionSource::Run(_) => snake_of_generation(place_of(staged.champion())),
             _ => staged.name().to_owned(),
         };
         let beginning = staged.beginning_in_words().map_or(String::new(), |of| format!(", {of}"));

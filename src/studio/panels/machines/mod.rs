@@ -182,8 +182,18 @@ fn connected(
         }
         title(ui, heading);
         explain(ui, &format!("Type this on {other}, where this program is installed:"));
-        worker_command(ui, &link.address, commands);
-        queues(ui, &link.address, known, machines, commands);
+        let address = &link.address;
+        command_line(ui, &format!("snakes worker --nats {address}"), commands);
+        let is_own =
+            |part: &str| ["//127.", "//localhost", "//[::1]"].iter().any(|own| part.contains(own));
+        if address.split(',').all(is_own) {
+            explain(
+                ui,
+                "This address works on this computer only. On another one, type this computer's name or number in the \
+                 network in its place.",
+            );
+        }
+        queues(ui, address, known, machines, commands);
     }
 }
 
@@ -199,20 +209,6 @@ fn evaluating_computers(run: &CurrentRun, workers: usize) -> String {
             format!("Workers join your run with its next generation, beside {threads}.")
         }
         (true, true) => format!("The workers and {threads} compute your run."),
-    }
-}
-
-/// Draws the command that starts a worker on another computer.
-fn worker_command(ui: &mut egui::Ui, address: &str, commands: &mut Vec<Command>) {
-    command_line(ui, &format!("snakes worker --nats {address}"), commands);
-    let is_own =
-        |part: &str| ["//127.", "//localhost", "//[::1]"].iter().any(|own| part.contains(own));
-    if address.split(',').all(is_own) {
-        explain(
-            ui,
-            "This address works on this computer only. On another one, type this computer's name or number in the network \
-             in its place.",
-        );
     }
 }
 

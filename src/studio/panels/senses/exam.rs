@@ -12,7 +12,6 @@ use crate::studio::state::stairs_exams::{StairsExams, no_exam_because};
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{cancellable_progress, explain, folded, title_text};
 use crate::studio::ui::theme;
-use snakes_core::score::StairsGrid;
 
 use stairs_map::{StairsMap, legend};
 
@@ -30,7 +29,22 @@ pub(super) fn exam(
     folded(ui, header, hint, |ui| {
         let staged = &lane.staged;
         match exams.of(staged.champion()) {
-            Some(grids) => results(ui, staged, grids, commands),
+            Some([]) => {}
+            // The grids are side by side, with a common axis of the rises.
+            Some(grids @ [first, ..]) => {
+                for map in StairsMap::side_by_side(ui, grids, staged) {
+                    if let Some(cell) = map.ui(ui) {
+                        let watch = ExamCommand::Watch { suite: map.grid.suite, cell };
+                        commands.push(Command::Exam(watch));
+                    }
+                }
+                legend(ui, first, &staged.champion().trial);
+                if staged.is_on_stairs_of_exam() {
+                    own_stairs_button(ui, staged, commands);
+                } else {
+                    explain(ui, "Click a cell to watch the snake on those stairs.");
+                }
+            }
             None => invitation(ui, staged, exams, commands),
         }
         progress(ui, exams, commands);
@@ -67,27 +81,6 @@ fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>)
     let words = format!("{done} of {trials} trials");
     if cancellable_progress(ui, "Stop the exam", share, &words) {
         commands.push(Command::Exam(ExamCommand::Cancel));
-    }
-}
-
-/// Draws the grids of the exam side by side, with a common axis of the rises.
-fn results(
-    ui: &mut egui::Ui,
-    staged: &StagedChampion,
-    grids: &[StairsGrid],
-    commands: &mut Vec<Command>,
-) {
-    let Some(first) = grids.first() else { return };
-    for map in StairsMap::side_by_side(ui, grids, staged) {
-        if let Some(cell) = map.ui(ui) {
-            commands.push(Command::Exam(ExamCommand::Watch { suite: map.grid.suite, cell }));
-        }
-    }
-    legend(ui, first, &staged.champion().trial);
-    if staged.is_on_stairs_of_exam() {
-        own_stairs_button(ui, staged, commands);
-    } else {
-        explain(ui, "Click a cell to watch the snake on those stairs.");
     }
 }
 

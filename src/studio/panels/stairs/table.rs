@@ -49,13 +49,19 @@ pub(super) fn table(
                 length(ui, tread_m, &name, 0.1..=20.0, |to_m| stairs.with_step_tread(step, to_m));
             response.edit = rise.or(tread).or(response.edit.take());
             explain(ui, &format!("{:.2} m", stairs.height_m(number)));
-            let [copied, removed] = ui.horizontal(|ui| buttons(ui, number)).inner;
-            if copied {
-                response.edit = Some(StairsEdit::complete(stairs.with_step_copied(step)));
-            }
-            if removed {
-                response.edit = Some(StairsEdit::complete(stairs.without_step(step)));
-            }
+            ui.horizontal(|ui| {
+                let copy = Stairs::with_step_copied as fn(&_, _) -> _;
+                for (sign, verb, hint, change) in [
+                    ("+", "Copy", "Add a copy of this step behind it", copy),
+                    ("–", "Remove", "Remove this step", Stairs::without_step),
+                ] {
+                    let name = format!("{verb} step {number}");
+                    let button = named(ui.small_button(sign), egui::WidgetType::Button, &name);
+                    if button.on_hover_text(hint).clicked() {
+                        response.edit = Some(StairsEdit::complete(change(stairs, step)));
+                    }
+                }
+            });
             let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), row.rect.y_range());
             if ui.rect_contains_pointer(line) {
                 response.pointed = response.pointed.or(Some(step));
@@ -63,18 +69,6 @@ pub(super) fn table(
             ui.end_row();
         }
     });
-}
-
-/// Draws the buttons of a row. Returns whether to copy the step, and whether to remove it.
-fn buttons(ui: &mut egui::Ui, number: u32) -> [bool; 2] {
-    let mut is_clicked = |sign: &str, name: String, hint: &str| {
-        let button = named(ui.small_button(sign), egui::WidgetType::Button, &name);
-        button.on_hover_text(hint).clicked()
-    };
-    let copied =
-        is_clicked("+", format!("Copy step {number}"), "Add a copy of this step behind it");
-    let removed = is_clicked("–", format!("Remove step {number}"), "Remove this step");
-    [copied, removed]
 }
 
 /// Draws a field for a length that can be dragged or typed. Returns the change of the

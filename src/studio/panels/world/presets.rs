@@ -9,7 +9,6 @@ use crate::studio::state::run_names::{PRESET_TITLES, with_title};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
-use snakes_core::save::{KnownFiles, Preset};
 
 /// Draws the selection of presets, and the button and field that save a new one. Collects the user's commands.
 pub(super) fn preset_choice(
@@ -18,13 +17,36 @@ pub(super) fn preset_choice(
     run: &CurrentRun,
     commands: &mut Vec<Command>,
 ) {
+    let (presets, chosen) = (&run.context.presets, run.next_preset());
     ui.horizontal_wrapped(|ui| {
         ui.label("Preset");
+        let mut picked = None;
         let list = egui::ComboBox::from_id_salt("preset")
             .selected_text(with_title(&run.next_preset_in_words()))
             .width(theme::COMBO_WIDTH)
             .height(theme::list_height(ui))
-            .show_ui(ui, |ui| presets(ui, &run.context.presets, run.next_preset(), commands));
+            .show_ui(ui, |ui| {
+                // The rows are close together, so that all fit into a small window.
+                ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
+                ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
+                for (group, of_group) in &PRESET_TITLES {
+                    if !group.is_empty() {
+                        explain(ui, group);
+                    }
+                    for (name, title) in *of_group {
+                        let preset = presets.built_in().iter().find(|preset| preset.name == *name);
+                        let about = preset.map_or("", |preset| &preset.about);
+                        let row = ui.selectable_label(chosen == *name, *title);
+                        if row.on_hover_text(format!("{about}\n\nPreset {name}")).clicked() {
+                            picked = Some(*name);
+                        }
+                    }
+                }
+                let own = own_files(ui, presets, "Your presets", Some(chosen), |own| &own.about);
+                picked = own.map(|own| own.name.as_str()).or(picked);
+            });
+        let picked = picked.map(|name| PlanCommand::SetPreset(name.to_owned()));
+        commands.extend(picked.map(Command::Plan));
         let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
         if list.clicked() {
             // The folder may contain new files.
@@ -32,40 +54,12 @@ pub(super) fn preset_choice(
         }
         list.on_hover_text("Replaces all settings of the next run");
         let hint = "Save the settings of the next run under a name, to use them again later";
-        let suggestion = || run.context.presets.name_for_copy(run.next_preset());
+        let suggestion = || presets.name_for_copy(chosen);
         name.button(ui, ("Save as preset…", hint), suggestion);
     });
-    if let Some(name) = name.field(ui, &run.context.presets) {
+    if let Some(name) = name.field(ui, presets) {
         commands.push(Command::Plan(PlanCommand::StorePreset(name)));
     }
-}
-
-/// Draws the list of presets.
-fn presets(
-    ui: &mut egui::Ui,
-    presets: &KnownFiles<Preset>,
-    chosen: &str,
-    commands: &mut Vec<Command>,
-) {
-    // The rows are close together, so that all fit into a small window.
-    ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
-    ui.spacing_mut().interact_size.y = theme::GAP * 2.5;
-    for (group, of_group) in &PRESET_TITLES {
-        if !group.is_empty() {
-            explain(ui, group);
-        }
-        for (name, title) in *of_group {
-            let preset = presets.built_in().iter().find(|preset| preset.name == *name);
-            let about = preset.map_or("", |preset| &preset.about);
-            let row = ui.selectable_label(chosen == *name, *title);
-            if row.on_hover_text(format!("{about}\n\nPreset {name}")).clicked() {
-                commands.push(Command::Plan(PlanCommand::SetPreset((*name).to_owned())));
-            }
-        }
-    }
-    let preset = own_files(ui, presets, "Your presets", Some(chosen), |preset| &preset.about);
-    commands
-        .extend(preset.map(|preset| Command::Plan(PlanCommand::SetPreset(preset.name.clone()))));
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::studio::state::current_run::explored_run;
-use snakes_core::evolve::{Champion, Parents};
+use snakes_core::evolve::{Champion, IndividualId, Parents};
 use snakes_core::genome::{ControllerGenes, ControllerKind};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::save::shipped_champion;

@@ -5,7 +5,7 @@ use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::panels::testing::{Sent, clicked, climber, panel, random_snake, shows};
 use egui_kittest::kittest::Queryable;
 use snakes_core::genome::ControllerKind;
-use snakes_core::score::{ExamEnd, ExamSuite};
+use snakes_core::score::{ExamEnd, ExamSuite, StairsGrid};
 
 /// Returns the built-in champion, which has a gait and no senses.
 fn gait() -> StagedChampion {
