@@ -23,10 +23,6 @@ pub(crate) struct TextMeshes {
     pub on_flag: Handle<StandardMaterial>,
 }
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<TextMeshes>();
-}
-
 impl FromWorld for TextMeshes {
     fn from_world(world: &mut World) -> Self {
         let (atlas, picture) = Atlas::draw();

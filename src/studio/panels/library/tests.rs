@@ -77,13 +77,13 @@ fn library() -> Library {
     ])
 }
 
-fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
+fn harness(library: Library, size: [f32; 2]) -> Test<'static> {
     let mut panel = LibraryPanel::default();
     // Two clicks count as a double click only if the frames are short.
     let builder = Harness::builder().with_size(egui::Vec2::from(size)).with_step_dt(1.0 / 60.0);
     let mut harness = builder.build_ui_state(
         move |ui, commands: &mut Vec<Command>| {
-            panel.ui(ui, library, &UndoHistory::default(), commands)
+            panel.ui(ui, &library, &UndoHistory::default(), commands)
         },
         Vec::new(),
     );
@@ -93,7 +93,7 @@ fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
 }
 
 /// Calls `act`, and returns the commands to the library that were sent afterwards.
-fn sent(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
+fn sent(library: Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
     let mut harness = harness(library, [420.0, 800.0]);
     act(&mut harness);
     harness.run();
@@ -124,7 +124,6 @@ fn press(harness: &mut Test<'_>, modifiers: Modifiers, key: Press) {
 
 #[test]
 fn each_button_sends_its_command_for_the_selected_save() {
-    let library = library();
     for (row, button, request) in [
         ("alpha", "Replay", LibraryCommand::Replay(file("alpha"))),
         ("beta", "Duplicate", LibraryCommand::Duplicate(vec![file("beta")])),
@@ -132,13 +131,13 @@ fn each_button_sends_its_command_for_the_selected_save() {
         ("climb-seed8-0123abcd", "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
         ("fast", "Duplicate", LibraryCommand::Duplicate(vec![SavePlace::Shipped("fast")])),
     ] {
-        let found = sent(&library, |harness| {
+        let found = sent(library(), |harness| {
             select(harness, row);
             clicked(harness, button);
         });
         assert_eq!(found, [request], "{button} of {row}");
     }
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "alpha");
     clicked(&mut harness, "New run from this");
     let expected = Command::Plan(PlanCommand::StartFromSave(file("alpha")));
@@ -147,14 +146,13 @@ fn each_button_sends_its_command_for_the_selected_save() {
 
 #[test]
 fn impossible_actions_are_disabled() {
-    let library = library();
     for (row, button) in [
         ("broken", "Replay"),
         ("fast", "Delete"),
         ("fast", "Rename"),
         ("climb-seed8-0123abcd", "Duplicate"),
     ] {
-        let found = sent(&library, |harness| {
+        let found = sent(library(), |harness| {
             select(harness, row);
             assert!(harness.get_by_label(button).accesskit_node().is_disabled(), "{button}");
             clicked(harness, button);
@@ -165,8 +163,7 @@ fn impossible_actions_are_disabled() {
 
 #[test]
 fn a_stopped_run_is_resumed_and_lists_its_champions() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "climb-seed8-0123abcd");
     clicked(&mut harness, "Resume");
     assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
@@ -198,8 +195,7 @@ fn the_details_of_the_run_that_is_open_in_this_window_say_so() {
 
 #[test]
 fn shift_and_control_select_several_saves_for_a_race() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         select(harness, "alpha");
         row_of(harness, "beta").click_modifiers(Modifiers::SHIFT);
         harness.run();
@@ -215,8 +211,7 @@ fn shift_and_control_select_several_saves_for_a_race() {
 
 #[test]
 fn a_double_click_replays_a_save() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         row_of(harness, "beta").click();
         row_of(harness, "beta").click();
         harness.run();
@@ -226,9 +221,8 @@ fn a_double_click_replays_a_save() {
 
 #[test]
 fn every_mouse_action_has_a_key() {
-    let library = library();
     let none = Modifiers::NONE;
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         harness.get_by_label_contains("Saves: ").focus();
         harness.run();
         // The newest save is the first row.
@@ -254,8 +248,7 @@ fn every_mouse_action_has_a_key() {
 
 #[test]
 fn the_search_shows_only_saves_that_match_all_words() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     type_into(&mut harness, "Search the library", "damaged");
     assert!(shows(&harness, "1 of 5 saves"));
     assert!(shows(&harness, "broken, damaged: cut off at line 3"));
@@ -267,8 +260,7 @@ fn the_search_shows_only_saves_that_match_all_words() {
 
 #[test]
 fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
-    let library = library();
-    let mut harness = harness(&library, [900.0, 800.0]);
+    let mut harness = harness(library(), [900.0, 800.0]);
     let top = |harness: &Test<'_>, name: &str| row_of(harness, name).rect().top();
     assert!(top(&harness, "alpha") < top(&harness, "beta"), "the newest first");
     clicked(&mut harness, "Sort by name");
@@ -279,9 +271,8 @@ fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
 
 #[test]
 fn everything_fits_into_a_narrow_or_low_panel() {
-    let library = library();
     for size in [[300.0, 700.0], [300.0, 200.0], [559.0, 400.0], [900.0, 300.0]] {
-        let mut harness = harness(&library, size);
+        let mut harness = harness(library(), size);
         for name in ["alpha", "climb-seed8-0123abcd"] {
             if size[1] > 300.0 {
                 select(&mut harness, name);
@@ -301,8 +292,7 @@ fn everything_fits_into_a_narrow_or_low_panel() {
 
 #[test]
 fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 560.0]);
+    let mut harness = harness(library(), [420.0, 560.0]);
     let list = |harness: &Test<'_>| harness.get_by_label_contains("Saves: ").rect();
     let list_height = |harness: &Test<'_>| list(harness).height();
     let before = list_height(&harness);
@@ -332,7 +322,7 @@ fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
     let listed = std::iter::once(LibraryEvent::Listed(entries));
     let library = Library::of(listed.chain(read).chain([LibraryEvent::Done(1)]).collect());
     // The panel of a window of 1280 by 720 points.
-    let mut harness = harness(&library, [384.0, 650.0]);
+    let mut harness = harness(library, [384.0, 650.0]);
     let rows = |harness: &Test<'_>| {
         harness.get_by_label_contains("Saves: ").rect().height() / theme::LIBRARY_ROW_HEIGHT
     };
@@ -345,8 +335,7 @@ fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
 
 #[test]
 fn a17_delete_concerns_no_save_that_the_search_hides() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         select(harness, "alpha");
         row_of(harness, "beta").click_modifiers(Modifiers::COMMAND);
         harness.run();
@@ -354,7 +343,7 @@ fn a17_delete_concerns_no_save_that_the_search_hides() {
         clicked(harness, "Delete");
     });
     assert_eq!(found, [LibraryCommand::Delete(vec![file("beta")])]);
-    let hidden = sent(&library, |harness| {
+    let hidden = sent(library(), |harness| {
         select(harness, "alpha");
         type_into(harness, "Search the library", "beta");
         assert!(!shows(harness, "Delete"), "nothing that is shown is selected");
@@ -364,8 +353,7 @@ fn a17_delete_concerns_no_save_that_the_search_hides() {
 
 #[test]
 fn a13_space_in_the_list_pauses_the_stage() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::Space);
     assert_eq!(*harness.state(), [Command::Player(PlayerCommand::Toggle)]);
@@ -375,7 +363,7 @@ fn a13_space_in_the_list_pauses_the_stage() {
 fn only_the_visible_rows_of_ten_thousand_saves_are_laid_out() {
     let entries = (0..10_000).map(|number| entry(file(&format!("save {number:05}")), number + 1));
     let library = Library::of(vec![LibraryEvent::Listed(entries.collect())]);
-    let mut harness = harness(&library, [420.0, 600.0]);
+    let mut harness = harness(library, [420.0, 600.0]);
     let rows = |harness: &Test<'_>| {
         let is_row = |label: String| label.starts_with("save 0");
         harness.query_all_by(|node| node.label().is_some_and(is_row)).count()
@@ -407,7 +395,7 @@ fn long_operations_can_be_cancelled_and_short_ones_show_no_progress() {
             &mut UndoHistory::default(),
             &mut Notices::default(),
         );
-        let found = sent(&library, |harness| {
+        let found = sent(library, |harness| {
             assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
             if shown {
                 clicked(harness, "Cancel");

@@ -22,8 +22,7 @@ fn note(place: SavePlace, text: &str) -> Command {
 
 #[test]
 fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
     assert!(harness.get_by_label("New name").is_focused());
@@ -51,8 +50,7 @@ fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
 
 #[test]
 fn the_name_field_leaves_the_second_line_and_the_next_row_where_they_are() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     let [row, next] = ["alpha", "beta"].map(|name| row_of(&harness, name).rect());
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
@@ -64,10 +62,9 @@ fn the_name_field_leaves_the_second_line_and_the_next_row_where_they_are() {
 
 #[test]
 fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
-    let library = library();
     let run = SavePlace::Run(run_folder());
     for name in ["Ice: 1/2", ""] {
-        let mut harness = harness(&library, [420.0, 900.0]);
+        let mut harness = harness(library(), [420.0, 900.0]);
         select(&mut harness, "climb-seed8-0123abcd");
         clicked(&mut harness, "Rename");
         press(&mut harness, Modifiers::NONE, Press::Backspace);
@@ -81,8 +78,7 @@ fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
 
 #[test]
 fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     for (row, place) in
         [("alpha", file("alpha")), ("climb-seed8-0123abcd", SavePlace::Run(run_folder()))]
     {
@@ -106,8 +102,7 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
 
 #[test]
 fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "alpha");
     harness.get_by_label("Notes").focus();
     harness.run();
@@ -119,8 +114,7 @@ fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
 
 #[test]
 fn import_and_export_ask_with_the_systems_dialog() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     clicked(&mut harness, "Import");
     select(&mut harness, "alpha");
     clicked(&mut harness, "Export");
@@ -140,7 +134,7 @@ fn without_a_system_dialog_a_field_for_the_path_opens_with_the_focus_and_the_rea
     ] {
         let mut library = library();
         library.ask_in_panel(question.clone(), "This desktop offers no dialog.".to_owned());
-        let mut harness = harness(&library, [420.0, 800.0]);
+        let mut harness = harness(library, [420.0, 800.0]);
         assert!(harness.query_by_label("This desktop offers no dialog.").is_some());
         if !typed.is_empty() {
             type_text(&mut harness, typed);
@@ -154,12 +148,15 @@ fn without_a_system_dialog_a_field_for_the_path_opens_with_the_focus_and_the_rea
 
 #[test]
 fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
-    let mut library = library();
-    library.request_export();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let requested = || {
+        let mut library = library();
+        library.request_export();
+        library
+    };
+    let mut harness = harness(requested(), [420.0, 800.0]);
     // Removes the commands that were sent at the start.
     assert_eq!(taken(&mut harness), []);
-    let mut panel = LibraryPanel::default();
+    let (mut panel, library) = (LibraryPanel::default(), requested());
     panel.selection.only(&file("alpha"));
     panel.take_requests(&library);
     panel.take_requests(&library);
