@@ -64,8 +64,12 @@ pub(super) fn plant(
             writing.text(&text, DIGIT_M, TextPlacement { middle, right, up: Dir3::Z });
         }
         let place = Transform::from_translation(foot(&lane.trial().stairs, y_m));
-        let [post, cloth] =
-            [post(), sheet(middle, width_m)].map(|solid| meshes.add(to_mesh(solid)));
+        let (mut post, mut cloth) = (MeshBuilder::default(), MeshBuilder::default());
+        post.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
+        post.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0, BALL_SIDES);
+        let size = Vec3::new(CLOTH_HALF_M * 2.0, width_m, CLOTH_M);
+        cloth.rounded_box(middle, size, CLOTH_HALF_M, 1);
+        let [post, cloth] = [post, cloth].map(|solid| meshes.add(to_mesh(solid)));
         let text = piece(&meshes.add(writing.into_mesh()), &lettering.on_flag);
         let post = (Flag, place, piece(&post, &props.post), ChildOf(entity));
         let mut post = commands.spawn(post);
@@ -84,20 +88,6 @@ fn is_marked(lane: &Lane, run: u32) -> bool {
 fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
     let x_m = ASIDE_M - stairs.width_m / 2.0;
     Vec3::new(x_m, y_m, stairs.surface_z_m(x_m, y_m))
-}
-
-fn post() -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    solid.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
-    solid.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0, BALL_SIDES);
-    solid
-}
-
-fn sheet(middle: Vec3, width_m: f32) -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    let size = Vec3::new(CLOTH_HALF_M * 2.0, width_m, CLOTH_M);
-    solid.rounded_box(middle, size, CLOTH_HALF_M, 1);
-    solid
 }
 
 #[cfg(test)]

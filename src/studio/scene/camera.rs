@@ -246,24 +246,22 @@ fn glide(
         covers.clear();
         covers.extend(area.covers());
     }
-    if rig.frames_all() {
-        for lane in lanes.iter().filter(|lane| !lane.is_ghost()) {
+    if rig.follows {
+        let followed = lanes.iter().filter(|lane| !lane.is_ghost());
+        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
-            points.extend([half_width, -half_width].map(|aside| middle + aside));
-            points.extend([Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along));
+            let ends = [half_width, -half_width, Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M];
+            points.extend(ends.map(|end| middle + end));
             snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.framing(anchor, points, snakes, area.aspect(), covers);
-    } else if rig.follows {
-        let followed = lanes.iter().filter(|lane| !lane.is_ghost());
-        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number())) {
-            snakes.extend(lane.last_poses().iter().map(|pose| pose.translation + lane.offset()));
-        }
-        let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.beside(anchor, snakes, area.aspect(), covers);
+        goal = if rig.frames_all() {
+            goal.framing(anchor, points, snakes, area.aspect(), covers)
+        } else {
+            goal.beside(anchor, snakes, area.aspect(), covers)
+        };
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };

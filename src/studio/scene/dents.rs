@@ -6,6 +6,7 @@ use bevy::prelude::*;
 
 use super::meshes::to_fading_mesh;
 use super::surface_look::SurfaceLook;
+use super::surface_texture::rise;
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::{Pose, Stairs};
 use snakes_lab::mesh::MeshBuilder;
@@ -56,8 +57,7 @@ pub(super) fn patch() -> Mesh {
             libm::powf((at.x * 2.0).abs(), 4.0) + libm::powf((at.y * 2.0).abs(), 4.0),
             0.25,
         );
-        let opacity = ((1.0 - out) / 0.5).clamp(0.0, 1.0);
-        opacity * opacity * (3.0 - 2.0 * opacity)
+        rise(1.0 - out, 0.0, 0.5)
     })
 }
 

@@ -20,16 +20,9 @@ use snakes_core::world::{JointPlan, Pose};
 #[derive(Component, Debug)]
 struct SnakePart(usize);
 
-/// Meshes of a limb, and the bind poses of its parts.
-#[derive(Debug, Clone)]
-struct LimbMeshes {
-    block: Handle<Mesh>,
-    white: Handle<Mesh>,
-    dark: Handle<Mesh>,
-    collar: Handle<Mesh>,
-    /// Transforms from the frame of a soft limb to those of its parts at rest.
-    bind_poses: Handle<SkinnedMeshInverseBindposes>,
-}
+/// Meshes of a limb's block, white details, dark details and collar, and the transforms from the frame of a soft limb to those of its
+/// parts at rest.
+type LimbMeshes = ([Handle<Mesh>; 4], Handle<SkinnedMeshInverseBindposes>);
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<StageMode>()
@@ -92,28 +85,26 @@ fn build(
             };
             let shapes = shapes.get(&shape, MAX_SHAPES, || {
                 let solids = [shape.block(), shape.white(), shape.dark(), shape.collar()];
-                let [block, white, dark, collar] =
-                    solids.map(|solid| meshes.add(shape.mesh_of(solid)));
                 let bind_poses = bind_poses.add(shape.bind_poses());
-                LimbMeshes { block, white, dark, collar, bind_poses }
+                (solids.map(|solid| meshes.add(shape.mesh_of(solid))), bind_poses)
             });
+            let ([block, white, dark, collar], inverse_bindposes) = shapes;
             // The meshes of a rigid limb are children of its part. Those of a soft limb follow all of its parts,
             // whatever their own transform is.
             let holder = if bones.len() > 1 { entity } else { bones[0] };
             let drawn = |mesh, material| (piece(mesh, material), ChildOf(holder));
             let mut pieces = vec![
-                commands.spawn(drawn(&shapes.block, color)).id(),
+                commands.spawn(drawn(&block, color)).id(),
                 // The block already casts the shadow.
-                commands.spawn((drawn(&shapes.white, &paints[2]), NotShadowCaster)).id(),
-                commands.spawn((drawn(&shapes.dark, &paints[3]), NotShadowCaster)).id(),
+                commands.spawn((drawn(&white, &paints[2]), NotShadowCaster)).id(),
+                commands.spawn((drawn(&dark, &paints[3]), NotShadowCaster)).id(),
             ];
             if limb == 0 {
-                let collar = drawn(&shapes.collar, props.of_lane(lane.number()));
+                let collar = drawn(&collar, props.of_lane(lane.number()));
                 let is_mark = (LaneMark, Visibility::Hidden);
                 pieces.push(commands.spawn((collar, is_mark, NotShadowCaster)).id());
             }
             if bones.len() > 1 {
-                let inverse_bindposes = shapes.bind_poses;
                 let skin = (SkinnedMesh { inverse_bindposes, joints: bones }, NoFrustumCulling);
                 for piece in pieces {
                     commands.entity(piece).insert(skin.clone());

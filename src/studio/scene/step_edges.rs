@@ -13,10 +13,7 @@ use snakes_lab::mesh::MeshBuilder;
 
 /// Strip on the edge of a step, with the index of the step; the lowest is 0.
 #[derive(Component, Debug)]
-pub(super) struct StepEdge {
-    step: u32,
-    is_lit: bool,
-}
+pub(super) struct StepEdge(u32);
 
 /// Depth of a strip along the tread, and its height along the riser, in metres.
 const DEPTH_M: f32 = 0.12;
@@ -41,13 +38,13 @@ pub(super) fn spawn(
         let ahead = if stairs.step_rise_m(step) < 0.0 { -1.0 } else { 1.0 };
         let to_middle = Vec3::new(0.0, (DEPTH_M / 2.0 - OUT_M) * ahead, OUT_M - HEIGHT_M / 2.0);
         lane.spawn((
-            StepEdge { step, is_lit: false },
+            StepEdge(step),
             piece(&props.cube, &props.dark_strip),
             box_transform(edge + to_middle, size),
             NotShadowCaster,
         ));
         lane.spawn((
-            StepEdge { step, is_lit: false },
+            StepEdge(step),
             piece(glow, &props.glow),
             // Rotated, not mirrored: a mirrored mesh would show its back faces, which are not drawn.
             Transform::from_translation(edge)
@@ -90,24 +87,23 @@ const GLOW_OPACITY: f32 = 0.65;
 pub(super) fn light(
     lanes: Query<(&Lane, &Children)>,
     props: Res<Props>,
-    mut edges: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
+    mut edges: Query<(&StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
 ) {
     for (lane, children) in lanes.iter().filter(|(lane, _)| !lane.is_ghost()) {
         let middle = lane.drawn_poses().nth(lane.body().middle_part);
         let stairs = &lane.trial().stairs;
         let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
         let mut edges = edges.iter_many_mut(children);
-        while let Some((mut edge, mut material, mut visibility)) = edges.fetch_next() {
-            let is_lit = edge.step < climbed;
-            if edge.is_lit == is_lit {
+        while let Some((edge, mut material, mut visibility)) = edges.fetch_next() {
+            let is_lit = edge.0 < climbed;
+            if material.0 == props.glow {
+                let shown = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
+                visibility.set_if_neq(shown);
                 continue;
             }
-            edge.is_lit = is_lit;
-            if material.0 == props.glow {
-                *visibility = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
-            } else {
-                material.0 =
-                    if is_lit { props.lit_strip.clone() } else { props.dark_strip.clone() };
+            let strip = if is_lit { &props.lit_strip } else { &props.dark_strip };
+            if material.0 != *strip {
+                material.0 = strip.clone();
             }
         }
     }

@@ -47,14 +47,14 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
 }
 
 /// Evolves the runs of a scene, and returns their results.
-fn outcome(preset: &str, sides: &[Side]) -> Vec<Found> {
+fn outcome(preset: &str, sides: &[lesson::Side]) -> Vec<Found> {
     sides
         .iter()
         .map(|side| {
             let (plan, threads) = plan(preset, side).expect("allowed");
             let pool = LocalPool::new(threads).expect("threads");
             let mut experiment = Experiment::new(plan);
-            let mut found = found(side);
+            let mut found = Found::of(side.name);
             while !experiment.is_over() {
                 let report = experiment.run_generation(&pool, &RunControl::default());
                 found.reports.push(report.expect("not cancelled"));
@@ -92,7 +92,7 @@ fn best(found: &Found) -> &Champion {
 fn answer(lesson: usize, scene: usize) -> &'static str {
     let shown = &LESSONS[lesson].scenes[scene];
     let asks = shown.question().expect("a question").asks;
-    shown.answers()[result(lesson, scene).true_answer(asks).expect("known")]
+    shown.answers()[result(lesson, scene).truth(asks).expect("known").answer]
 }
 
 #[test]

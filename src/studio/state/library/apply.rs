@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::Library;
-use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
+use super::batch_jobs::{DELETED, DUPLICATED, EXPORTED, IMPORTED};
 use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
@@ -79,26 +79,22 @@ impl Library {
                 self.keep(label, vec![step], history);
             }
             LibraryCommand::Duplicate(places) => {
-                let (saves, task) = (self.saves.clone(), BatchTask::Act(DUPLICATED));
-                let act = move |place| duplicate(&saves, &place).into();
-                self.carry_out(task, places.clone(), act, history, notices)?;
+                self.carry_out(DUPLICATED, places, duplicate, history, notices)?;
             }
             LibraryCommand::Delete(places) => {
-                let (saves, task) = (self.saves.clone(), BatchTask::Act(DELETED));
-                let act = move |place| delete(&saves, &place).into();
-                self.carry_out(task, places.clone(), act, history, notices)?;
+                self.carry_out(DELETED, places, delete, history, notices)?;
             }
             LibraryCommand::Export { places, to } => {
                 let (saves, to) = (self.saves.clone(), to.clone());
-                let act = move |place| export(&saves, &place, to.as_deref()).into();
-                self.send_out(BatchTask::Act(EXPORTED), places.clone(), act)?;
+                let act = move |place| export(&saves, &place, to.as_deref());
+                self.send_out(EXPORTED, places.clone(), act)?;
             }
             LibraryCommand::Import(paths) => {
                 // Files can be dropped before the library is first opened. Their copies must then be listed as well.
                 self.look()?;
                 let saves = self.saves.clone();
-                let act = move |path: PathBuf| import(&saves, &path).into();
-                self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act)?;
+                let act = move |path: PathBuf| import(&saves, &path);
+                self.send_out(IMPORTED, paths.clone(), act)?;
             }
             LibraryCommand::Examine(_) if self.examination.is_some() => {
                 return Err("An exam is in progress: wait for it, or cancel it".to_owned());
@@ -113,14 +109,12 @@ impl Library {
     }
 
     pub(super) fn look(&mut self) -> Result<(), String> {
-        match &self.reader {
-            Some(reader) => reader.list_again(),
-            None => {
-                let reader = LibraryReader::start(self.saves.clone());
-                let reader =
-                    reader.map_err(|error| format!("The saves cannot be read: {error}"))?;
-                self.reader = Some(reader);
-            }
+        if self.reader.is_some() {
+            self.look_again();
+        } else {
+            let reader = LibraryReader::start(self.saves.clone());
+            self.reader =
+                Some(reader.map_err(|error| format!("The saves cannot be read: {error}"))?);
         }
         Ok(())
     }
@@ -156,7 +150,7 @@ mod tests {
         while tried.library.loading.is_some() {
             tried.take_in();
         }
-        assert!(tried.library.has_loaded());
+        assert!(tried.library.loaded.is_some());
         let problem = tried.apply(&LibraryCommand::ShowLoaded).expect_err("gone");
         assert!(problem.contains("gone"), "{problem}");
         assert!(tried.apply(&LibraryCommand::ShowLoaded).expect("nothing").is_none());
