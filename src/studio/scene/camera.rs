@@ -6,8 +6,6 @@ pub mod mouse;
 pub mod rig;
 pub mod view;
 
-use std::f32::consts::FRAC_PI_4;
-
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -29,7 +27,7 @@ use crate::studio::ui::theme::{Palette, Theme};
 use crate::studio::ui::viewport::StageArea;
 
 use rig::CameraRig;
-use view::CameraView;
+use view::{CameraView, VERTICAL_VIEW_RAD};
 
 /// Returns the transform of a fixed camera, from the default side, that shows the range of y from `from_y_m` to `to_y_m`, in metres.
 pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
@@ -271,9 +269,6 @@ fn glide(
     }
 }
 
-/// Vertical angle of view of the stage, in radians.
-const FIELD_OF_VIEW_RAD: f32 = FRAC_PI_4;
-
 /// Fits the picture of the stage's camera to the area beside the panels: by a viewport or, if the effects of the picture's quality need
 /// the whole window, by a larger angle of view, whose middle is that of the area.
 fn fit_to_area(
@@ -296,7 +291,7 @@ fn fit_to_area(
         Fitted::around(start, size, whole)
     } else {
         let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
-        Fitted { viewport: Some(viewport), part: None, angle_rad: FIELD_OF_VIEW_RAD }
+        Fitted { viewport: Some(viewport), part: None, angle_rad: VERTICAL_VIEW_RAD }
     };
     fitted.apply(&mut camera, &mut projection);
 }
@@ -317,7 +312,7 @@ impl Fitted {
         // The smallest rectangle around the stage with the window's aspect ratio, which the renderer uses to find what is visible.
         let width = size.x.max(size.y * aspect).round();
         let full = Vec2::new(width, (width / aspect).round());
-        let half = libm::tanf(FIELD_OF_VIEW_RAD / 2.0) * full.y / size.y;
+        let half = libm::tanf(VERTICAL_VIEW_RAD / 2.0) * full.y / size.y;
         let middle = start.as_vec2() + size / 2.0;
         let part =
             SubCameraView { full_size: full.as_uvec2(), offset: full / 2.0 - middle, size: window };
@@ -331,12 +326,11 @@ impl Fitted {
         if place(&camera.viewport) != place(&self.viewport) || camera.sub_camera_view != self.part {
             (camera.viewport, camera.sub_camera_view) = (self.viewport, self.part);
         }
-        let is_new =
-            |of: &Projection| matches!(of, Projection::Perspective(of) if of.fov != self.angle_rad);
-        if is_new(projection)
-            && let Projection::Perspective(of) = &mut **projection
+        if let Projection::Perspective(of) = &**projection
+            && of.fov != self.angle_rad
         {
-            of.fov = self.angle_rad;
+            let fitted = PerspectiveProjection { fov: self.angle_rad, ..of.clone() };
+            **projection = Projection::Perspective(fitted);
         }
     }
 }
@@ -352,7 +346,7 @@ mod tests {
             (UVec2::new(385, 29), UVec2::new(895, 584), UVec2::new(1280, 720));
         let fitted = Fitted::around(start, size, window);
         let own = PerspectiveProjection {
-            fov: FIELD_OF_VIEW_RAD,
+            fov: VERTICAL_VIEW_RAD,
             aspect_ratio: size.x as f32 / size.y as f32,
             ..default()
         };

@@ -41,13 +41,11 @@ pub(super) fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<L
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::climber;
 
     #[test]
     fn marks_are_shown_only_beside_other_lanes_and_ghosts_are_none() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let lane = |number| Lane::new(climber(number), number);
         let mut app = App::new();
         app.add_systems(Update, show);
         let mark = app.world_mut().spawn((LaneMark, Visibility::Hidden)).id();

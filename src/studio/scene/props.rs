@@ -127,6 +127,9 @@ impl FromWorld for Props {
             ]
         };
         let [limbs, limbs_of_best] = [0.0, OVER_GHOSTS].map(&mut snake);
+        let ghosts = [0, 1].map(|index| {
+            themed(world, unlit(AlphaMode::Opaque), move |palette| palette.ghosts[index])
+        });
         let of_lane = |number| {
             let color = move |palette: &Palette| in_scene(palette.lane_color(number));
             themed(world, rough(0.7, 0.2), color)
@@ -149,10 +152,7 @@ impl FromWorld for Props {
             ghost_cube,
             limbs,
             limbs_of_best,
-            ghosts: [
-                paint(unlit(AlphaMode::Opaque), |palette| palette.ghosts[0]),
-                paint(unlit(AlphaMode::Opaque), |palette| palette.ghosts[1]),
-            ],
+            ghosts,
             lanes,
             wood: paint(rough(0.8, 0.2), |palette| palette.wood),
             wall: paint(rough(0.8, 0.2), |palette| palette.wall),

@@ -131,13 +131,11 @@ fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Tr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::climber;
 
     /// Creates an app with a lane and a ghost of the same snake.
     fn app() -> App {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let lane = |number| Lane::new(climber(number), number);
         let mut app = App::new();
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()

@@ -34,28 +34,8 @@ impl Library {
                     reader.read_first(places.clone());
                 }
             }
-            LibraryCommand::Replay(place) => {
-                let (place, best) = (place.clone(), self.best_of(place));
-                let is_quick = place.run().is_none() || best.is_some();
-                let name = self.own_name(&place);
-                return self.load(is_quick, move || {
-                    champion_of(&place, name.as_deref(), best).map(Show::solo)
-                });
-            }
-            LibraryCommand::Race(places) => {
-                let places = places.iter().take(MAX_LANES);
-                let racers: Vec<(SavePlace, Option<String>, Option<u32>)> = places
-                    .map(|place| (place.clone(), self.own_name(place), self.best_of(place)))
-                    .collect();
-                let is_quick =
-                    racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());
-                return self.load(is_quick, move || {
-                    let champions = racers
-                        .iter()
-                        .map(|(place, name, best)| champion_of(place, name.as_deref(), *best));
-                    Ok(Show::race(champions.collect::<Result<_, _>>()?))
-                });
-            }
+            LibraryCommand::Replay(place) => return self.race(std::slice::from_ref(place)),
+            LibraryCommand::Race(places) => return self.race(places),
             LibraryCommand::ShowLoaded => return self.loaded.take().transpose(),
             LibraryCommand::ReplayGeneration { run, generation } => {
                 let (run, generation) = (run.clone(), *generation);
@@ -106,6 +86,19 @@ impl Library {
             }
         }
         Ok(None)
+    }
+
+    /// Loads the champions of entries, to show them side by side, or a single one alone.
+    fn race(&mut self, places: &[SavePlace]) -> Result<Option<Show>, String> {
+        let known = |place: &SavePlace| (place.clone(), self.own_name(place), self.best_of(place));
+        let racers: Vec<_> = places.iter().take(MAX_LANES).map(known).collect();
+        let is_quick =
+            racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());
+        self.load(is_quick, move || {
+            let champions =
+                racers.iter().map(|(place, name, best)| champion_of(place, name.as_deref(), *best));
+            Ok(Show::race(champions.collect::<Result<_, _>>()?))
+        })
     }
 
     pub(super) fn look(&mut self) -> Result<(), String> {

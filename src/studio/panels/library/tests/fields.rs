@@ -91,9 +91,7 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
     }
     select(&mut harness, "beta");
     assert_eq!(taken(&mut harness), [], "sent once");
-    harness.get_by_label("Notes").focus();
-    harness.run();
-    type_text(&mut harness, "wrong");
+    type_into(&mut harness, "Notes", "wrong");
     press(&mut harness, Modifiers::NONE, Press::Escape);
     assert_eq!(taken(&mut harness), []);
     select(&mut harness, "fast");
@@ -104,9 +102,7 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
 fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
     let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "alpha");
-    harness.get_by_label("Notes").focus();
-    harness.run();
-    type_text(&mut harness, "slips");
+    type_into(&mut harness, "Notes", "slips");
     select(&mut harness, "beta");
     assert_eq!(taken(&mut harness), [note(file("alpha"), "slips")]);
     assert_eq!(harness.get_by_label("Notes").value(), Some(String::new()));
