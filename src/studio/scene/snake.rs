@@ -58,9 +58,8 @@ fn build(
             let bones: Vec<Entity> = parts
                 .clone()
                 .map(|part| {
-                    let pose = poses[part];
-                    let place = Transform::from_translation(pose.translation);
-                    let place = place.with_rotation(pose.rotation);
+                    let Pose { translation, rotation, .. } = poses[part];
+                    let place = Transform { translation, rotation, ..default() };
                     let mut bone = commands.spawn((SnakePart(part), place, Visibility::default()));
                     bone.insert(ChildOf(entity));
                     if lane.is_ghost() {
@@ -119,10 +118,9 @@ fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Tr
     for (lane, children) in &lanes {
         let mut parts = parts.iter_many_mut(children);
         while let Some((part, mut transform)) = parts.fetch_next() {
-            if let Some(pose) = lane.drawn_poses().nth(part.0) {
-                let place = Transform::from_translation(pose.translation);
-                let size = transform.scale;
-                transform.set_if_neq(place.with_rotation(pose.rotation).with_scale(size));
+            if let Some(Pose { translation, rotation, .. }) = lane.drawn_poses().nth(part.0) {
+                let scale = transform.scale;
+                transform.set_if_neq(Transform { translation, rotation, scale });
             }
         }
     }

@@ -350,11 +350,8 @@ fn take_in(
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
     let reached = lessons.view().filter(|view| view.shows_conclusion);
-    if let Some(title) = reached.map(|view| LESSONS[view.index].title)
-        && !lessons.finished.contains(title)
-    {
-        lessons.finished.insert(title.to_owned());
-    }
+    let finished = reached.map(|view| LESSONS[view.index].title.to_owned());
+    lessons.finished.extend(finished);
     let end_s = end_s(lanes.iter().copied());
     let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.is_over());
     if is_over && playback.is_playing && playback.time_s() >= end_s {

@@ -280,12 +280,8 @@ fn everything_fits_into_a_narrow_or_low_panel() {
         }
         let nodes = harness.get_all_by(|node| node.label().is_some());
         for node in nodes {
-            let rect = node.rect();
-            assert!(
-                rect.right() <= size[0] + 0.5,
-                "{:?} of {size:?}: {rect}",
-                node.accesskit_node().label()
-            );
+            let (rect, label) = (node.rect(), node.accesskit_node().label());
+            assert!(rect.right() <= size[0] + 0.5, "{label:?} of {size:?}: {rect}");
         }
     }
 }
@@ -301,14 +297,7 @@ fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
     assert!(list.height() < before - theme::LIBRARY_ROW_HEIGHT, "{} of {before}", list.height());
     assert!(list.contains_rect(row), "{row} in {list}");
     // Without a selection, the list has its full height again.
-    let held = Modifiers::COMMAND;
-    let at = row.center();
-    harness.event_modifiers(egui::Event::PointerMoved(at), held);
-    for pressed in [true, false] {
-        let button = egui::PointerButton::Primary;
-        let event = egui::Event::PointerButton { pos: at, button, pressed, modifiers: held };
-        harness.event_modifiers(event, held);
-    }
+    row_of(&harness, "fast").click_modifiers(Modifiers::COMMAND);
     harness.run();
     assert_eq!(list_height(&harness), before);
 }

@@ -289,12 +289,9 @@ mod tests {
                 (0.0, 0.2, 0.3),
                 (0.2, 0.0, 0.4),
             ] {
-                let view = CameraView::of(camera_mode, 6).framing_beside(
-                    target,
-                    &points,
-                    aspect,
-                    FreeMargins { left, right, bottom },
-                );
+                let free = FreeMargins { left, right, bottom };
+                let view = CameraView::of(camera_mode, 6);
+                let view = view.framing_beside(target, &points, aspect, free);
                 let places =
                     points.map(|point| view.share_of_picture(target + view.offset, point, aspect));
                 let from = places.iter().map(|at| at.x).fold(1.0, f32::min);

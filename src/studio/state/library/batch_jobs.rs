@@ -67,31 +67,25 @@ pub(super) struct BatchJobs {
 }
 
 impl BatchJobs {
-    /// Returns whether the batch is long enough to show its progress.
-    fn is_long(&self) -> bool {
-        self.batch.total() > MAX_AT_ONCE
-    }
-
-    fn words(&self) -> String {
-        format!("{} {} of {}", self.task.doing(), self.batch.done(), self.batch.total())
+    /// Returns a description such as "Deleting 1200 of 10000" and the finished share from 0 to 1, if the batch is long enough to show them.
+    fn progress(&self) -> Option<(String, f32)> {
+        let (done, total) = (self.batch.done(), self.batch.total());
+        let words = || format!("{} {done} of {total}", self.task.doing());
+        (total > MAX_AT_ONCE).then(|| (words(), done as f32 / total as f32))
     }
 }
 
 impl Library {
-    /// Returns the long batches in progress: a description such as "Deleting 1200 of 10000", and the finished share from 0 to 1.
+    /// Returns description and finished share, from 0 to 1, of the long batches in progress.
     pub fn under_way(&self) -> impl Iterator<Item = (String, f32)> {
-        let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
-            batch.done() as f32 / batch.total().max(1) as f32
-        };
-        let long = self.batches.iter().filter(|job| job.is_long());
-        long.map(move |job| (job.words(), share(&job.batch)))
+        self.batches.iter().filter_map(BatchJobs::progress)
     }
 
     /// Returns the reason why files cannot be changed now, if a long batch is in progress. Undo steps must be undone in order.
     pub fn busy(&self) -> Option<String> {
-        let job = self.batches.iter().find(|job| job.is_long())?;
+        let (job, (words, _)) = self.batches.iter().find_map(|job| Some((job, job.progress()?)))?;
         let noun = if matches!(job.task, BatchTask::Act(_)) { "saves" } else { "files" };
-        Some(format!("{} {noun} is in progress: wait for it, or cancel it", job.words()))
+        Some(format!("{words} {noun} is in progress: wait for it, or cancel it"))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
