@@ -226,22 +226,21 @@ impl Library {
                 format!("{}.{}", undone_in_words(*way, label, &steps), renamed_on_return(&steps))
             }
             (BatchTask::Act(verb), Some(first)) => {
-                format!("{}{}", capital(&listed_steps(*verb, &steps)), ending(*verb, first))
+                let mut said = listed_steps(*verb, &steps) + &ending(*verb, first);
+                // It begins with the verb.
+                said[..1].make_ascii_uppercase();
+                said
             }
         };
         if cancelled > 0 {
             said.push_str(&format!(" Cancelled: {cancelled} of {total} were not processed."));
         }
         let said = said.trim().to_owned();
-        let exported = match (&task, steps.first().and_then(FileStep::place)) {
-            (BatchTask::Act(verb), Some(place)) if *verb == EXPORTED => {
-                place.path().map(Path::to_owned)
-            }
-            _ => None,
-        };
-        match exported {
+        let is_export = matches!(&task, BatchTask::Act(verb) if *verb == EXPORTED);
+        let place = steps.first().and_then(FileStep::place).filter(|_| is_export);
+        match place.as_ref().and_then(SavePlace::path) {
             _ if said.is_empty() => {}
-            Some(path) => offer_path(notices, UNDO_SUBJECT, said, &path),
+            Some(path) => offer_path(notices, UNDO_SUBJECT, said, path),
             None => notices.update(UNDO_SUBJECT, said),
         }
         match task {
@@ -259,12 +258,6 @@ impl Library {
             }
         }
     }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Returns the message after an undo or redo.
