@@ -4,9 +4,8 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::meshes::{BALL_SIDES, to_mesh};
-use super::props::themed;
+use super::props::{Props, piece};
 use super::text::{TextMeshes, TextPlacement};
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::CurrentRun;
@@ -14,21 +13,9 @@ use crate::studio::ui::decimals::decimals;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
-/// Greatest y that the middle limb of a champion reached in the current run, in metres, and the index of this run since
-/// the start of the program; `None` without a champion.
-#[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
-struct BestSoFar(Option<(f32, u32)>);
-
 /// Marks the entities of a flag.
 #[derive(Component)]
-struct Flag;
-
-/// Materials of flags.
-#[derive(Resource, Debug)]
-struct Cloth {
-    post: Handle<StandardMaterial>,
-    cloth: Handle<StandardMaterial>,
-}
+pub(super) struct Flag;
 
 /// Height of the flag's post, in metres: the flag is above the snake.
 const POST_M: f32 = 2.3;
@@ -42,47 +29,28 @@ const DIGIT_M: f32 = 0.27;
 /// Half the thickness of the flag's cloth, in metres.
 const CLOTH_HALF_M: f32 = 0.012;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<BestSoFar>()
-        .init_resource::<Cloth>()
-        .add_systems(Update, (look_up, plant).chain().in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Cloth {
-    fn from_world(world: &mut World) -> Self {
-        let dull = StandardMaterial { perceptual_roughness: 0.9, reflectance: 0.1, ..default() };
-        Self {
-            post: themed(world, dull.clone(), |palette| palette.metal),
-            cloth: themed(world, dull, |palette| palette.flag),
-        }
-    }
-}
-
-/// Reads the best distance from the run's champions.
-fn look_up(run: Option<Res<CurrentRun>>, mut best: ResMut<BestSoFar>) {
-    let Some(run) = run else { return };
-    let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
-    let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
-    let furthest_m = reached_m.reduce(f32::max);
-    best.set_if_neq(BestSoFar(furthest_m.map(|furthest_m| (furthest_m, run.number()))));
-}
-
 /// Spawns the flag on the first lane, and removes outdated flags.
-fn plant(
-    best: Res<BestSoFar>,
+pub(super) fn plant(
+    run: Option<Res<CurrentRun>>,
     lanes: Query<(Entity, Ref<Lane>)>,
     flags: Query<Entity, With<Flag>>,
-    cloth: Res<Cloth>,
-    lettering: Res<TextMeshes>,
+    (props, lettering): (Res<Props>, Res<TextMeshes>),
+    mut planted: Local<Option<(f32, u32)>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    if best.is_changed() {
+    let Some(run) = run else { return };
+    let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
+    let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
+    let best = reached_m.reduce(f32::max).map(|y_m| (y_m, run.number()));
+    let is_new = *planted != best;
+    if is_new {
+        *planted = best;
         flags.iter().for_each(|flag| commands.entity(flag).despawn());
     }
-    let Some((y_m, run)) = best.0 else { return };
+    let Some((y_m, run)) = best else { return };
     for (entity, lane) in lanes.iter().filter(|(_, lane)| is_marked(lane, run)) {
-        if !best.is_changed() && !lane.is_added() {
+        if !is_new && !lane.is_added() {
             continue;
         }
         let text = format!("furthest {} m", decimals(y_m, 1));
@@ -95,26 +63,17 @@ fn plant(
             let middle = middle + Vec3::X * side * (CLOTH_HALF_M + 0.006);
             writing.text(&text, DIGIT_M, TextPlacement { middle, right, up: Dir3::Z });
         }
-        commands.entity(entity).with_children(|parent| {
-            parent
-                .spawn((
-                    Flag,
-                    Transform::from_translation(foot(&lane.trial().stairs, y_m)),
-                    Mesh3d(meshes.add(to_mesh(post()))),
-                    MeshMaterial3d(cloth.post.clone()),
-                ))
-                .with_children(|post| {
-                    post.spawn((
-                        Mesh3d(meshes.add(to_mesh(sheet(middle, width_m)))),
-                        MeshMaterial3d(cloth.cloth.clone()),
-                    ));
-                    post.spawn((
-                        Mesh3d(meshes.add(writing.into_mesh())),
-                        MeshMaterial3d(lettering.on_flag.clone()),
-                        NotShadowCaster,
-                    ));
-                });
-        });
+        let place = Transform::from_translation(foot(&lane.trial().stairs, y_m));
+        let (mut post, mut cloth) = (MeshBuilder::default(), MeshBuilder::default());
+        post.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
+        post.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0, BALL_SIDES);
+        let size = Vec3::new(CLOTH_HALF_M * 2.0, width_m, CLOTH_M);
+        cloth.rounded_box(middle, size, CLOTH_HALF_M, 1);
+        let [post, cloth] = [post, cloth].map(|solid| meshes.add(to_mesh(solid)));
+        let text = piece(&meshes.add(writing.into_mesh()), &lettering.on_flag);
+        let post = (Flag, place, piece(&post, &props.post), ChildOf(entity));
+        let mut post = commands.spawn(post);
+        post.with_child(piece(&cloth, &props.cloth)).with_child((text, NotShadowCaster));
     }
 }
 
@@ -129,20 +88,6 @@ fn is_marked(lane: &Lane, run: u32) -> bool {
 fn foot(stairs: &Stairs, y_m: f32) -> Vec3 {
     let x_m = ASIDE_M - stairs.width_m / 2.0;
     Vec3::new(x_m, y_m, stairs.surface_z_m(x_m, y_m))
-}
-
-fn post() -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    solid.cylinder(Vec3::ZERO, Vec3::Z * POST_M, POST_RADIUS_M);
-    solid.ball(Vec3::Z * POST_M, POST_RADIUS_M * 2.0, BALL_SIDES);
-    solid
-}
-
-fn sheet(middle: Vec3, width_m: f32) -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    let size = Vec3::new(CLOTH_HALF_M * 2.0, width_m, CLOTH_M);
-    solid.rounded_box(middle, size, CLOTH_HALF_M, 1);
-    solid
 }
 
 #[cfg(test)]

@@ -6,8 +6,6 @@ pub mod mouse;
 pub mod rig;
 pub mod view;
 
-use std::f32::consts::FRAC_PI_4;
-
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{CameraOutputMode, SubCameraView, Viewport};
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -29,7 +27,7 @@ use crate::studio::ui::theme::{Palette, Theme};
 use crate::studio::ui::viewport::StageArea;
 
 use rig::CameraRig;
-use view::CameraView;
+use view::{CameraView, VERTICAL_VIEW_RAD};
 
 /// Returns the transform of a fixed camera, from the default side, that shows the range of y from `from_y_m` to `to_y_m`, in metres.
 pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
@@ -246,24 +244,22 @@ fn glide(
         covers.clear();
         covers.extend(area.covers());
     }
-    if rig.frames_all() {
-        for lane in lanes.iter().filter(|lane| !lane.is_ghost) {
+    if rig.follows {
+        let followed = lanes.iter().filter(|lane| !lane.is_ghost);
+        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number)) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
             let middle = lane.drawn_middle() + lane.offset();
-            points.extend([half_width, -half_width].map(|aside| middle + aside));
-            points.extend([Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M].map(|along| middle + along));
+            let ends = [half_width, -half_width, Vec3::Y * AHEAD_M, Vec3::NEG_Y * BEHIND_M];
+            points.extend(ends.map(|end| middle + end));
             snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.framing(anchor, points, snakes, area.aspect(), covers);
-    } else if rig.follows {
-        let followed = lanes.iter().filter(|lane| !lane.is_ghost);
-        for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number)) {
-            snakes.extend(lane.replay.poses().iter().map(|pose| pose.translation + lane.offset()));
-        }
-        let anchor = rig.anchor.unwrap_or_default();
-        goal = goal.beside(anchor, snakes, area.aspect(), covers);
+        goal = if rig.frames_all() {
+            goal.framing(anchor, points, snakes, area.aspect(), covers)
+        } else {
+            goal.beside(anchor, snakes, area.aspect(), covers)
+        };
     }
     let share = 1.0 - (1.0 + GLIDE_PER_S * time.delta_secs()).recip();
     rig.shown = if rig.shown.is_near(&goal) { goal } else { rig.shown.towards(&goal, share) };
@@ -272,9 +268,6 @@ fn glide(
         **camera = place;
     }
 }
-
-/// Vertical angle of view of the stage, in radians.
-const FIELD_OF_VIEW_RAD: f32 = FRAC_PI_4;
 
 /// Fits the picture of the stage's camera to the area beside the panels: by a viewport or, if the effects of the picture's quality need
 /// the whole window, by a larger angle of view, whose middle is that of the area.
@@ -298,7 +291,7 @@ fn fit_to_area(
         Fitted::around(start, size, whole)
     } else {
         let viewport = Viewport { physical_position: start, physical_size: size, ..default() };
-        Fitted { viewport: Some(viewport), part: None, angle_rad: FIELD_OF_VIEW_RAD }
+        Fitted { viewport: Some(viewport), part: None, angle_rad: VERTICAL_VIEW_RAD }
     };
     fitted.apply(&mut camera, &mut projection);
 }
@@ -319,7 +312,7 @@ impl Fitted {
         // The smallest rectangle around the stage with the window's aspect ratio, which the renderer uses to find what is visible.
         let width = size.x.max(size.y * aspect).round();
         let full = Vec2::new(width, (width / aspect).round());
-        let half = libm::tanf(FIELD_OF_VIEW_RAD / 2.0) * full.y / size.y;
+        let half = libm::tanf(VERTICAL_VIEW_RAD / 2.0) * full.y / size.y;
         let middle = start.as_vec2() + size / 2.0;
         let part =
             SubCameraView { full_size: full.as_uvec2(), offset: full / 2.0 - middle, size: window };
@@ -333,12 +326,11 @@ impl Fitted {
         if place(&camera.viewport) != place(&self.viewport) || camera.sub_camera_view != self.part {
             (camera.viewport, camera.sub_camera_view) = (self.viewport, self.part);
         }
-        let is_new =
-            |of: &Projection| matches!(of, Projection::Perspective(of) if of.fov != self.angle_rad);
-        if is_new(projection)
-            && let Projection::Perspective(of) = &mut **projection
+        if let Projection::Perspective(of) = &**projection
+            && of.fov != self.angle_rad
         {
-            of.fov = self.angle_rad;
+            let fitted = PerspectiveProjection { fov: self.angle_rad, ..of.clone() };
+            **projection = Projection::Perspective(fitted);
         }
     }
 }
@@ -354,7 +346,7 @@ mod tests {
             (UVec2::new(385, 29), UVec2::new(895, 584), UVec2::new(1280, 720));
         let fitted = Fitted::around(start, size, window);
         let own = PerspectiveProjection {
-            fov: FIELD_OF_VIEW_RAD,
+            fov: VERTICAL_VIEW_RAD,
             aspect_ratio: size.x as f32 / size.y as f32,
             ..default()
         };

@@ -36,13 +36,9 @@ struct Celebration {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_gizmo_group::<Pieces>()
-        .add_systems(Startup, set_up)
+    let line = GizmoLineConfig { width: PIECE_PIXELS, ..default() };
+    app.insert_gizmo_config(Pieces, GizmoConfig { line, ..default() })
         .add_systems(Update, throw.in_set(FrameSet::Draw));
-}
-
-fn set_up(mut config: ResMut<GizmoConfigStore>) {
-    config.config_mut::<Pieces>().0.line.width = PIECE_PIXELS;
 }
 
 impl Celebration {

@@ -2,27 +2,18 @@
 //!
 //! The physics lets limbs sink into a soft surface, but the drawn surface is flat, so a sunken limb would look cut off.
 
-use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 
 use super::meshes::to_fading_mesh;
-use super::props::themed;
 use super::surface_look::SurfaceLook;
-use crate::studio::schedule::FrameSet;
+use super::surface_texture::rise;
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::{Pose, Stairs};
 use snakes_lab::mesh::MeshBuilder;
 
 /// Patch of the limb with this index; the head is 0.
 #[derive(Component, Debug)]
-struct Dent(usize);
-
-/// Mesh and material that all patches share.
-#[derive(Resource, Debug)]
-struct Patch {
-    mesh: Handle<Mesh>,
-    material: Handle<StandardMaterial>,
-}
+pub(super) struct Dent(pub usize);
 
 /// Part of a limb that has sunk into a soft surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,20 +42,8 @@ const ABOVE_M: f32 = 0.014;
 /// Number of points along each edge of a limb that are compared with the surface.
 const POINTS: usize = 9;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Patch>().add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Patch {
-    fn from_world(world: &mut World) -> Self {
-        let mesh = world.resource_mut::<Assets<Mesh>>().add(patch());
-        let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
-        Self { mesh, material: themed(world, veil, |palette| palette.dent) }
-    }
-}
-
 /// Returns a square of one metre that fades out towards its edges.
-fn patch() -> Mesh {
+pub(super) fn patch() -> Mesh {
     /// Number of cells along a side.
     const CELLS: usize = 8;
     let mut solid = MeshBuilder::default();
@@ -78,36 +57,18 @@ fn patch() -> Mesh {
             libm::powf((at.x * 2.0).abs(), 4.0) + libm::powf((at.y * 2.0).abs(), 4.0),
             0.25,
         );
-        let opacity = ((1.0 - out) / 0.5).clamp(0.0, 1.0);
-        opacity * opacity * (3.0 - 2.0 * opacity)
+        rise(1.0 - out, 0.0, 0.5)
     })
 }
 
-/// Spawns hidden patches for a new lane with a soft surface.
-fn build(lanes: Query<(Entity, &Lane), Added<Lane>>, patch: Res<Patch>, mut commands: Commands) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let trial = lane.trial();
-        let is_soft = |surface| SurfaceLook::of(surface).soft >= LEAST_SOFT;
-        if !is_soft(&trial.surface) && !is_soft(trial.ground()) {
-            continue;
-        }
-        commands.entity(entity).with_children(|parent| {
-            for limb in 0..lane.body.parts.len() {
-                parent.spawn((
-                    Dent(limb),
-                    Mesh3d(patch.mesh.clone()),
-                    MeshMaterial3d(patch.material.clone()),
-                    NotShadowCaster,
-                    NotShadowReceiver,
-                    Visibility::Hidden,
-                ));
-            }
-        });
-    }
+/// Returns whether a lane has a soft surface, which shows dents.
+pub(super) fn is_soft(lane: &Lane) -> bool {
+    let surfaces = [&lane.trial().surface, lane.trial().ground()];
+    surfaces.into_iter().any(|surface| SurfaceLook::of(surface).soft >= LEAST_SOFT)
 }
 
 /// Moves the patches to the limbs that have sunk in, and hides the others.
-fn place(
+pub(super) fn place(
     lanes: Query<(&Lane, &Children)>,
     mut dents: Query<(&Dent, &mut Transform, &mut Visibility)>,
 ) {

@@ -2,17 +2,11 @@
 
 use bevy::asset::RenderAssetUsages;
 use bevy::light::NotShadowCaster;
-use bevy::math::Affine2;
 use bevy::mesh::PrimitiveTopology;
 use bevy::prelude::*;
 
-use super::props::themed;
-use super::surface_texture::meadow;
+use super::props::{GROUND_HALF_M, Props, piece};
 
-/// Half the side of the drawn ground, in metres. The physical ground is infinite; fog hides the end of the drawn one.
-const GROUND_HALF_M: f32 = 600.0;
-/// Side of the square that the texture of the ground covers, in metres.
-const MEADOW_M: f32 = 9.0;
 /// Half the side of the grid on the ground, in metres.
 const GRID_HALF_M: f32 = 70.0;
 /// Distance between the lines of the grid, in metres: the tread of the report's stairs.
@@ -20,41 +14,11 @@ const GRID_CELL_M: f32 = 2.0;
 /// Height of the grid above the ground, in metres, to avoid z-fighting.
 const GRID_HEIGHT_M: f32 = 0.01;
 
-/// Materials of the ground and of its grid.
-#[derive(Resource, Debug)]
-struct Earth {
-    ground: Handle<StandardMaterial>,
-    grid: Handle<StandardMaterial>,
-}
-
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Earth>().add_systems(Startup, set_up);
-}
-
-impl FromWorld for Earth {
-    fn from_world(world: &mut World) -> Self {
-        let texture = world.resource_mut::<Assets<Image>>().add(meadow());
-        let dull = StandardMaterial {
-            perceptual_roughness: 1.0,
-            reflectance: 0.1,
-            base_color_texture: Some(texture),
-            uv_transform: Affine2::from_scale(Vec2::splat(2.0 * GROUND_HALF_M / MEADOW_M)),
-            ..default()
-        };
-        // The grid is translucent, so that a line in a shadow is darker than the shadow.
-        let veil = StandardMaterial { unlit: true, alpha_mode: AlphaMode::Blend, ..default() };
-        Self {
-            ground: themed(world, dull, |palette| palette.ground),
-            grid: themed(world, veil, |palette| palette.grid),
-        }
-    }
-}
-
-fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, earth: Res<Earth>) {
+pub(super) fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, props: Res<Props>) {
     let ground = meshes.add(Plane3d::new(Vec3::Z, Vec2::splat(GROUND_HALF_M)));
     // There is nothing below the ground to shade. If the ground cast shadows, it would draw saw-teeth along the foot of every wall.
-    commands.spawn((Mesh3d(ground), MeshMaterial3d(earth.ground.clone()), NotShadowCaster));
-    commands.spawn((Mesh3d(meshes.add(grid())), MeshMaterial3d(earth.grid.clone())));
+    commands.spawn((piece(&ground, &props.ground), NotShadowCaster));
+    commands.spawn(piece(&meshes.add(grid()), &props.grid));
 }
 
 /// Returns the grid on the ground, which makes distances visible. Its lines are one tread apart in both directions, and
@@ -92,11 +56,11 @@ mod tests {
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()
             .init_resource::<Assets<Image>>()
-            .init_resource::<Earth>()
+            .init_resource::<Props>()
             .add_systems(Startup, set_up);
         app.update();
         let world = app.world_mut();
-        let ground = world.resource::<Earth>().ground.clone();
+        let ground = world.resource::<Props>().ground.clone();
         let mut grounds =
             world.query::<(&MeshMaterial3d<StandardMaterial>, Has<NotShadowCaster>)>();
         let casts = grounds.iter(world).any(|(of, is_without)| of.0 == ground && !is_without);

@@ -4,14 +4,9 @@
 //! The fittings have no physics; they are beside and above the snake's way. Each lane has five meshes, which lanes
 //! with the same stairs share.
 
-use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::cache::SceneCache;
 use super::meshes::{BALL_SIDES, to_fading_mesh, to_mesh};
-use super::props::themed;
-use crate::studio::schedule::FrameSet;
-use crate::studio::stage::lane::Lane;
 use snakes_core::schema::PerPart;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
@@ -47,66 +42,11 @@ const PAINT_M: f32 = 0.006;
 /// Minimum depth of a landing with a finish, in metres.
 const SHORTEST_M: f32 = 1.0;
 
-/// Materials of the fittings of the stairs.
-#[derive(Resource, Debug)]
-struct Fittings {
-    wood: Handle<StandardMaterial>,
-    wall: Handle<StandardMaterial>,
-    white: Handle<StandardMaterial>,
-    lamp: Handle<StandardMaterial>,
-    shine: Handle<StandardMaterial>,
-}
-
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Fittings>().add_systems(Update, build.in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Fittings {
-    fn from_world(world: &mut World) -> Self {
-        let lamp = StandardMaterial { unlit: true, ..default() };
-        let dull = StandardMaterial { perceptual_roughness: 0.8, reflectance: 0.2, ..default() };
-        Self {
-            wood: themed(world, dull.clone(), |palette| palette.wood),
-            wall: themed(world, dull.clone(), |palette| palette.wall),
-            white: themed(world, dull, |palette| palette.white),
-            lamp: themed(world, lamp.clone(), |palette| palette.lamp),
-            shine: themed(
-                world,
-                StandardMaterial { alpha_mode: AlphaMode::Add, ..lamp },
-                |palette| palette.lamp,
-            ),
-        }
-    }
-}
-
-/// Spawns the fittings of a new lane with stairs.
-fn build(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    fittings: Res<Fittings>,
-    mut last: Local<SceneCache<Stairs, [Handle<Mesh>; 5]>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut commands: Commands,
-) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let stairs = &lane.trial().stairs;
-        if stairs.steps == 0 {
-            continue;
-        }
-        let [wood, wall, cheques, doorway, shine] = last.get(stairs, 1, || {
-            let solids = [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)];
-            let [wood, wall, cheques, doorway] = solids.map(to_mesh);
-            [wood, wall, cheques, doorway, shine(stairs)].map(|mesh| meshes.add(mesh))
-        });
-        commands.entity(entity).with_children(|parent| {
-            parent.spawn((Mesh3d(wood), MeshMaterial3d(fittings.wood.clone())));
-            parent.spawn((Mesh3d(wall), MeshMaterial3d(fittings.wall.clone())));
-            for (mesh, material) in
-                [(cheques, &fittings.white), (doorway, &fittings.lamp), (shine, &fittings.shine)]
-            {
-                parent.spawn((Mesh3d(mesh), MeshMaterial3d(material.clone()), NotShadowCaster));
-            }
-        });
-    }
+/// Returns the meshes of the fittings: those of wood, the wall, the white details, the lamps, and their light.
+pub(super) fn fittings(stairs: &Stairs) -> [Mesh; 5] {
+    let solids = [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)];
+    let [wood, wall, white, lamps] = solids.map(to_mesh);
+    [wood, wall, white, lamps, shine(stairs)]
 }
 
 /// Builds the railing on the left, which is behind the snake in the default view.

@@ -1,77 +1,23 @@
 //! Colours of lanes side by side: a collar on each snake, and stripes on the ground beside its lane.
 
-use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-use super::meshes::to_mesh;
-use super::props::{in_scene, themed};
 use super::stairs::{STRIP_ASIDE_M, strip_y_m};
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Palette;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
-
-/// Materials in the colours of the lanes, by the lane's number.
-#[derive(Resource, Debug)]
-pub(crate) struct LaneColors(Vec<Handle<StandardMaterial>>);
 
 /// Marks an entity that shows the colour of its lane. It is hidden while there is only one lane.
 #[derive(Component, Debug)]
 pub(crate) struct LaneMark;
 
-/// Number of lane colours in the palette.
-const COLORS: usize = 10;
 /// Width of a stripe, in metres.
 const STRIPE_M: f32 = 0.16;
 /// Height of a stripe above the ground, in metres: above the grid.
 const STRIPE_HEIGHT_M: f32 = 0.013;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<LaneColors>()
-        .add_systems(Update, build.in_set(FrameSet::Draw))
-        .add_systems(PostUpdate, show.before(TransformSystems::Propagate));
-}
-
-impl FromWorld for LaneColors {
-    fn from_world(world: &mut World) -> Self {
-        let plain = StandardMaterial { perceptual_roughness: 0.7, reflectance: 0.2, ..default() };
-        let material = |number| {
-            let color = move |palette: &Palette| in_scene(palette.lane_color(number));
-            themed(world, plain.clone(), color)
-        };
-        Self((0..COLORS).map(material).collect())
-    }
-}
-
-impl LaneColors {
-    /// Returns the material of a lane; the first lane is 0.
-    pub fn of(&self, number: usize) -> Handle<StandardMaterial> {
-        self.0[number % self.0.len()].clone()
-    }
-}
-
-/// Spawns the stripes of a new lane.
-fn build(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    colors: Res<LaneColors>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut commands: Commands,
-) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let start_m = lane.trial().start_y_m - lane.body.length_m() / 2.0;
-        commands.entity(entity).with_child((
-            LaneMark,
-            Mesh3d(meshes.add(to_mesh(stripes(&lane.trial().stairs, start_m)))),
-            MeshMaterial3d(colors.of(lane.number)),
-            NotShadowCaster,
-            Visibility::Hidden,
-        ));
-    }
-}
-
 /// Builds a stripe on each side of a lane, from behind the snake to the end of the landing.
-fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
+pub(super) fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [from_m, to_m] = strip_y_m(stairs, start_m);
     let to_m = if stairs.steps == 0 { to_m } else { stairs.end_y_m() };
@@ -84,7 +30,7 @@ fn stripes(stairs: &Stairs, start_m: f32) -> MeshBuilder {
 }
 
 /// Shows the lanes' colours while several snakes are side by side, and hides them otherwise.
-fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) {
+pub(super) fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) {
     let are_many = lanes.iter().filter(|lane| !lane.is_ghost).nth(1).is_some();
     let wanted = if are_many { Visibility::Inherited } else { Visibility::Hidden };
     marks.iter_mut().for_each(|mut mark| {
@@ -95,13 +41,11 @@ fn show(lanes: Query<&Lane>, mut marks: Query<&mut Visibility, With<LaneMark>>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::climber;
 
     #[test]
     fn marks_are_shown_only_beside_other_lanes_and_ghosts_are_none() {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let lane = |number| Lane::new(climber(number), number);
         let mut app = App::new();
         app.add_systems(Update, show);
         let mark = app.world_mut().spawn((LaneMark, Visibility::Hidden)).id();

@@ -278,13 +278,8 @@ mod tests {
         let short = Vec3::new(1.0, 0.1, 1.0);
         for has_front in [false, true] {
             for has_rear in [false, true] {
-                let shape = LimbShape {
-                    size: short,
-                    has_front,
-                    has_rear,
-                    has_own_hinge: has_front && !has_rear,
-                    parts: 1,
-                };
+                let (size, has_own_hinge) = (short, has_front && !has_rear);
+                let shape = LimbShape { size, has_front, has_rear, has_own_hinge, parts: 1 };
                 assert!(shape.block().volume_m3() > 0.0);
                 let parts = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let positions = parts.iter().flat_map(|solid| &solid.positions);

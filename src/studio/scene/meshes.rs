@@ -11,13 +11,12 @@ pub(crate) const BALL_SIDES: usize = 14;
 
 /// Converts a solid to a mesh.
 pub(crate) fn to_mesh(solid: MeshBuilder) -> Mesh {
-    let flat = |of: Vec<Vec3>| of.into_iter().map(|at| at.to_array()).collect::<Vec<_>>();
     let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD);
     if let Some(colors) = solid.colors() {
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
-    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, flat(solid.positions))
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, flat(solid.normals))
+    mesh.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, solid.positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, solid.normals)
         .with_inserted_indices(Indices::U32(solid.indices))
 }
 

@@ -8,6 +8,7 @@ pub mod dents;
 pub mod ground;
 pub mod landing;
 pub mod lane_marks;
+mod lane_pieces;
 pub mod limb;
 pub mod meshes;
 mod mipmaps;
@@ -37,6 +38,9 @@ use super::schedule::FrameSet;
 use super::ui::theme::Theme;
 
 use props::Props;
+use surface_material::SurfaceMaterials;
+use text::TextMeshes;
+use way_back::WayBack;
 
 /// Adds the scene of the window: everything that is drawn, the camera and the mouse.
 pub(super) fn plugin(app: &mut App) {
@@ -55,28 +59,21 @@ pub(super) fn plugin(app: &mut App) {
 pub(super) fn drawing(app: &mut App) {
     app.init_resource::<Theme>()
         .init_resource::<Props>()
-        .add_plugins((
-            quality::plugin,
-            sky::plugin,
-            ground::plugin,
-            plants::plugin,
-            surface_material::plugin,
-            stairs::plugin,
-            lane_marks::plugin,
-            landing::plugin,
-            dents::plugin,
-            text::plugin,
-            step_edges::plugin,
-            step_labels::plugin,
-            best_flag::plugin,
-        ))
-        .add_plugins((snake::plugin, overlays::plugin, way_back::plugin))
-        .add_systems(Startup, set_up)
-        .add_systems(Update, fit_shadows.in_set(FrameSet::Draw))
+        .init_resource::<TextMeshes>()
+        .init_resource::<SurfaceMaterials>()
+        .init_resource::<WayBack>()
+        .add_plugins((quality::plugin, sky::plugin, snake::plugin, overlays::plugin))
+        .add_systems(Startup, (set_up, ground::set_up))
         .add_systems(
             Update,
-            (dress, props::recolor).in_set(FrameSet::Draw).run_if(resource_changed::<Theme>),
-        );
+            (
+                (lane_pieces::build, (step_edges::light, dents::place)).chain(),
+                (fit_shadows, plants::plant, best_flag::plant),
+                (dress, props::recolor, surface_material::dress).run_if(resource_changed::<Theme>),
+            )
+                .in_set(FrameSet::Draw),
+        )
+        .add_systems(PostUpdate, lane_marks::show.before(TransformSystems::Propagate));
 }
 
 /// Direction to the sun or the moon: behind the viewer's right shoulder in the default view, so that treads and risers have different

@@ -61,18 +61,12 @@ const MIN_TORQUE_SHARE: f32 = 0.02;
 const ABOVE_M: f32 = 0.04;
 
 pub(crate) fn plugin(app: &mut App) {
+    let line = GizmoLineConfig { width: LINE_PIXELS, ..default() };
+    let usual = GizmoConfig { line, ..default() };
     app.init_resource::<Overlays>()
-        .init_gizmo_group::<OnTop>()
-        .add_systems(Startup, set_up)
+        .insert_gizmo_config(OnTop, GizmoConfig { depth_bias: -1.0, ..usual.clone() })
+        .insert_gizmo_config(DefaultGizmoConfigGroup, usual)
         .add_systems(Update, draw.in_set(FrameSet::Draw));
-}
-
-fn set_up(mut config: ResMut<GizmoConfigStore>) {
-    let (on_top, _) = config.config_mut::<OnTop>();
-    on_top.depth_bias = -1.0;
-    on_top.line.width = LINE_PIXELS;
-    let (usual, _) = config.config_mut::<DefaultGizmoConfigGroup>();
-    usual.line.width = LINE_PIXELS;
 }
 
 fn draw(

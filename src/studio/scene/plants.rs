@@ -4,20 +4,15 @@
 use bevy::prelude::*;
 
 use super::meshes::to_mesh;
-use super::props::themed;
+use super::props::{Props, piece};
 use super::surface_texture::random;
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::theme::palette::TRUNK_TONE;
 use snakes_lab::mesh::MeshBuilder;
 
 /// Plants around the lanes of the stage.
 #[derive(Component, Debug)]
-struct Plants;
-
-/// Material of all plants.
-#[derive(Resource, Debug)]
-struct Leaves(Handle<StandardMaterial>);
+pub(super) struct Plants;
 
 /// Side of the squares of which each has at most one plant, in metres.
 const SQUARE_M: f32 = 3.0;
@@ -28,27 +23,10 @@ const GRASS_M: f32 = 2.0;
 const BUSHES_M: f32 = 5.0;
 const TREES_M: f32 = 20.0;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Leaves>().add_systems(Update, plant.in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Leaves {
-    fn from_world(world: &mut World) -> Self {
-        let leaf = StandardMaterial {
-            perceptual_roughness: 1.0,
-            reflectance: 0.1,
-            // Blades of grass are seen from both sides.
-            cull_mode: None,
-            ..default()
-        };
-        Self(themed(world, leaf, |palette| palette.leaves))
-    }
-}
-
 /// Plants the surroundings of the lanes anew after their area has changed.
-fn plant(
+pub(super) fn plant(
     lanes: Query<&Lane>,
-    leaves: Res<Leaves>,
+    props: Res<Props>,
     plants: Query<Entity, With<Plants>>,
     mut planted: Local<Option<Rect>>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -61,15 +39,10 @@ fn plant(
         Rect::from_corners(start, Vec2::new(x_m + half_m, trial.stairs.end_y_m()))
     });
     let area = ways.reduce(|all, way| all.union(way));
-    if area.is_none() || area == *planted {
-        return;
-    }
-    *planted = area;
+    let Some(area) = area.filter(|area| *planted != Some(*area)) else { return };
+    *planted = Some(area);
     plants.iter().for_each(|plants| commands.entity(plants).despawn());
-    if let Some(area) = area {
-        let mesh = Mesh3d(meshes.add(to_mesh(around(area))));
-        commands.spawn((Plants, mesh, MeshMaterial3d(leaves.0.clone())));
-    }
+    commands.spawn((Plants, piece(&meshes.add(to_mesh(around(area))), &props.leaves)));
 }
 
 /// Builds the plants around an area of x and y, in metres. The same area always has the same plants.

@@ -7,7 +7,6 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 
 use bevy::camera::visibility::NoFrustumCulling;
 use bevy::light::{EnvironmentMapLight, NotShadowCaster, NotShadowReceiver};
-use bevy::mesh::VertexAttributeValues;
 use bevy::prelude::*;
 
 use super::LIGHT_FROM;
@@ -84,8 +83,7 @@ fn reflect(
             continue;
         }
         let palette = theme.palette();
-        let sky = [palette.zenith, palette.horizon, palette.ground];
-        let [top, middle, bottom] = sky;
+        let [top, middle, bottom] = [palette.zenith, palette.horizon, palette.ground];
         let reflected =
             EnvironmentMapLight::hemispherical_gradient(&mut images, top, middle, bottom);
         let dark = EnvironmentMapLight::solid_color(&mut images, Color::BLACK);
@@ -93,7 +91,7 @@ fn reflect(
             diffuse_map: dark.diffuse_map,
             intensity: MIRROR_CD_M2,
             // In the environment map y points up; in the world, z.
-            rotation: Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            rotation: Quat::from_rotation_x(FRAC_PI_2),
             ..reflected
         });
     }
@@ -157,8 +155,7 @@ fn dome(palette: &Palette) -> Mesh {
         let color = palette.zenith.mix(&palette.sun_disc, 0.35 + 0.65 * chance(3));
         colors.extend([color.to_linear().to_f32_array(); 4]);
     }
-    to_mesh(solid)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, VertexAttributeValues::Float32x4(colors))
+    to_mesh(solid).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
 /// Returns the colour of the sky at a column of the dome and an elevation, in radians.

@@ -8,9 +8,9 @@ use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 
 use super::cache::SceneCache;
-use super::lane_marks::{LaneColors, LaneMark};
+use super::lane_marks::LaneMark;
 use super::limb::LimbShape;
-use super::props::{Props, over_ghosts, themed};
+use super::props::{Props, piece};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
@@ -20,34 +20,12 @@ use snakes_core::world::{JointPlan, Pose};
 #[derive(Component, Debug)]
 struct SnakePart(usize);
 
-/// Meshes of a limb, and the bind poses of its parts.
-#[derive(Debug, Clone)]
-struct LimbMeshes {
-    block: Handle<Mesh>,
-    white: Handle<Mesh>,
-    dark: Handle<Mesh>,
-    collar: Handle<Mesh>,
-    /// Transforms from the frame of a soft limb to those of its parts at rest.
-    bind_poses: Handle<SkinnedMeshInverseBindposes>,
-}
-
-/// Cached meshes by shape, which snakes with the same limbs share.
-#[derive(Resource, Debug, Default)]
-struct Shapes(SceneCache<LimbShape, LimbMeshes>);
-
-/// Materials of the details on limbs.
-#[derive(Resource, Debug)]
-struct Trim {
-    /// Materials of the light and of the dark details.
-    usual: [Handle<StandardMaterial>; 2],
-    /// Materials of the details of the best snake of a generation.
-    of_best: [Handle<StandardMaterial>; 2],
-}
+/// Meshes of a limb's block, white details, dark details and collar, and the transforms from the frame of a soft limb to those of its
+/// parts at rest.
+type LimbMeshes = ([Handle<Mesh>; 4], Handle<SkinnedMeshInverseBindposes>);
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Shapes>()
-        .init_resource::<StageMode>()
-        .init_resource::<Trim>()
+    app.init_resource::<StageMode>()
         .add_systems(Update, (build, place).chain().in_set(FrameSet::Draw));
 }
 
@@ -56,29 +34,11 @@ const GHOST_SIZE: f32 = 0.96;
 /// Maximum number of cached shapes. Dragging a slider for the snake's size creates many.
 const MAX_SHAPES: usize = 64;
 
-impl FromWorld for Trim {
-    fn from_world(world: &mut World) -> Self {
-        let white = StandardMaterial { perceptual_roughness: 0.4, ..default() };
-        let dark = StandardMaterial { perceptual_roughness: 0.35, metallic: 0.4, ..default() };
-        let mut both = |[white, dark]: [StandardMaterial; 2]| {
-            [
-                themed(world, white, |palette| palette.white),
-                themed(world, dark, |palette| palette.metal),
-            ]
-        };
-        Self {
-            of_best: both([over_ghosts(white.clone()), over_ghosts(dark.clone())]),
-            usual: both([white, dark]),
-        }
-    }
-}
-
 /// Spawns the limbs of a new lane's snake.
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
-    (props, trim, colors): (Res<Props>, Res<Trim>, Res<LaneColors>),
-    mode: Res<StageMode>,
-    mut shapes: ResMut<Shapes>,
+    (props, mode): (Res<Props>, Res<StageMode>),
+    mut shapes: Local<SceneCache<LimbShape, LimbMeshes>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut bind_poses: ResMut<Assets<SkinnedMeshInverseBindposes>>,
     mut commands: Commands,
@@ -86,29 +46,27 @@ fn build(
     for (entity, lane) in &lanes {
         let body = &lane.body;
         let is_best = matches!(*mode, StageMode::Generation { .. });
-        let ([red, blue], [white, dark]) = match (lane.is_ghost, is_best) {
-            (true, _) => (&props.ghosts, &trim.usual),
-            (false, true) => (&props.limbs_of_best, &trim.of_best),
-            (false, false) => (&props.limbs, &trim.usual),
+        let paints = match (lane.is_ghost, is_best) {
+            (true, _) => &props.ghosts[..],
+            (false, true) => &props.limbs_of_best,
+            (false, false) => &props.limbs,
         };
         let poses: Vec<Pose> = lane.drawn_poses().collect();
         for limb in 0..body.limbs() {
-            let color = MeshMaterial3d(if limb % 2 == 0 { red } else { blue }.clone());
+            let color = &paints[limb % 2];
             let parts = body.parts_of(limb);
             let bones: Vec<Entity> = parts
                 .clone()
                 .map(|part| {
-                    let pose = poses[part];
-                    let place = Transform::from_translation(pose.translation);
-                    let place = place.with_rotation(pose.rotation);
+                    let Pose { translation, rotation, .. } = poses[part];
+                    let place = Transform { translation, rotation, ..default() };
                     let mut bone = commands.spawn((SnakePart(part), place, Visibility::default()));
                     bone.insert(ChildOf(entity));
                     if lane.is_ghost {
                         let size = Vec3::from(body.parts[part].size_m()) * GHOST_SIZE;
-                        let cube = Mesh3d(props.ghost_cube.clone());
-                        let place = place.with_scale(size);
-                        bone.insert((cube, color.clone(), place));
-                        bone.insert((NotShadowCaster, NotShadowReceiver));
+                        let cube = piece(&props.ghost_cube, color);
+                        let is_plain = (NotShadowCaster, NotShadowReceiver);
+                        bone.insert((cube, place.with_scale(size), is_plain));
                     }
                     bone.id()
                 })
@@ -124,40 +82,32 @@ fn build(
                 has_own_hinge: body.is_branching() && body.joint_before(limb).is_some_and(bends),
                 parts: parts.len(),
             };
-            let shapes = shapes.0.get(&shape, MAX_SHAPES, || {
-                let [block, white, dark, collar] =
-                    [shape.block(), shape.white(), shape.dark(), shape.collar()]
-                        .map(|solid| meshes.add(shape.mesh_of(solid)));
+            let shapes = shapes.get(&shape, MAX_SHAPES, || {
+                let solids = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let bind_poses = bind_poses.add(shape.bind_poses());
-                LimbMeshes { block, white, dark, collar, bind_poses }
+                (solids.map(|solid| meshes.add(shape.mesh_of(solid))), bind_poses)
             });
+            let ([block, white, dark, collar], inverse_bindposes) = shapes;
             // The meshes of a rigid limb are children of its part. Those of a soft limb follow all of its parts,
             // whatever their own transform is.
-            let joints = bones.clone();
-            let skin = (bones.len() > 1).then(|| {
-                let inverse_bindposes = shapes.bind_poses.clone();
-                (SkinnedMesh { inverse_bindposes, joints }, NoFrustumCulling)
-            });
-            let mut spawn = |mesh: Handle<Mesh>, material| {
-                let mut piece = commands.spawn((Mesh3d(mesh), material, Visibility::default()));
-                let holder = if skin.is_some() { entity } else { bones[0] };
-                piece.insert(ChildOf(holder));
-                if let Some(skin) = &skin {
-                    piece.insert(skin.clone());
-                }
-                piece.id()
-            };
-            spawn(shapes.block.clone(), color);
-            let white = spawn(shapes.white.clone(), MeshMaterial3d(white.clone()));
-            let dark = spawn(shapes.dark.clone(), MeshMaterial3d(dark.clone()));
-            let collar = (limb == 0)
-                .then(|| spawn(shapes.collar.clone(), MeshMaterial3d(colors.of(lane.number))));
-            if let Some(collar) = collar {
-                commands.entity(collar).insert((LaneMark, Visibility::Hidden));
+            let holder = if bones.len() > 1 { entity } else { bones[0] };
+            let drawn = |mesh, material| (piece(mesh, material), ChildOf(holder));
+            let mut pieces = vec![
+                commands.spawn(drawn(&block, color)).id(),
+                // The block already casts the shadow.
+                commands.spawn((drawn(&white, &paints[2]), NotShadowCaster)).id(),
+                commands.spawn((drawn(&dark, &paints[3]), NotShadowCaster)).id(),
+            ];
+            if limb == 0 {
+                let collar = drawn(&collar, props.of_lane(lane.number));
+                let is_mark = (LaneMark, Visibility::Hidden);
+                pieces.push(commands.spawn((collar, is_mark, NotShadowCaster)).id());
             }
-            // The block already casts the shadow.
-            for piece in [Some(white), Some(dark), collar].into_iter().flatten() {
-                commands.entity(piece).insert(NotShadowCaster);
+            if bones.len() > 1 {
+                let skin = (SkinnedMesh { inverse_bindposes, joints: bones }, NoFrustumCulling);
+                for piece in pieces {
+                    commands.entity(piece).insert(skin.clone());
+                }
             }
         }
     }
@@ -168,10 +118,9 @@ fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Tr
     for (lane, children) in &lanes {
         let mut parts = parts.iter_many_mut(children);
         while let Some((part, mut transform)) = parts.fetch_next() {
-            if let Some(pose) = lane.drawn_poses().nth(part.0) {
-                let place = Transform::from_translation(pose.translation);
-                let size = transform.scale;
-                transform.set_if_neq(place.with_rotation(pose.rotation).with_scale(size));
+            if let Some(Pose { translation, rotation, .. }) = lane.drawn_poses().nth(part.0) {
+                let scale = transform.scale;
+                transform.set_if_neq(Transform { translation, rotation, scale });
             }
         }
     }
@@ -180,19 +129,17 @@ fn place(lanes: Query<(&Lane, &Children)>, mut parts: Query<(&SnakePart, &mut Tr
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
-    use snakes_core::save::shipped_champion;
+    use crate::studio::state::current_run::climber;
 
     /// Creates an app with a lane and a ghost of the same snake.
     fn app() -> App {
-        let loaded = shipped_champion().expect("well formed");
-        let lane = |number| Lane::new(StagedChampion::from_file(&loaded, number, "one"), number);
+        let lane = |number| Lane::new(climber(number), number);
         let mut app = App::new();
         app.init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<StandardMaterial>>()
             .init_resource::<Assets<SkinnedMeshInverseBindposes>>()
+            .init_resource::<Assets<Image>>()
             .init_resource::<Props>()
-            .init_resource::<LaneColors>()
             .add_plugins(plugin);
         for lane in [lane(0), lane(1).into_ghost()] {
             app.world_mut().spawn((Transform::default(), Visibility::default(), lane));

@@ -1,16 +1,7 @@
-//! The stairs of a lane and the strip of ground before them, with the look of their surfaces.
+//! Shapes of the stairs of a lane and of the strip of ground before them.
 
-use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
-use bevy::render::render_resource::Face;
 
-use super::cache::SceneCache;
-use super::meshes::to_tiled_mesh;
-use super::surface_material::SurfaceMaterials;
-use super::surface_texture::TILE_M;
-use crate::studio::schedule::FrameSet;
-use crate::studio::stage::lane::Lane;
-use crate::studio::ui::theme::Theme;
 use snakes_core::world::{StairBox, Stairs};
 use snakes_lab::mesh::MeshBuilder;
 
@@ -30,61 +21,8 @@ const CORNER: f32 = 0.6;
 /// Distance from that corner at which the shade ends on the tread, in metres.
 const CORNER_M: f32 = 0.5;
 
-/// Material of the mesh that casts the stairs' shadow.
-#[derive(Resource, Debug)]
-struct Caster(Handle<StandardMaterial>);
-
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Caster>().add_systems(Update, build.in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Caster {
-    fn from_world(world: &mut World) -> Self {
-        let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-        // Only faces that look away from the light cast shadows. A lit face would shadow itself in the saw-tooth
-        // pattern of the shadow map's pixels.
-        Self(materials.add(StandardMaterial { cull_mode: Some(Face::Front), ..default() }))
-    }
-}
-
-/// Spawns the stairs of new lanes. Ghosts share the stairs of another lane.
-fn build(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    theme: Res<Theme>,
-    caster: Res<Caster>,
-    mut surfaces: ResMut<SurfaceMaterials>,
-    mut last: Local<SceneCache<Stairs, Handle<Mesh>>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-    mut images: ResMut<Assets<Image>>,
-    mut commands: Commands,
-) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let trial = lane.trial();
-        let mut of = |surface| surfaces.of(surface, *theme, &mut materials, &mut images);
-        let (on_stairs, on_ground) = (of(&trial.surface), of(trial.ground()));
-        let start_m = trial.start_y_m - lane.body.length_m() / 2.0;
-        let strip = meshes.add(to_tiled_mesh(strip(&trial.stairs, start_m), TILE_M));
-        commands.entity(entity).with_child((
-            Mesh3d(strip),
-            MeshMaterial3d(on_ground),
-            NotShadowCaster,
-        ));
-        if trial.stairs.steps == 0 {
-            continue;
-        }
-        // Lanes side by side usually have the same stairs.
-        let mesh =
-            last.get(&trial.stairs, 1, || meshes.add(to_tiled_mesh(solid(&trial.stairs), TILE_M)));
-        commands.entity(entity).with_children(|parent| {
-            parent.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(on_stairs), NotShadowCaster));
-            parent.spawn((Mesh3d(mesh), MeshMaterial3d(caster.0.clone()), NotShadowReceiver));
-        });
-    }
-}
-
 /// Builds the stairs as one closed solid. Adjacent boxes would have hidden faces, which would cast shadows on the visible ones.
-fn solid(stairs: &Stairs) -> MeshBuilder {
+pub(super) fn solid(stairs: &Stairs) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let half_m = stairs.width_m / 2.0;
     let outline = stairs.outline_m();
@@ -185,7 +123,7 @@ pub(crate) fn strip_y_m(stairs: &Stairs, start_m: f32) -> [f32; 2] {
 
 /// Builds the strip of ground before the stairs, and the treads at ground level. The physical ground is infinite; the
 /// strip shows its surface.
-fn strip(stairs: &Stairs, start_m: f32) -> MeshBuilder {
+pub(super) fn strip(stairs: &Stairs, start_m: f32) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [from_m, to_m] = strip_y_m(stairs, start_m);
     let middle = Vec3::new(0.0, (from_m + to_m) / 2.0, STRIP_M);

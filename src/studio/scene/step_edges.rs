@@ -6,94 +6,52 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::meshes::to_fading_mesh;
-use super::props::{Props, box_transform, themed};
-use crate::studio::schedule::FrameSet;
+use super::props::{Props, box_transform, piece};
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
 /// Strip on the edge of a step, with the index of the step; the lowest is 0.
 #[derive(Component, Debug)]
-struct StepEdge {
-    step: u32,
-    is_lit: bool,
-}
-
-/// Materials of dark and lit strips, and of the glow.
-#[derive(Resource, Debug)]
-struct Strips {
-    dark: Handle<StandardMaterial>,
-    lit: Handle<StandardMaterial>,
-    glow: Handle<StandardMaterial>,
-}
+pub(super) struct StepEdge(u32);
 
 /// Depth of a strip along the tread, and its height along the riser, in metres.
 const DEPTH_M: f32 = 0.12;
 const HEIGHT_M: f32 = 0.06;
 /// Thickness by which a strip stands out of tread and riser, in metres.
 const OUT_M: f32 = 0.012;
-/// Brightness factor of a lit strip: so bright that it glows in a picture with bloom.
-const GLOWING: f32 = 1.7;
 /// Extent of the glow of a lit strip across the tread and down the riser, in metres.
 const GLOW_BACK_M: f32 = 0.55;
 const GLOW_DOWN_M: f32 = 0.3;
 const GLOW_ON_NOSING_M: f32 = 0.1;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Strips>()
-        .add_systems(Update, (build, light).chain().in_set(FrameSet::Draw));
-}
-
-impl FromWorld for Strips {
-    fn from_world(world: &mut World) -> Self {
-        let dark = StandardMaterial { perceptual_roughness: 0.8, ..default() };
-        let lit = StandardMaterial { unlit: true, ..default() };
-        let glow = StandardMaterial { alpha_mode: AlphaMode::Blend, ..lit.clone() };
-        Self {
-            dark: themed(world, dark, |palette| palette.step_edge),
-            lit: themed(world, lit, |palette| (palette.step_edge_lit.to_linear() * GLOWING).into()),
-            glow: themed(world, glow, |palette| palette.step_edge_lit),
-        }
-    }
-}
-
-/// Spawns the strips of a new lane's stairs.
-fn build(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    props: Res<Props>,
-    strips: Res<Strips>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut commands: Commands,
+/// Spawns the strips of a new lane's stairs. `glow` is the mesh of [`glow`].
+pub(super) fn spawn(
+    lane: &mut ChildSpawnerCommands<'_>,
+    stairs: &Stairs,
+    props: &Props,
+    glow: &Handle<Mesh>,
 ) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let stairs = &lane.trial().stairs;
-        let glow = meshes.add(glow(stairs));
-        commands.entity(entity).with_children(|parent| {
-            for step in 0..stairs.steps {
-                let edge = edge(stairs, step);
-                let size = Vec3::new(stairs.width_m + OUT_M, DEPTH_M, HEIGHT_M);
-                let ahead = if stairs.step_rise_m(step) < 0.0 { -1.0 } else { 1.0 };
-                let to_middle =
-                    Vec3::new(0.0, (DEPTH_M / 2.0 - OUT_M) * ahead, OUT_M - HEIGHT_M / 2.0);
-                parent.spawn((
-                    StepEdge { step, is_lit: false },
-                    Mesh3d(props.cube.clone()),
-                    MeshMaterial3d(strips.dark.clone()),
-                    box_transform(edge + to_middle, size),
-                    NotShadowCaster,
-                ));
-                parent.spawn((
-                    StepEdge { step, is_lit: false },
-                    Mesh3d(glow.clone()),
-                    MeshMaterial3d(strips.glow.clone()),
-                    // Rotated, not mirrored: a mirrored mesh would show its back faces, which are not drawn.
-                    Transform::from_translation(edge)
-                        .with_rotation(Quat::from_rotation_z(if ahead < 0.0 { PI } else { 0.0 })),
-                    Visibility::Hidden,
-                    NotShadowCaster,
-                ));
-            }
-        });
+    for step in 0..stairs.steps {
+        let edge = edge(stairs, step);
+        let size = Vec3::new(stairs.width_m + OUT_M, DEPTH_M, HEIGHT_M);
+        let ahead = if stairs.step_rise_m(step) < 0.0 { -1.0 } else { 1.0 };
+        let to_middle = Vec3::new(0.0, (DEPTH_M / 2.0 - OUT_M) * ahead, OUT_M - HEIGHT_M / 2.0);
+        lane.spawn((
+            StepEdge(step),
+            piece(&props.cube, &props.dark_strip),
+            box_transform(edge + to_middle, size),
+            NotShadowCaster,
+        ));
+        lane.spawn((
+            StepEdge(step),
+            piece(glow, &props.glow),
+            // Rotated, not mirrored: a mirrored mesh would show its back faces, which are not drawn.
+            Transform::from_translation(edge)
+                .with_rotation(Quat::from_rotation_z(if ahead < 0.0 { PI } else { 0.0 })),
+            Visibility::Hidden,
+            NotShadowCaster,
+        ));
     }
 }
 
@@ -104,7 +62,7 @@ fn edge(stairs: &Stairs, step: u32) -> Vec3 {
 }
 
 /// Builds the glow of a strip: two patches over the tread and down the riser that fade out away from the edge.
-fn glow(stairs: &Stairs) -> Mesh {
+pub(super) fn glow(stairs: &Stairs) -> Mesh {
     let mut solid = MeshBuilder::default();
     let half = Vec3::X * stairs.width_m / 2.0;
     let least = |of: &dyn Fn(u32) -> f32| (0..stairs.steps).map(of).fold(f32::MAX, f32::min);
@@ -126,26 +84,26 @@ fn glow(stairs: &Stairs) -> Mesh {
 const GLOW_OPACITY: f32 = 0.65;
 
 /// Lights the strips of the steps under the middle limb, and darkens the others.
-fn light(
+pub(super) fn light(
     lanes: Query<(&Lane, &Children)>,
-    strips: Res<Strips>,
-    mut edges: Query<(&mut StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
+    props: Res<Props>,
+    mut edges: Query<(&StepEdge, &mut MeshMaterial3d<StandardMaterial>, &mut Visibility)>,
 ) {
     for (lane, children) in lanes.iter().filter(|(lane, _)| !lane.is_ghost) {
         let middle = lane.drawn_poses().nth(lane.body.middle_part);
         let stairs = &lane.trial().stairs;
         let climbed = middle.map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
         let mut edges = edges.iter_many_mut(children);
-        while let Some((mut edge, mut material, mut visibility)) = edges.fetch_next() {
-            let is_lit = edge.step < climbed;
-            if edge.is_lit == is_lit {
+        while let Some((edge, mut material, mut visibility)) = edges.fetch_next() {
+            let is_lit = edge.0 < climbed;
+            if material.0 == props.glow {
+                let shown = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
+                visibility.set_if_neq(shown);
                 continue;
             }
-            edge.is_lit = is_lit;
-            if material.0 == strips.glow {
-                *visibility = if is_lit { Visibility::Inherited } else { Visibility::Hidden };
-            } else {
-                material.0 = if is_lit { strips.lit.clone() } else { strips.dark.clone() };
+            let strip = if is_lit { &props.lit_strip } else { &props.dark_strip };
+            if material.0 != *strip {
+                material.0 = strip.clone();
             }
         }
     }

@@ -1,10 +1,8 @@
 //! Labels on the ground and the stairs: a scale of distances along the lane, and step numbers.
 
-use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::text::{TextMeshBuilder, TextMeshes, TextPlacement};
-use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::Stairs;
 
@@ -30,32 +28,17 @@ const MAX_NUMBER_M: f32 = 0.5;
 /// Distance from the right edge of the stairs to the middle of a step's number, in metres.
 const NUMBER_ASIDE_M: f32 = 0.45;
 
-pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(Update, paint.in_set(FrameSet::Draw));
-}
-
-/// Spawns the labels of a new lane.
-fn paint(
-    lanes: Query<(Entity, &Lane), Added<Lane>>,
-    lettering: Res<TextMeshes>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut commands: Commands,
-) {
-    for (entity, lane) in lanes.iter().filter(|(_, lane)| !lane.is_ghost) {
-        let mut writing = lettering.begin();
-        if lane.number == 0 {
-            // Only the nearest lane is labelled. The scale's large digits need less contrast than small ones.
-            writing.thin(SCALE_OPACITY);
-            scale(&mut writing, lane);
-            writing.thin(1.0);
-        }
-        numbers(&mut writing, &lane.trial().stairs);
-        commands.entity(entity).with_child((
-            Mesh3d(meshes.add(writing.into_mesh())),
-            MeshMaterial3d(lettering.paint.clone()),
-            NotShadowCaster,
-        ));
+/// Builds the labels of a lane.
+pub(super) fn labels(lane: &Lane, lettering: &TextMeshes) -> Mesh {
+    let mut writing = lettering.begin();
+    if lane.number == 0 {
+        // Only the nearest lane is labelled. The scale's large digits need less contrast than small ones.
+        writing.thin(SCALE_OPACITY);
+        scale(&mut writing, lane);
+        writing.thin(1.0);
     }
+    numbers(&mut writing, &lane.trial().stairs);
+    writing.into_mesh()
 }
 
 /// Adds the scale of distances along the lane, readable from the right of the stairs.

@@ -5,7 +5,6 @@ use bevy::prelude::*;
 use super::cache::SceneCache;
 use super::surface_look::SurfaceLook;
 use super::surface_texture::Grain;
-use crate::studio::schedule::FrameSet;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Surface;
 
@@ -18,11 +17,6 @@ pub(crate) struct SurfaceMaterials {
 
 /// Maximum number of cached materials and textures: more than lanes show at once. Dragging a slider creates many.
 const MAX_CACHED: usize = 48;
-
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<SurfaceMaterials>()
-        .add_systems(Update, dress.in_set(FrameSet::Draw).run_if(resource_changed::<Theme>));
-}
 
 impl SurfaceMaterials {
     /// Returns the material of a surface. Surfaces that look the same share it.
@@ -52,7 +46,7 @@ impl SurfaceMaterials {
 }
 
 /// Applies the theme's colours to the materials of surfaces.
-fn dress(
+pub(super) fn dress(
     theme: Res<Theme>,
     surfaces: Res<SurfaceMaterials>,
     mut materials: ResMut<Assets<StandardMaterial>>,

@@ -22,28 +22,15 @@ const LEVELS: f32 = 8.0;
 /// Function that returns the brightness of a kind of surface at a pixel, from 0 to 1.
 type Drawn = fn(usize, usize) -> f32;
 
-/// Shares of a look that affect its texture, in coarse steps, so that few textures are needed.
+/// Shares of a look that affect its texture, in coarse steps, so that few textures are needed: those of speckle, ice, glue, rubber,
+/// woven mats and mud.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Grain {
-    speckle: u8,
-    ice: u8,
-    glue: u8,
-    rubber: u8,
-    woven: u8,
-    mud: u8,
-}
+pub(crate) struct Grain([u8; 6]);
 
 impl From<&SurfaceLook> for Grain {
     fn from(look: &SurfaceLook) -> Self {
-        let step = |share: f32| (share * LEVELS).round() as u8;
-        Self {
-            speckle: step(look.speckle),
-            ice: step(look.ice),
-            glue: step(look.glue),
-            rubber: step(look.rubber),
-            woven: step(look.woven),
-            mud: step(look.mud),
-        }
+        let SurfaceLook { speckle, ice, glue, rubber, woven, mud, .. } = *look;
+        Self([speckle, ice, glue, rubber, woven, mud].map(|share| (share * LEVELS).round() as u8))
     }
 }
 
@@ -51,20 +38,15 @@ impl Grain {
     /// Returns the brightness of the texture at a pixel, from 0 to 1.
     fn at(self, x: usize, y: usize) -> f32 {
         let share = |step: u8| f32::from(step) / LEVELS;
+        let [speckle, layers @ ..] = self.0;
         // Stone: dark and pale grains of some centimetres on larger clouds.
         let clouds = noise(x, y, 8, 1) * 0.6 + noise(x, y, 16, 2) * 0.4;
         let dark = rise(noise(x, y, 64, 3), 0.66, 0.80);
         let pale = rise(noise(x, y, 64, 4), 0.70, 0.82);
         let stone = 0.86 + 0.08 * (clouds - 0.5) - 0.17 * dark + 0.10 * pale;
-        let mut value = mix(0.90, stone, share(self.speckle));
-        let layers: [(u8, Drawn); 5] = [
-            (self.ice, ice),
-            (self.glue, glue),
-            (self.rubber, rubber),
-            (self.woven, woven),
-            (self.mud, mud),
-        ];
-        for (step, of) in layers {
+        let mut value = mix(0.90, stone, share(speckle));
+        let drawn: [Drawn; 5] = [ice, glue, rubber, woven, mud];
+        for (step, of) in layers.into_iter().zip(drawn) {
             if step > 0 {
                 value = mix(value, of(x, y), share(step));
             }

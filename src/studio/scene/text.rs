@@ -23,10 +23,6 @@ pub(crate) struct TextMeshes {
     pub on_flag: Handle<StandardMaterial>,
 }
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<TextMeshes>();
-}
-
 impl FromWorld for TextMeshes {
     fn from_world(world: &mut World) -> Self {
         let (atlas, picture) = Atlas::draw();
@@ -75,7 +71,7 @@ impl TextMeshes {
     /// Returns the width of a text, in metres, with digits of this height, in metres.
     pub fn width_m(&self, text: &str, digit_height_m: f32) -> f32 {
         let pixels: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
-        pixels * digit_height_m / self.atlas.digit_height()
+        pixels * digit_height_m / self.atlas.digit_height
     }
 }
 
@@ -87,11 +83,11 @@ impl TextMeshBuilder<'_> {
 
     /// Adds a text with digits of this height, in metres.
     pub fn text(&mut self, text: &str, digit_height_m: f32, place: TextPlacement) {
-        let metres = digit_height_m / self.atlas.digit_height();
+        let metres = digit_height_m / self.atlas.digit_height;
         let width: f32 = text.chars().map(|letter| self.atlas.advance(letter)).sum();
         let mut pen = -width / 2.0;
         for letter in text.chars() {
-            let corner = Vec2::new(pen - MARGIN, BASELINE - self.atlas.digit_height() / 2.0 - CELL);
+            let corner = Vec2::new(pen - MARGIN, BASELINE - self.atlas.digit_height / 2.0 - CELL);
             let cell = Rect::from_corners(corner * metres, (corner + CELL) * metres);
             self.rectangle(cell, self.atlas.cell(letter), place);
             pen += self.atlas.advance(letter);

@@ -111,7 +111,3 @@ impl WayBack {
         }
     }
 }
-
-pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<WayBack>();
-}

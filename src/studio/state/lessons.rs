@@ -26,7 +26,6 @@ use snakes_core::evolve::RunPlan;
 use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
 
 use catalogue::{champions, plan};
-use lesson::Side;
 
 pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSON_ORDER, LESSONS};
 pub(crate) use found::Found;
@@ -92,7 +91,6 @@ impl Lessons {
     /// Returns the state of the open lesson, if any.
     pub fn view(&self) -> Option<LessonView<'_>> {
         let current = self.current.as_ref()?;
-        let progress = current.progress.get(current.scene)?;
         // A scene with the snake alone has no question and is no experiment.
         let scenes = LESSONS[current.index].scenes.iter().zip(&current.progress);
         let mut experiments = scenes.filter(|(scene, _)| scene.question().is_some());
@@ -100,7 +98,7 @@ impl Lessons {
         Some(LessonView {
             index: current.index,
             scene: current.scene,
-            progress,
+            progress: current.progress(),
             is_busy: current.under_way.is_some(),
             shows_conclusion: are_revealed && current.under_way.is_none(),
         })
@@ -110,14 +108,14 @@ impl Lessons {
     /// experiment has not been watched to its end.
     pub fn hides_result(&self) -> bool {
         self.current.as_ref().is_some_and(|current| {
-            let asks = current.scene().is_some_and(|scene| scene.question().is_some());
-            asks && current.progress.get(current.scene).is_some_and(|of| !of.is_revealed)
+            current.scene().question().is_some() && !current.progress().is_revealed
         })
     }
 
     /// Returns whether the selected scene has a question and its experiment has not begun.
     pub fn awaits_guess(&self) -> bool {
-        self.current.as_ref().is_some_and(Current::awaits_guess)
+        let has_begun = self.view().is_none_or(|view| view.progress.has_begun);
+        self.hides_result() && !has_begun
     }
 
     /// Executes a command. Returns what to show on the stage, if anything.
@@ -188,9 +186,8 @@ impl Lessons {
     /// Begins the experiment of the selected scene, with or without a guess. A first guess cannot be changed.
     fn try_it(&mut self, guess: Option<usize>) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
-        let number = current.scene;
-        let answers = current.scene().map_or(0, |scene| scene.answers().len());
-        let Some(progress) = current.progress.get_mut(number) else { return Ok(None) };
+        let (number, answers) = (current.scene, current.scene().answers().len());
+        let progress = &mut current.progress[number];
         if progress.has_begun {
             return Ok(None);
         }
@@ -203,8 +200,8 @@ impl Lessons {
     fn reveal(&mut self) {
         if let Some(current) = &mut self.current
             && current.under_way.is_none()
-            && let question = current.scene().and_then(LessonScene::question)
-            && let Some(progress) = current.progress.get_mut(current.scene)
+            && let question = current.scene().question()
+            && let progress = &mut current.progress[current.scene]
             && question.is_none_or(|question| progress.knows_result(question))
         {
             progress.is_revealed = true;
@@ -218,13 +215,10 @@ impl Lessons {
         run.is_lent = false;
         history.give_back(own.history);
         match own.pace {
-            Pace::Running if run.status() == RunStatus::Paused => run.start()?,
-            Pace::OneGeneration if run.status() == RunStatus::Paused => {
-                run.single_generation()?;
-            }
-            Pace::Running | Pace::OneGeneration | Pace::Held => {}
+            Pace::Running if run.status() == RunStatus::Paused => run.start(),
+            Pace::OneGeneration if run.status() == RunStatus::Paused => run.single_generation(),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Selects a scene and shows its snakes. Its runs start after the reader has guessed.
@@ -251,7 +245,7 @@ impl Lessons {
             LessonScene::Runs { preset, runs, .. } => {
                 let plans = runs.iter().map(|side| plan(preset, side));
                 let plans = plans.collect::<Result<Vec<_>, _>>()?;
-                progress.runs = runs.iter().map(found).collect();
+                progress.runs = runs.iter().map(|side| Found::of(side.name)).collect();
                 let started = ParallelRuns::start(plans);
                 current.under_way = Some(
                     started.map_err(|error| format!("The runs could not be started: {error}"))?,
@@ -264,7 +258,7 @@ impl Lessons {
     /// Handles events of the lesson's runs. When all are finished, returns the best champion of each run, to race them.
     fn take_in(&mut self) -> Result<Option<Show>, String> {
         let Some(current) = &mut self.current else { return Ok(None) };
-        let Some(progress) = current.progress.get_mut(current.scene) else { return Ok(None) };
+        let progress = &mut current.progress[current.scene];
         while let Some(event) = current.under_way.as_ref().and_then(ParallelRuns::poll) {
             match event {
                 ParallelRunsEvent::Generation { run, report } => {
@@ -293,11 +287,9 @@ impl Lessons {
     /// Records the state of the playback, if the question of the selected scene is about playbacks.
     fn follow_playback(&mut self, playback: &Playback, lanes: &[&Lane]) {
         let Some(current) = &mut self.current else { return };
-        let question = current.scene().and_then(LessonScene::question);
-        if question.is_some_and(|question| question.asks == Asks::PlaybackSpeed)
-            && let Some(progress) = current.progress.get_mut(current.scene)
-        {
-            progress.plays.follow_stage(playback, lanes);
+        let question = current.scene().question();
+        if question.is_some_and(|question| question.asks == Asks::PlaybackSpeed) {
+            current.progress[current.scene].plays.follow_stage(playback, lanes);
         }
     }
 
@@ -305,7 +297,7 @@ impl Lessons {
     /// that ended undisturbed; these must be the names of the scene's lanes.
     fn see(&mut self, ended: &[Option<&str>]) {
         let is_seen = self.current.as_ref().is_some_and(|current| {
-            let shown = current.progress.get(current.scene).map_or(&[][..], |of| &of.lanes);
+            let shown = &current.progress().lanes;
             let names = shown.iter().map(|(name, _)| Some(name.as_str()));
             !shown.is_empty() && names.eq(ended.iter().copied())
         });
@@ -317,14 +309,12 @@ impl Lessons {
 
 impl Current {
     /// Returns the selected scene of the lesson.
-    fn scene(&self) -> Option<&'static LessonScene> {
-        LESSONS[self.index].scenes.get(self.scene)
+    fn scene(&self) -> &'static LessonScene {
+        &LESSONS[self.index].scenes[self.scene]
     }
 
-    fn awaits_guess(&self) -> bool {
-        let asks = self.scene().is_some_and(|scene| scene.question().is_some());
-        let progress = self.progress.get(self.scene);
-        asks && progress.is_some_and(|of| !of.has_begun && !of.is_revealed)
+    fn progress(&self) -> &Progress {
+        &self.progress[self.scene]
     }
 }
 
@@ -362,11 +352,8 @@ fn take_in(
     let ended: Vec<Option<&str>> = names.collect();
     lessons.see(&ended);
     let reached = lessons.view().filter(|view| view.shows_conclusion);
-    if let Some(title) = reached.map(|view| LESSONS[view.index].title)
-        && !lessons.finished.contains(title)
-    {
-        lessons.finished.insert(title.to_owned());
-    }
+    let finished = reached.map(|view| LESSONS[view.index].title.to_owned());
+    lessons.finished.extend(finished);
     let end_s = end_s(lanes.iter().copied());
     let is_over = !lanes.is_empty() && lanes.iter().all(|lane| lane.replay.is_over());
     if is_over && playback.is_playing && playback.time_s() >= end_s {
@@ -381,10 +368,6 @@ fn take_in(
         Ok(None) => {}
         Err(problem) => notices.problem(problem),
     }
-}
-
-fn found(side: &Side) -> Found {
-    Found { name: side.name.to_owned(), reports: Vec::new(), run_hash: None }
 }
 
 #[cfg(test)]

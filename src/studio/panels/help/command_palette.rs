@@ -49,17 +49,12 @@ impl CommandPalette {
             *self = Self { presets: presets(), is_open: true, ..Self::default() };
         }
         let found = matching(&self.entries(situation, lessons), &self.typed);
-        self.chosen = self.chosen.min(found.len().saturating_sub(1));
         let (down, up, enter) = context.input_mut(|input| {
             let mut pressed = |key| input.consume_key(egui::Modifiers::NONE, key);
             (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp), pressed(egui::Key::Enter))
         });
-        if down {
-            self.chosen = (self.chosen + 1).min(found.len().saturating_sub(1));
-        }
-        if up {
-            self.chosen = self.chosen.saturating_sub(1);
-        }
+        let last = found.len().saturating_sub(1);
+        self.chosen = (self.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
         let mut taken = enter.then(|| found.get(self.chosen).cloned()).flatten();
         let palette = theme::of_context(context);
         let area = egui::Modal::default_area(egui::Id::new("palette"))

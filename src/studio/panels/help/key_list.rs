@@ -67,7 +67,7 @@ fn groups() -> Vec<KeyGroup> {
         let keys = actions().iter().filter(with_key).map(|action| (action.key(), action.name));
         KeyGroup { name: menu.name(), keys: keys.collect() }
     };
-    let mut groups: Vec<KeyGroup> = Menu::ALL.map(of).into_iter().collect();
+    let mut groups: Vec<KeyGroup> = Menu::ALL.map(of).into();
     groups.retain(|group| !group.keys.is_empty());
     groups.push(KeyGroup { name: "Mouse", keys: MOUSE.to_vec() });
     groups
@@ -77,11 +77,10 @@ fn groups() -> Vec<KeyGroup> {
 fn in_columns(groups: &[KeyGroup], columns: usize) -> Vec<&[KeyGroup]> {
     // A heading is as high as two rows.
     let length = |group: &KeyGroup| group.keys.len() + 2;
-    let all: usize = groups.iter().map(length).sum();
     let mut found = Vec::new();
     let mut rest = groups;
     for column in (1..=columns).rev() {
-        let goal = rest.iter().map(length).sum::<usize>().min(all).div_ceil(column);
+        let goal = rest.iter().map(length).sum::<usize>().div_ceil(column);
         let mut used = 0;
         let taken = rest.iter().take_while(|group| {
             let is_first = used == 0;

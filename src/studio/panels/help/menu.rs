@@ -1,7 +1,5 @@
 //! The menu bar, which lists every action with its shortcut.
 
-use std::path::Path;
-
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::MenuBar;
 
@@ -80,13 +78,13 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
 /// Name of the action after which the submenu of recent files is placed.
 const BEFORE_RECENT: &str = "Open…";
 
-/// Draws the submenu of recent files: names, with full paths as tooltips.
+/// Draws the submenu of recent files: names, with full paths as tooltips. The plan of a run has the name of its folder.
 fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Command>) {
     ui.add_enabled_ui(!recent.0.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(theme::MENU_WIDTH);
             for path in &recent.0 {
-                let button = egui::Button::new(short_name(path)).truncate();
+                let button = egui::Button::new(run_of_plan(path).name()).truncate();
                 if ui.add(button).on_hover_text(path.display().to_string()).clicked() {
                     let paths = vec![path.clone()];
                     commands.push(Command::File(FileCommand::Answer(FileQuestion::Open, paths)));
@@ -95,11 +93,6 @@ fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Comma
             }
         });
     });
-}
-
-/// Returns the name of a file, or the name of the folder if the file is the plan of a run.
-fn short_name(path: &Path) -> String {
-    run_of_plan(path).name()
 }
 
 /// Draws a menu entry. In a menu that `has_toggles`, names are indented by the width of a check box.
@@ -116,16 +109,13 @@ fn entry(
     }
     let command = action.command(situation);
     let place = egui::Id::new("check box of an entry");
-    let button = if has_toggles {
-        let side = egui::Vec2::splat(CHECK_BOX_SIDE);
-        egui::Button::new((egui::Atom::custom(place, side), action.name))
-    } else {
-        egui::Button::new(action.name)
+    let box_atom = egui::Atom::custom(place, egui::Vec2::splat(CHECK_BOX_SIDE));
+    let button = match has_toggles {
+        true => egui::Button::new((box_atom, action.name)),
+        false => egui::Button::new(action.name),
     };
-    let button = button.shortcut_text(action.key());
-    let is_enabled = command.is_some();
-    let shown = ui.add_enabled_ui(is_enabled, |ui| {
-        let shown = button.atom_ui(ui);
+    let shown = ui.add_enabled_ui(command.is_some(), |ui| {
+        let shown = button.shortcut_text(action.key()).atom_ui(ui);
         if let Some(is_on) = command.as_ref().and_then(is_on) {
             if let Some(rect) = shown.rect(place) {
                 paint_check_box(ui, rect, is_on);

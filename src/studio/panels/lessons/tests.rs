@@ -121,13 +121,11 @@ fn finished_playbacks_are_listed_with_every_digit_and_their_hash() {
 
 #[test]
 fn results_have_the_colours_of_their_lanes() {
-    let runs_of = |name: &str| Found { name: name.to_owned(), reports: Vec::new(), run_hash: None };
     let progress = Progress {
-        runs: vec![runs_of("one"), runs_of("two")],
-        lanes: vec![("three", 1.0), ("four", 2.0)]
-            .into_iter()
+        runs: vec![Found::of("one"), Found::of("two")],
+        lanes: [("three", 1.0), ("four", 2.0)]
             .map(|(name, end_m)| (name.to_owned(), Evaluation::of_fitness(end_m)))
-            .collect(),
+            .into(),
         is_revealed: true,
         ..Progress::default()
     };

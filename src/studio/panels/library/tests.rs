@@ -82,13 +82,13 @@ fn library() -> Library {
     ])
 }
 
-fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
+fn harness(library: Library, size: [f32; 2]) -> Test<'static> {
     let mut panel = LibraryPanel::default();
     // Two clicks count as a double click only if the frames are short.
     let builder = Harness::builder().with_size(egui::Vec2::from(size)).with_step_dt(1.0 / 60.0);
     let mut harness = builder.build_ui_state(
         move |ui, commands: &mut Vec<Command>| {
-            panel.ui(ui, library, &UndoHistory::default(), commands)
+            panel.ui(ui, &library, &UndoHistory::default(), commands)
         },
         Vec::new(),
     );
@@ -98,7 +98,7 @@ fn harness<'a>(library: &'a Library, size: [f32; 2]) -> Test<'a> {
 }
 
 /// Calls `act`, and returns the commands to the library that were sent afterwards.
-fn sent(library: &Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
+fn sent(library: Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
     let mut harness = harness(library, [420.0, 800.0]);
     act(&mut harness);
     harness.run();
@@ -129,7 +129,6 @@ fn press(harness: &mut Test<'_>, modifiers: Modifiers, key: Press) {
 
 #[test]
 fn each_button_sends_its_command_for_the_selected_save() {
-    let library = library();
     for (row, button, request) in [
         ("alpha", "Replay", LibraryCommand::Replay(file("alpha"))),
         ("beta", "Duplicate", LibraryCommand::Duplicate(vec![file("beta")])),
@@ -137,13 +136,13 @@ fn each_button_sends_its_command_for_the_selected_save() {
         (RUN, "Replay", LibraryCommand::Replay(SavePlace::Run(run_folder()))),
         ("fast", "Duplicate", LibraryCommand::Duplicate(vec![SavePlace::Shipped("fast")])),
     ] {
-        let found = sent(&library, |harness| {
+        let found = sent(library(), |harness| {
             select(harness, row);
             clicked(harness, button);
         });
         assert_eq!(found, [request], "{button} of {row}");
     }
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "alpha");
     clicked(&mut harness, "New run from this");
     let expected = Command::Plan(PlanCommand::StartFromSave(file("alpha")));
@@ -152,11 +151,10 @@ fn each_button_sends_its_command_for_the_selected_save() {
 
 #[test]
 fn impossible_actions_are_disabled() {
-    let library = library();
     for (row, button) in
         [("broken", "Replay"), ("fast", "Delete"), ("fast", "Rename"), (RUN, "Duplicate")]
     {
-        let found = sent(&library, |harness| {
+        let found = sent(library(), |harness| {
             select(harness, row);
             assert!(harness.get_by_label(button).accesskit_node().is_disabled(), "{button}");
             clicked(harness, button);
@@ -167,8 +165,7 @@ fn impossible_actions_are_disabled() {
 
 #[test]
 fn a_stopped_run_is_resumed_and_lists_its_champions() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, RUN);
     clicked(&mut harness, "Continue");
     assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
@@ -234,8 +231,7 @@ fn an_exam_is_a_table_and_the_command_that_found_a_champion_is_behind_details() 
 
 #[test]
 fn shift_and_control_select_several_saves_for_a_race() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         select(harness, "alpha");
         row_of(harness, "beta").click_modifiers(Modifiers::SHIFT);
         harness.run();
@@ -251,8 +247,7 @@ fn shift_and_control_select_several_saves_for_a_race() {
 
 #[test]
 fn a_double_click_replays_a_save() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         row_of(harness, "beta").click();
         row_of(harness, "beta").click();
         harness.run();
@@ -262,9 +257,8 @@ fn a_double_click_replays_a_save() {
 
 #[test]
 fn every_mouse_action_has_a_key() {
-    let library = library();
     let none = Modifiers::NONE;
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         harness.get_by_label_contains("Saves: ").focus();
         harness.run();
         // The newest save is the first row.
@@ -290,8 +284,7 @@ fn every_mouse_action_has_a_key() {
 
 #[test]
 fn the_search_shows_only_saves_that_match_all_words() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     type_into(&mut harness, "Search the library", "damaged");
     assert!(shows(&harness, "1 of 5 saves"));
     assert!(shows(&harness, "broken, damaged: cut off at line 3"));
@@ -303,8 +296,7 @@ fn the_search_shows_only_saves_that_match_all_words() {
 
 #[test]
 fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
-    let library = library();
-    let mut harness = harness(&library, [900.0, 800.0]);
+    let mut harness = harness(library(), [900.0, 800.0]);
     let top = |harness: &Test<'_>, name: &str| row_of(harness, name).rect().top();
     assert!(top(&harness, "alpha") < top(&harness, "beta"), "the newest first");
     clicked(&mut harness, "Sort by name");
@@ -315,9 +307,8 @@ fn a_click_on_a_column_sorts_and_a_second_click_reverses_the_order() {
 
 #[test]
 fn everything_fits_into_a_narrow_or_low_panel() {
-    let library = library();
     for size in [[300.0, 700.0], [300.0, 200.0], [559.0, 400.0], [900.0, 300.0]] {
-        let mut harness = harness(&library, size);
+        let mut harness = harness(library(), size);
         for name in ["alpha", RUN] {
             if size[1] > 300.0 {
                 select(&mut harness, name);
@@ -325,20 +316,15 @@ fn everything_fits_into_a_narrow_or_low_panel() {
         }
         let nodes = harness.get_all_by(|node| node.label().is_some());
         for node in nodes {
-            let rect = node.rect();
-            assert!(
-                rect.right() <= size[0] + 0.5,
-                "{:?} of {size:?}: {rect}",
-                node.accesskit_node().label()
-            );
+            let (rect, label) = (node.rect(), node.accesskit_node().label());
+            assert!(rect.right() <= size[0] + 0.5, "{label:?} of {size:?}: {rect}");
         }
     }
 }
 
 #[test]
 fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 560.0]);
+    let mut harness = harness(library(), [420.0, 560.0]);
     let list = |harness: &Test<'_>| harness.get_by_label_contains("Saves: ").rect();
     let list_height = |harness: &Test<'_>| list(harness).height();
     let before = list_height(&harness);
@@ -347,14 +333,7 @@ fn the_selected_row_stays_visible_when_its_details_shrink_the_list() {
     assert!(list.height() < before - theme::LIBRARY_ROW_HEIGHT, "{} of {before}", list.height());
     assert!(list.contains_rect(row), "{row} in {list}");
     // Without a selection, the list has its full height again.
-    let held = Modifiers::COMMAND;
-    let at = row.center();
-    harness.event_modifiers(egui::Event::PointerMoved(at), held);
-    for pressed in [true, false] {
-        let button = egui::PointerButton::Primary;
-        let event = egui::Event::PointerButton { pos: at, button, pressed, modifiers: held };
-        harness.event_modifiers(event, held);
-    }
+    row_of(&harness, "fast").click_modifiers(Modifiers::COMMAND);
     harness.run();
     assert_eq!(list_height(&harness), before);
 }
@@ -364,7 +343,7 @@ fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
     let saves = (10..30).map(|number| (file(&format!("save {number}")), 9, shipped("fast")));
     let library = library_of(saves.collect());
     // The panel of a window of 1280 by 720 points.
-    let mut harness = harness(&library, [384.0, 650.0]);
+    let mut harness = harness(library, [384.0, 650.0]);
     let rows = |harness: &Test<'_>| {
         harness.get_by_label_contains("Saves: ").rect().height() / theme::LIBRARY_ROW_HEIGHT
     };
@@ -377,8 +356,7 @@ fn a17_a_selection_leaves_more_than_half_of_the_panel_to_the_list() {
 
 #[test]
 fn a17_delete_concerns_no_save_that_the_search_hides() {
-    let library = library();
-    let found = sent(&library, |harness| {
+    let found = sent(library(), |harness| {
         select(harness, "alpha");
         row_of(harness, "beta").click_modifiers(Modifiers::COMMAND);
         harness.run();
@@ -386,7 +364,7 @@ fn a17_delete_concerns_no_save_that_the_search_hides() {
         clicked(harness, "Delete");
     });
     assert_eq!(found, [LibraryCommand::Delete(vec![file("beta")])]);
-    let hidden = sent(&library, |harness| {
+    let hidden = sent(library(), |harness| {
         select(harness, "alpha");
         type_into(harness, "Search the library", "beta");
         assert!(!shows(harness, "Delete"), "nothing that is shown is selected");
@@ -396,8 +374,7 @@ fn a17_delete_concerns_no_save_that_the_search_hides() {
 
 #[test]
 fn a13_space_in_the_list_pauses_the_stage() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::Space);
     assert_eq!(*harness.state(), [Command::Player(PlayerCommand::Toggle)]);
@@ -407,7 +384,7 @@ fn a13_space_in_the_list_pauses_the_stage() {
 fn only_the_visible_rows_of_ten_thousand_saves_are_laid_out() {
     let entries = (0..10_000).map(|number| entry(file(&format!("save {number:05}")), number + 1));
     let library = Library::of(vec![LibraryEvent::Listed(entries.collect())]);
-    let mut harness = harness(&library, [420.0, 600.0]);
+    let mut harness = harness(library, [420.0, 600.0]);
     let rows = |harness: &Test<'_>| {
         let is_row = |label: String| label.starts_with("save 0");
         harness.query_all_by(|node| node.label().is_some_and(is_row)).count()
@@ -439,7 +416,7 @@ fn long_operations_can_be_cancelled_and_short_ones_show_no_progress() {
             &mut UndoHistory::default(),
             &mut Notices::default(),
         );
-        let found = sent(&library, |harness| {
+        let found = sent(library, |harness| {
             assert_eq!(harness.query_by_label("Cancel").is_some(), shown);
             if shown {
                 clicked(harness, "Cancel");

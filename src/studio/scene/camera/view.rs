@@ -95,12 +95,20 @@ impl CameraView {
             if is_clear(&nearest) {
                 return Some(nearest);
             }
+            let part = |share: f32| {
+                let FreeMargins { left, right, bottom } = most;
+                view(FreeMargins {
+                    left: left * share,
+                    right: right * share,
+                    bottom: bottom * share,
+                })
+            };
             let (mut too_little, mut enough) = (0.0, 1.0);
             for _ in 0..SEARCH_STEPS {
                 let share = (too_little + enough) / 2.0;
-                if is_clear(&view(most * share)) { enough = share } else { too_little = share }
+                if is_clear(&part(share)) { enough = share } else { too_little = share }
             }
-            Some(view(most * enough)).filter(is_clear)
+            Some(part(enough)).filter(is_clear)
         };
         let beside_left = FreeMargins { left, ..FreeMargins::default() };
         let without_messages = clear(beside_left, is_at_left).unwrap_or_else(|| view(beside_left));
@@ -227,15 +235,6 @@ struct FreeMargins {
     bottom: f32,
 }
 
-impl std::ops::Mul<f32> for FreeMargins {
-    type Output = Self;
-
-    fn mul(self, share: f32) -> Self {
-        let Self { left, right, bottom } = self;
-        Self { left: left * share, right: right * share, bottom: bottom * share }
-    }
-}
-
 /// Maximum width of a free margin, as a fraction of the picture.
 const MAX_ASIDE: f32 = 0.42;
 /// Maximum ratio of the distances with and without messages over the stage.
@@ -246,8 +245,8 @@ const SHIFTS: u32 = 28;
 const CARD_MARGIN: f32 = 0.035;
 /// Number of halvings in the search for the width of a free margin: precise to a hundredth of the picture.
 const SEARCH_STEPS: u32 = 6;
-/// Vertical field of view of Bevy's default camera, in radians.
-const VERTICAL_VIEW_RAD: f32 = std::f32::consts::FRAC_PI_4;
+/// Vertical angle of view of the stage and of Bevy's default camera, in radians.
+pub(super) const VERTICAL_VIEW_RAD: f32 = std::f32::consts::FRAC_PI_4;
 /// Ratio of the picture's size to that of its content.
 const MARGIN: f32 = 1.12;
 
@@ -290,12 +289,9 @@ mod tests {
                 (0.0, 0.2, 0.3),
                 (0.2, 0.0, 0.4),
             ] {
-                let view = CameraView::of(camera_mode, 6).framing_beside(
-                    target,
-                    &points,
-                    aspect,
-                    FreeMargins { left, right, bottom },
-                );
+                let free = FreeMargins { left, right, bottom };
+                let view = CameraView::of(camera_mode, 6);
+                let view = view.framing_beside(target, &points, aspect, free);
                 let places =
                     points.map(|point| view.share_of_picture(target + view.offset, point, aspect));
                 let from = places.iter().map(|at| at.x).fold(1.0, f32::min);

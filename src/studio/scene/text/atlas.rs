@@ -31,7 +31,8 @@ const SIZES: u32 = 5;
 pub struct Atlas {
     /// Advance width of each character, in pixels.
     advances: Vec<f32>,
-    digit_height: f32,
+    /// Height of a digit, in pixels.
+    pub digit_height: f32,
 }
 
 impl Atlas {
@@ -66,11 +67,6 @@ impl Atlas {
     /// Returns the advance width of a character, in pixels.
     pub fn advance(&self, letter: char) -> f32 {
         self.advances[index_of(letter)]
-    }
-
-    /// Returns the height of a digit, in pixels.
-    pub fn digit_height(&self) -> f32 {
-        self.digit_height
     }
 
     /// Returns the rectangle of a character's cell, in texture coordinates.

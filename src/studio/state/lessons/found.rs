@@ -15,6 +15,11 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// Creates the results of a run with this name, before its first generation.
+    pub fn of(name: &str) -> Self {
+        Self { name: name.to_owned(), reports: Vec::new(), run_hash: None }
+    }
+
     /// Returns the best champion so far.
     pub fn best(&self) -> Option<&Champion> {
         let ranked = self.reports.iter().filter_map(|report| {

@@ -100,16 +100,16 @@ pub(super) const fn lane(
 
 /// Creates a lane with the champion's gait in a changed body.
 pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: usize) -> Side {
-    Side { name, changes: &[], body_change: Some((change, block)), seed: 1, threads: 1 }
+    Side { body_change: Some((change, block)), ..lane(name, &[]) }
 }
 
+/// Creates a run on one thread.
 pub(super) const fn run(
     name: &'static str,
     seed: u64,
-    threads: usize,
     changes: &'static [(&'static str, &'static str)],
 ) -> Side {
-    Side { name, changes, body_change: None, seed, threads }
+    Side { seed, ..lane(name, changes) }
 }
 
 /// Scene with the champion alone, without changes.
@@ -130,9 +130,4 @@ pub(super) const fn best_run(finding: &'static str) -> Question {
 
 pub(super) const fn same_hash(finding: &'static str) -> Question {
     Question { text: "Will both runs have the same hash?", asks: Asks::SameHash, finding }
-}
-
-pub(super) const fn later_bodies(finding: &'static str) -> Question {
-    let text = "In which run does the body of the best snake change more often in the second half?";
-    Question { text, asks: Asks::LateBodyChanges, finding }
 }

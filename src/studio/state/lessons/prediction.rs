@@ -55,11 +55,11 @@ pub(crate) struct Progress {
 
 /// The right answer to a question.
 #[derive(Debug, Clone, PartialEq)]
-struct Truth {
+pub(super) struct Truth {
     /// Index of the right answer.
-    answer: usize,
+    pub answer: usize,
     /// Result as a clause of a sentence.
-    words: String,
+    pub words: String,
 }
 
 impl LessonScene {
@@ -100,13 +100,8 @@ impl Progress {
         question.asks != Asks::PlaybackSpeed || self.plays.are_equal().is_some()
     }
 
-    /// Returns the index of the right answer, if it is known.
-    #[cfg(test)]
-    pub fn true_answer(&self, asks: Asks) -> Option<usize> {
-        self.truth(asks).map(|truth| truth.answer)
-    }
-
-    fn truth(&self, asks: Asks) -> Option<Truth> {
+    /// Returns the right answer, if it is known.
+    pub(super) fn truth(&self, asks: Asks) -> Option<Truth> {
         match asks {
             Asks::Furthest => {
                 let healthy = |evaluation: &Evaluation| {
@@ -222,23 +217,19 @@ mod tests {
         let mut report = explored_run().reports()[0].clone();
         let best = report.champion.as_mut().expect("a healthy snake");
         (best.evaluation.centre_y_m, best.evaluation.fitness) = (7.76, 7.19);
-        let of = |name: &str| Found {
-            name: name.to_owned(),
-            reports: vec![report.clone()],
-            run_hash: None,
-        };
-        let progress = Progress { runs: vec![of("one")], ..Progress::default() };
+        let run = Found { reports: vec![report], ..Found::of("one") };
+        let progress = Progress { runs: vec![run], ..Progress::default() };
         let words = progress.truth(Asks::BestRun).expect("a run").words;
         assert!(words.contains("7.19 m") && !words.contains("7.76"), "{words}");
     }
 
     #[test]
     fn ends_within_a_metre_count_as_equally_far() {
-        let close = progress(None, &[25.2, 26.0, 25.9]);
-        assert_eq!(close.true_answer(Asks::Furthest), Some(3));
-        let mut out = progress(None, &[25.2, 26.0, 25.9]);
-        out.lanes[0].1.disqualified = Some(snakes_core::world::Disqualification::TooFast);
-        assert_eq!(out.true_answer(Asks::Furthest), Some(1), "a disqualified snake ends nowhere");
+        let answer = |of: &Progress| of.truth(Asks::Furthest).map(|truth| truth.answer);
+        let mut ends = progress(None, &[25.2, 26.0, 25.9]);
+        assert_eq!(answer(&ends), Some(3));
+        ends.lanes[0].1.disqualified = Some(snakes_core::world::Disqualification::TooFast);
+        assert_eq!(answer(&ends), Some(1), "a disqualified snake ends nowhere");
     }
 
     #[test]

@@ -47,14 +47,14 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
 }
 
 /// Evolves the runs of a scene, and returns their results.
-fn outcome(preset: &str, sides: &[Side]) -> Vec<Found> {
+fn outcome(preset: &str, sides: &[lesson::Side]) -> Vec<Found> {
     sides
         .iter()
         .map(|side| {
             let (plan, threads) = plan(preset, side).expect("allowed");
             let pool = LocalPool::new(threads).expect("threads");
             let mut experiment = Experiment::new(plan);
-            let mut found = found(side);
+            let mut found = Found::of(side.name);
             while !experiment.is_over() {
                 let report = experiment.run_generation(&pool, &RunControl::default());
                 found.reports.push(report.expect("not cancelled"));
@@ -70,11 +70,29 @@ fn ends_m(lesson: usize, scene: usize) -> Vec<f32> {
     result(lesson, scene).lanes.iter().map(|(_, evaluation)| evaluation.centre_y_m).collect()
 }
 
+/// Returns, for each lane of a scene, the number of steps that the snake climbed and whether it is on the landing.
+fn places(lesson: usize, scene: usize) -> Vec<(u32, bool)> {
+    let LessonScene::Lanes { champion, lanes, .. } = &LESSONS[lesson].scenes[scene] else {
+        panic!("no lanes")
+    };
+    let staged = champions(champion, lanes).expect("they fit");
+    let place = |(staged, (_, of)): (&StagedChampion, &(String, Evaluation))| {
+        let climbed = of.behaviour.expect("measured").steps_climbed;
+        (climbed, of.is_on_landing(&staged.trial().stairs))
+    };
+    staged.iter().zip(&result(lesson, scene).lanes).map(place).collect()
+}
+
+/// Returns the best champion of a run.
+fn best(found: &Found) -> &Champion {
+    found.best().expect("a champion")
+}
+
 /// Returns the right answer to a scene's question.
 fn answer(lesson: usize, scene: usize) -> &'static str {
     let shown = &LESSONS[lesson].scenes[scene];
     let asks = shown.question().expect("a question").asks;
-    shown.answers()[result(lesson, scene).true_answer(asks).expect("known")]
+    shown.answers()[result(lesson, scene).truth(asks).expect("known").answer]
 }
 
 #[test]
@@ -127,27 +145,23 @@ fn the_conclusion_about_the_frame_rate_is_true() {
 #[test]
 fn the_conclusion_about_limits_is_true() {
     let found = &result(2, 1).runs;
-    let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
     let [with, without] = &found[..] else { panic!("two runs") };
-    let best = |of: &Found| last(of).expect("a healthy snake").best;
-    assert!(best(with) > best(without) + 3.0, "{} and {}", best(with), best(without));
+    let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
+    let [most, least] = [with, without].map(|of| last(of).expect("a healthy snake").best);
+    assert!(most > least + 3.0, "{most} and {least}");
     let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
     assert!(out(without) > out(with), "{} and {}", out(without), out(with));
     assert_eq!(answer(2, 1), "with limits");
-    let champion = with.best().expect("a champion");
-    let reached = champion.reached();
-    assert!(
-        reached.ends_with("passes 2 steps beside the stairs"),
-        "as the finding says: {reached}"
-    );
+    let (reached, said) = (best(with).reached(), "passes 2 steps beside the stairs");
+    assert!(reached.ends_with(said), "as the finding says: {reached}");
 }
 
 #[test]
 fn the_conclusion_about_halving_is_true() {
     let found = &result(3, 1).runs;
     let [halved, kept] = &found[..] else { panic!("two runs") };
-    let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
-    assert!(best(kept) > best(halved) + 3.0, "{} and {}", best(kept), best(halved));
+    let [halved, kept] = [halved, kept].map(|of| best(of).evaluation.fitness);
+    assert!(kept > halved + 3.0, "{kept} and {halved}");
     assert_eq!(answer(3, 1), "range stays large");
 }
 
@@ -159,25 +173,8 @@ fn the_conclusion_about_bits_is_true() {
 
 #[test]
 fn the_conclusion_about_what_was_learned_by_heart_is_true() {
-    let climbed = |scene: usize| -> Vec<u32> {
-        let steps =
-            |(_, of): &(String, Evaluation)| of.behaviour.as_ref().map(|of| of.steps_climbed);
-        result(5, scene).lanes.iter().filter_map(steps).collect()
-    };
-    assert_eq!(climbed(0), [10, 10, 5], "as the finding says");
-    assert_eq!(climbed(1), [10, 10]);
-    for scene in [0, 1] {
-        let LessonScene::Lanes { champion, lanes, .. } = &LESSONS[5].scenes[scene] else {
-            panic!()
-        };
-        let staged = champions(champion, lanes).expect("they fit");
-        let lands = staged
-            .iter()
-            .zip(&result(5, scene).lanes)
-            .map(|(staged, (_, of))| of.is_on_landing(&staged.trial().stairs));
-        let expected: &[bool] = if scene == 0 { &[true, true, false] } else { &[true, true] };
-        assert_eq!(lands.collect::<Vec<_>>(), expected);
-    }
+    assert_eq!(places(5, 0), [(10, true), (10, true), (5, false)], "as the finding says");
+    assert_eq!(places(5, 1), [(10, true), (10, true)]);
     assert_eq!([answer(5, 0), answer(5, 1)], ["original", "all within 1 m of each other"]);
 }
 
@@ -187,10 +184,7 @@ fn the_conclusion_about_the_senses_is_true() {
     let sight = &result(6, 0).lanes;
     assert_eq!(sight[0].1.trace_hash, sight[1].1.trace_hash, "exactly alike");
     assert_eq!(answer(6, 1), "original");
-    let climbed = |lane: usize| {
-        result(6, 1).lanes[lane].1.behaviour.as_ref().map(|behaviour| behaviour.steps_climbed)
-    };
-    let [all, touchless, dizzy] = [0, 1, 2].map(|lane| climbed(lane).expect("measured"));
+    let [(all, _), (touchless, _), (dizzy, _)] = places(6, 1)[..] else { panic!("three lanes") };
     assert_eq!(all, 10);
     assert!(touchless + 2 < dizzy && dizzy < all, "{touchless} and {dizzy} steps");
 }
@@ -206,30 +200,19 @@ fn the_conclusion_about_protection_is_true() {
     assert!(original > 23.0 && more.max(less) < first_riser_m, "{original}, {more}, {less}");
     let [with, without] = &result(7, 1).runs[..] else { panic!("two runs") };
     assert!(with.late_body_changes() >= 2 && without.late_body_changes() == 0);
-    let best = |of: &Found| of.best().expect("a champion").evaluation.fitness;
-    assert!(best(with) < best(without), "as the finding says");
+    let fitness = |of: &Found| best(of).evaluation.fitness;
+    assert!(fitness(with) < fitness(without), "as the finding says");
 }
 
 #[test]
 fn the_conclusion_about_a_ladder_is_true() {
-    let places: Vec<(u32, bool)> = {
-        let lanes = LESSONS[8].scenes[0].sides();
-        let staged = champions("climber", lanes).expect("they fit");
-        let ends = staged.iter().zip(&result(8, 0).lanes);
-        ends.map(|(staged, (_, of))| {
-            let climbed = of.behaviour.map_or(0, |behaviour| behaviour.steps_climbed);
-            (climbed, of.is_on_landing(&staged.trial().stairs))
-        })
-        .collect()
-    };
-    assert_eq!(places, [(10, true), (0, false)]);
+    assert_eq!(places(8, 0), [(10, true), (0, false)]);
     assert_eq!([answer(8, 0), answer(8, 1)], ["steps of 0.2 m", "by a ladder"]);
     let [direct, ladder] = &result(8, 1).runs[..] else { panic!("two runs") };
     let goal = &load_preset("house").expect("shipped").settings.trial.stairs;
-    let best = |of: &Found| of.best().expect("a champion").clone();
-    let lands = |best: &Champion| best.evaluation.is_on_landing(goal);
+    let lands = |of: &Found| best(of).evaluation.is_on_landing(goal);
     assert_eq!(best(ladder).trial.stairs, *goal, "the ladder has grown to its end");
-    assert!(lands(&best(ladder)) && !lands(&best(direct)));
+    assert!(lands(ladder) && !lands(direct));
     let reached = best(direct).reached();
     assert!(reached.ends_with("climbs 4 steps"), "as the finding says: {reached}");
 }

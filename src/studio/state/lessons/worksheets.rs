@@ -1,5 +1,5 @@
-//! The worksheets in `docs/worksheets`, generated from the catalogue and the results of the experiments. Each fits on
-//! one printed page.
+//! The worksheets in `docs/worksheets`, generated from the catalogue and the results of the experiments. Only their steps and their
+//! questions are written by hand, in the files themselves. Each worksheet fits on one printed page.
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,133 +9,12 @@ use super::tests::result;
 use super::*;
 use snakes_core::score::Evaluation;
 
-/// Contents of a worksheet besides the texts of its lesson.
-struct Sheet {
-    /// Instructions that follow the step "guess".
-    steps: &'static [&'static str],
-    /// Questions about the result.
-    questions: [&'static str; 2],
-    /// Further expected answers, for the teacher.
-    expected: &'static str,
-}
-
-const SHEETS: [Sheet; LESSONS.len()] = [
-    Sheet {
-        steps: &[
-            "Begin lesson 1, give your guess, and watch the race to its end. Fill in the table.",
-            "Do the same with \"A little less, a little more\".",
-            "Select \"original\". From the start, drag Friction: find the smallest tenth that still lands.",
-        ],
-        questions: [
-            "What goes wrong with too little friction, and what with too much?",
-            "Why does this snake climb best near the friction on which it evolved?",
-        ],
-        expected: "Of the tenths, 0.5 is the smallest friction that still lands. ",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 2, give your guess, and watch the race to its end. Fill in the table.",
-            "Choose \"The original at two playback speeds\" and guess. Play it to its end at × 1 and × 4.",
-            "Write down the end position with all digits, and the first four characters of the hash.",
-        ],
-        questions: [
-            "What is the difference between fewer physics steps per second and a slower playback?",
-            "Why must forces not depend on how fast a computer draws?",
-        ],
-        expected: "",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 3 and choose \"Evolve with and almost without limits\".",
-            "Give your guess and wait for the six generations. Fill in the table.",
-            "Watch the best snake of each run race against the other.",
-        ],
-        questions: [
-            "Why does it matter how many snakes of a generation are disqualified?",
-            "The fitness is the distance alone. Where does the best snake of each run end, and why there?",
-        ],
-        expected: "Each disqualified snake is one less to breed from. ",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 4 and choose \"Evolve with both ranges\".",
-            "Give your guess and watch both lines grow for fourteen generations. Fill in the table.",
-            "Note the generation after which the lower line hardly rises any more.",
-        ],
-        questions: [
-            "A range of 100 N·m is halved six times. How large is it then?",
-            "When are small changes useful, and when large ones?",
-        ],
-        expected: "Halved six times, 100 N·m become 1.6 N·m. ",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 5 and choose \"The same run twice\". Guess, wait, and write down both hashes.",
-            "Choose \"Friction changed by a millionth\", guess again, and write down both hashes.",
-            "Compare your hashes with those of your neighbours.",
-        ],
-        questions: [
-            "What does it tell you if two runs have the same hash?",
-            "Why should a scientific result be repeatable by other people?",
-        ],
-        expected: "",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 6, give your guess, and watch the race to its end. Fill in the table.",
-            "Choose \"A snake that feels its limbs\" and do the same.",
-            "Open the Senses panel and choose Examine on 100 staircases: how many with senses, how many without?",
-        ],
-        questions: [
-            "The first snake moves alike on all stairs. Why do lower steps not stop it, but higher ones?",
-            "How can you find out whether a snake needs its senses?",
-        ],
-        expected: "",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 7, guess, and watch the snake with and without sight. Fill in the table.",
-            "Choose \"Without touch, without balance\" and do the same.",
-            "Click a limb and look at the wiring in the Senses panel: which senses do its neurons read?",
-        ],
-        questions: [
-            "Why can a snake do without a sense that it has?",
-            "Why is it not enough to look at a snake in order to know what it senses?",
-        ],
-        expected: "",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 8, guess, and watch the race to its end. Fill in the first table.",
-            "Choose \"With and without protection\", guess, and wait. Fill in the second table.",
-            "Race again, and select \"a block more\". In the Body panel: Edit this body, Adapt the gait.",
-        ],
-        questions: [
-            "Why is a snake with a changed body worse at first, even if its body could be better?",
-            "What does protection cost, and when is it worth that?",
-        ],
-        expected: "",
-    },
-    Sheet {
-        steps: &[
-            "Begin lesson 9, guess, and watch the race to its end. Fill in the first table.",
-            "Choose \"Direct and by a ladder\", guess, and watch both lines. Fill in the second table.",
-            "Open the Stairs panel and build stairs that the snake on the stage just fails to climb.",
-        ],
-        questions: [
-            "Why does a search learn nothing from a task that all candidates fail alike?",
-            "Where do people learn by a ladder, too?",
-        ],
-        expected: "",
-    },
-];
-
 /// A line on which the reader writes.
 const LINE: &str = "________________________________________";
 
-/// Returns the text of a worksheet as Markdown.
+/// Returns the text of a worksheet as Markdown: the steps and the questions of the present file, and everything else from the lesson.
 fn text(index: usize) -> String {
-    let (lesson, sheet) = (&LESSONS[index], &SHEETS[index]);
+    let lesson = &LESSONS[index];
     let mut text = format!(
         "# Worksheet {}: {}\n\nName: {LINE} Date: {}\n\n**{}** {}\n\n## Predict\n\n",
         index + 1,
@@ -150,18 +29,21 @@ fn text(index: usize) -> String {
             scene.answers().iter().map(|answer| format!("☐ {answer}")).collect();
         text += &format!("- {}: {} {}\n", scene.label(), question.text, answers.join(" "));
     }
-    text += &format!("\nBecause: {LINE}{LINE}\n\n## Try it\n\n");
-    for (number, step) in (1..).zip(sheet.steps) {
-        text += &format!("{number}. {step}\n");
-    }
-    text += &format!("\n{}\n## Explain\n\n", tables(index));
-    for (number, question) in (1..).zip(sheet.questions) {
-        text += &format!("{number}. {question}\n\n   {LINE}{LINE}\n\n");
-    }
+    let kept = |from: &str, to: &str| {
+        let (_, rest) = lesson.worksheet.split_once(from).expect(from);
+        format!("{from}{}", rest.split_once(to).expect(to).0)
+    };
+    text += &format!("\nBecause: {LINE}{LINE}\n\n{}\n", kept("## Try it", "\n| "));
+    text += &format!("{}\n{}", tables(index), kept("## Explain", "**For the teacher**"));
+    let remark = match index {
+        0 => "Of the tenths, 0.5 is the smallest friction that still lands. ",
+        2 => "Each disqualified snake is one less to breed from. ",
+        3 => "Halved six times, 100 N·m become 1.6 N·m. ",
+        _ => "",
+    };
     text + &format!(
-        "---\n\n**For the teacher** (cover before copying). {} {}{}\n",
+        "**For the teacher** (cover before copying). {} {remark}{}\n",
         expected(index),
-        sheet.expected,
         lesson.conclusion
     )
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::Library;
-use super::batch_jobs::{BatchTask, DELETED, DUPLICATED, EXPORTED, IMPORTED};
+use super::batch_jobs::{DELETED, DUPLICATED, EXPORTED, IMPORTED};
 use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
@@ -34,28 +34,8 @@ impl Library {
                     reader.read_first(places.clone());
                 }
             }
-            LibraryCommand::Replay(place) => {
-                let (place, best) = (place.clone(), self.best_of(place));
-                let is_quick = place.run().is_none() || best.is_some();
-                let name = self.own_name(&place);
-                return self.load(is_quick, move || {
-                    champion_of(&place, name.as_deref(), best).map(Show::solo)
-                });
-            }
-            LibraryCommand::Race(places) => {
-                let places = places.iter().take(MAX_LANES);
-                let racers: Vec<(SavePlace, Option<String>, Option<u32>)> = places
-                    .map(|place| (place.clone(), self.own_name(place), self.best_of(place)))
-                    .collect();
-                let is_quick =
-                    racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());
-                return self.load(is_quick, move || {
-                    let champions = racers
-                        .iter()
-                        .map(|(place, name, best)| champion_of(place, name.as_deref(), *best));
-                    Ok(Show::race(champions.collect::<Result<_, _>>()?))
-                });
-            }
+            LibraryCommand::Replay(place) => return self.race(std::slice::from_ref(place)),
+            LibraryCommand::Race(places) => return self.race(places),
             LibraryCommand::ShowLoaded => return self.loaded.take().transpose(),
             LibraryCommand::ReplayGeneration { run, generation } => {
                 let (run, generation) = (run.clone(), *generation);
@@ -79,26 +59,22 @@ impl Library {
                 self.keep(label, vec![step], history);
             }
             LibraryCommand::Duplicate(places) => {
-                let (saves, task) = (self.saves.clone(), BatchTask::Act(DUPLICATED));
-                let act = move |place| duplicate(&saves, &place).into();
-                self.carry_out(task, places.clone(), act, history, notices)?;
+                self.carry_out(DUPLICATED, places, duplicate, history, notices)?;
             }
             LibraryCommand::Delete(places) => {
-                let (saves, task) = (self.saves.clone(), BatchTask::Act(DELETED));
-                let act = move |place| delete(&saves, &place).into();
-                self.carry_out(task, places.clone(), act, history, notices)?;
+                self.carry_out(DELETED, places, delete, history, notices)?;
             }
             LibraryCommand::Export { places, to } => {
                 let (saves, to) = (self.saves.clone(), to.clone());
-                let act = move |place| export(&saves, &place, to.as_deref()).into();
-                self.send_out(BatchTask::Act(EXPORTED), places.clone(), act)?;
+                let act = move |place| export(&saves, &place, to.as_deref());
+                self.send_out(EXPORTED, places.clone(), act)?;
             }
             LibraryCommand::Import(paths) => {
                 // Files can be dropped before the library is first opened. Their copies must then be listed as well.
                 self.look()?;
                 let saves = self.saves.clone();
-                let act = move |path: PathBuf| import(&saves, &path).into();
-                self.send_out(BatchTask::Act(IMPORTED), paths.clone(), act)?;
+                let act = move |path: PathBuf| import(&saves, &path);
+                self.send_out(IMPORTED, paths.clone(), act)?;
             }
             LibraryCommand::Examine(_) if self.examination.is_some() => {
                 return Err("An exam is in progress: wait for it, or cancel it".to_owned());
@@ -112,15 +88,26 @@ impl Library {
         Ok(None)
     }
 
+    /// Loads the champions of entries, to show them side by side, or a single one alone.
+    fn race(&mut self, places: &[SavePlace]) -> Result<Option<Show>, String> {
+        let known = |place: &SavePlace| (place.clone(), self.own_name(place), self.best_of(place));
+        let racers: Vec<_> = places.iter().take(MAX_LANES).map(known).collect();
+        let is_quick =
+            racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());
+        self.load(is_quick, move || {
+            let champions =
+                racers.iter().map(|(place, name, best)| champion_of(place, name.as_deref(), *best));
+            Ok(Show::race(champions.collect::<Result<_, _>>()?))
+        })
+    }
+
     pub(super) fn look(&mut self) -> Result<(), String> {
-        match &self.reader {
-            Some(reader) => reader.list_again(),
-            None => {
-                let reader = LibraryReader::start(self.saves.clone());
-                let reader =
-                    reader.map_err(|error| format!("The saves cannot be read: {error}"))?;
-                self.reader = Some(reader);
-            }
+        if self.reader.is_some() {
+            self.look_again();
+        } else {
+            let reader = LibraryReader::start(self.saves.clone());
+            self.reader =
+                Some(reader.map_err(|error| format!("The saves cannot be read: {error}"))?);
         }
         Ok(())
     }
@@ -156,7 +143,7 @@ mod tests {
         while tried.library.loading.is_some() {
             tried.take_in();
         }
-        assert!(tried.library.has_loaded());
+        assert!(tried.library.loaded.is_some());
         let problem = tried.apply(&LibraryCommand::ShowLoaded).expect_err("gone");
         assert!(problem.contains("gone"), "{problem}");
         assert!(tried.apply(&LibraryCommand::ShowLoaded).expect("nothing").is_none());

@@ -6,8 +6,8 @@ use super::{Library, name_of};
 use crate::studio::state::new_file::offer_path;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
 use crate::studio::ui::notifications::Notices;
-use snakes_core::save::SaveError;
 use snakes_core::save::library::{FileStep, SavePlace, read_notes};
+use snakes_core::save::{SaveError, SavesFolder};
 use snakes_lab::run::BackgroundTask;
 
 /// Maximum number of files that are deleted, copied or restored within a frame. Each takes some milliseconds, because
@@ -55,25 +55,9 @@ impl BatchTask {
     }
 }
 
-/// Outcome of a batch for one file.
-#[derive(Debug)]
-pub(super) enum BatchOutcome {
-    /// The operation succeeded.
-    Done(FileStep),
-    /// The operation failed. The undo step is kept if a later attempt may succeed.
-    Failed(SaveError, Option<FileStep>),
-    /// The batch was cancelled before it reached the file. The step is kept if the batch was to undo or redo it.
-    Cancelled(Option<FileStep>),
-}
-
-impl From<Result<FileStep, SaveError>> for BatchOutcome {
-    fn from(result: Result<FileStep, SaveError>) -> Self {
-        match result {
-            Ok(step) => Self::Done(step),
-            Err(error) => Self::Failed(error, None),
-        }
-    }
-}
+/// Outcome of a batch for one file: the step that undoes the operation. If the operation was not executed: the error, `None` if the
+/// batch was cancelled before it reached the file; and the step that is to be undone or redone later, if any.
+pub(super) type BatchOutcome = Result<FileStep, (Option<String>, Option<FileStep>)>;
 
 /// A batch that is running in the background.
 #[derive(Debug)]
@@ -83,31 +67,25 @@ pub(super) struct BatchJobs {
 }
 
 impl BatchJobs {
-    /// Returns whether the batch is long enough to show its progress.
-    fn is_long(&self) -> bool {
-        self.batch.total() > MAX_AT_ONCE
-    }
-
-    fn words(&self) -> String {
-        format!("{} {} of {}", self.task.doing(), self.batch.done(), self.batch.total())
+    /// Returns a description such as "Deleting 1200 of 10000" and the finished share from 0 to 1, if the batch is long enough to show them.
+    fn progress(&self) -> Option<(String, f32)> {
+        let (done, total) = (self.batch.done(), self.batch.total());
+        let words = || format!("{} {done} of {total}", self.task.doing());
+        (total > MAX_AT_ONCE).then(|| (words(), done as f32 / total as f32))
     }
 }
 
 impl Library {
-    /// Returns the long batches in progress: a description such as "Deleting 1200 of 10000", and the finished share from 0 to 1.
+    /// Returns description and finished share, from 0 to 1, of the long batches in progress.
     pub fn under_way(&self) -> impl Iterator<Item = (String, f32)> {
-        let share = |batch: &BackgroundTask<Vec<BatchOutcome>>| {
-            batch.done() as f32 / batch.total().max(1) as f32
-        };
-        let long = self.batches.iter().filter(|job| job.is_long());
-        long.map(move |job| (job.words(), share(&job.batch)))
+        self.batches.iter().filter_map(BatchJobs::progress)
     }
 
     /// Returns the reason why files cannot be changed now, if a long batch is in progress. Undo steps must be undone in order.
     pub fn busy(&self) -> Option<String> {
-        let job = self.batches.iter().find(|job| job.is_long())?;
+        let (job, (words, _)) = self.batches.iter().find_map(|job| Some((job, job.progress()?)))?;
         let noun = if matches!(job.task, BatchTask::Act(_)) { "saves" } else { "files" };
-        Some(format!("{} {noun} is in progress: wait for it, or cancel it", job.words()))
+        Some(format!("{words} {noun} is in progress: wait for it, or cancel it"))
     }
 
     pub(super) fn refuse_while_busy(&self) -> Result<(), String> {
@@ -120,30 +98,34 @@ impl Library {
     }
 
     /// Executes an operation on several saves: at once, or in the background if there are many.
-    pub(super) fn carry_out<I: Send + 'static>(
+    pub(super) fn carry_out(
         &mut self,
-        task: BatchTask,
-        things: Vec<I>,
-        act: impl Fn(I) -> BatchOutcome + Send + 'static,
+        verb: Verb,
+        places: &[SavePlace],
+        act: fn(&SavesFolder, &SavePlace) -> Result<FileStep, SaveError>,
         history: &mut UndoHistory,
         notices: &mut Notices,
     ) -> Result<(), String> {
-        if things.len() > MAX_AT_ONCE {
-            return self.send_out(task, things, act);
+        let saves = self.saves.clone();
+        if places.len() > MAX_AT_ONCE {
+            return self.send_out(verb, places.to_vec(), move |place| act(&saves, &place));
         }
         self.refuse_while_busy()?;
-        self.finish(task, things.into_iter().map(act).collect(), history, notices);
+        let each = |place| act(&saves, place).map_err(|error| (Some(error.to_string()), None));
+        let outcomes = places.iter().map(each).collect();
+        self.finish(BatchTask::Act(verb), outcomes, history, notices);
         Ok(())
     }
 
     /// Executes an operation on several saves in the background.
     pub(super) fn send_out<I: Send + 'static>(
         &mut self,
-        task: BatchTask,
+        verb: Verb,
         things: Vec<I>,
-        act: impl Fn(I) -> BatchOutcome + Send + 'static,
+        act: impl Fn(I) -> Result<FileStep, SaveError> + Send + 'static,
     ) -> Result<(), String> {
-        self.start_batch(task, things, act, |_| BatchOutcome::Cancelled(None))
+        let act = move |thing| act(thing).map_err(|error| (Some(error.to_string()), None));
+        self.start_batch(BatchTask::Act(verb), things, act, |_| Err((None, None)))
     }
 
     fn start_batch<I: Send + 'static>(
@@ -175,11 +157,12 @@ impl Library {
         let whole = UndoStep::Files { label: label.clone(), steps: steps.clone() };
         steps.reverse();
         let saves = self.saves.clone();
-        let undo = move |step: FileStep| match step.undo(&saves) {
-            Ok(inverse) => BatchOutcome::Done(inverse),
-            // A missing file will also be missing at the next attempt.
-            Err(error @ SaveError::Unreadable { .. }) => BatchOutcome::Failed(error, None),
-            Err(error) => BatchOutcome::Failed(error, Some(step)),
+        let undo = move |step: FileStep| {
+            step.undo(&saves).map_err(|error| {
+                // A missing file will also be missing at the next attempt.
+                let is_lost = matches!(error, SaveError::Unreadable { .. });
+                (Some(error.to_string()), (!is_lost).then_some(step))
+            })
         };
         let count = steps.len();
         let task = BatchTask::Undo(way, label.clone());
@@ -188,7 +171,7 @@ impl Library {
             return Ok(());
         }
         let said = format!("{}: {label}", task.doing());
-        let begun = self.start_batch(task, steps, undo, |step| BatchOutcome::Cancelled(Some(step)));
+        let begun = self.start_batch(task, steps, undo, |step| Err((None, Some(step))));
         match begun {
             Ok(()) => notices.update(UNDO_SUBJECT, said),
             Err(_) => history.complete(way, None, Some(whole)),
@@ -224,13 +207,10 @@ impl Library {
         let mut cancelled = 0;
         for outcome in outcomes {
             match outcome {
-                BatchOutcome::Done(step) => steps.push(step),
-                BatchOutcome::Failed(error, step) => {
-                    problems.push(error.to_string());
-                    left.extend(step);
-                }
-                BatchOutcome::Cancelled(step) => {
-                    cancelled += 1;
+                Ok(step) => steps.push(step),
+                Err((error, step)) => {
+                    cancelled += usize::from(error.is_none());
+                    problems.extend(error);
                     left.extend(step);
                 }
             }
@@ -246,22 +226,21 @@ impl Library {
                 format!("{}.{}", undone_in_words(*way, label, &steps), renamed_on_return(&steps))
             }
             (BatchTask::Act(verb), Some(first)) => {
-                format!("{}{}", capital(&listed_steps(*verb, &steps)), ending(*verb, first))
+                let mut said = listed_steps(*verb, &steps) + &ending(*verb, first);
+                // It begins with the verb.
+                said[..1].make_ascii_uppercase();
+                said
             }
         };
         if cancelled > 0 {
             said.push_str(&format!(" Cancelled: {cancelled} of {total} were not processed."));
         }
         let said = said.trim().to_owned();
-        let exported = match (&task, steps.first().and_then(FileStep::place)) {
-            (BatchTask::Act(verb), Some(place)) if *verb == EXPORTED => {
-                place.path().map(Path::to_owned)
-            }
-            _ => None,
-        };
-        match exported {
+        let is_export = matches!(&task, BatchTask::Act(verb) if *verb == EXPORTED);
+        let place = steps.first().and_then(FileStep::place).filter(|_| is_export);
+        match place.as_ref().and_then(SavePlace::path) {
             _ if said.is_empty() => {}
-            Some(path) => offer_path(notices, UNDO_SUBJECT, said, &path),
+            Some(path) => offer_path(notices, UNDO_SUBJECT, said, path),
             None => notices.update(UNDO_SUBJECT, said),
         }
         match task {
@@ -279,12 +258,6 @@ impl Library {
             }
         }
     }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Returns the message after an undo or redo.

@@ -49,15 +49,16 @@ impl LibraryItem {
 
     /// Stores the contents of the entry. Returns whether a sort or search key changed.
     pub fn learn(&mut self, read: Result<EntryDetails, EntryProblem>) -> bool {
-        let date = self.entry.modified;
-        let before = (date, self.fitness().map(f32::to_bits), self.generation());
         // The words include the name, the preset and "damaged".
-        let words = std::mem::take(&mut self.words);
+        let keys = |item: &Self| {
+            let fitness = item.fitness().map(f32::to_bits);
+            (item.entry.modified, fitness, item.generation(), item.words.clone())
+        };
+        let before = keys(self);
         self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
         self.read = Some(read);
         self.describe();
-        let date = self.entry.modified;
-        before != (date, self.fitness().map(f32::to_bits), self.generation()) || words != self.words
+        before != keys(self)
     }
 
     fn describe(&mut self) {
@@ -259,14 +260,16 @@ mod tests {
     use snakes_core::save::library::read_entry;
     use std::time::Duration;
 
+    fn entry(place: SavePlace, notes: EntryNotes) -> LibraryEntry {
+        LibraryEntry { place, bytes: 0, modified: Duration::ZERO, notes: Ok(notes) }
+    }
+
     #[test]
     fn the_search_finds_name_preset_controller_and_damage() {
         let item = |read: bool| {
             let place = SavePlace::Shipped("fast");
             let details = read_entry(&place).map_err(EntryProblem::from);
-            let notes = Ok(EntryNotes::default());
-            let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO, notes };
-            let mut item = LibraryItem::new(entry);
+            let mut item = LibraryItem::new(entry(place, EntryNotes::default()));
             item.learn(if read { details } else { Err(EntryProblem::damaged("cut off")) });
             item
         };
@@ -284,11 +287,9 @@ mod tests {
 
     #[test]
     fn a_run_is_shown_sorted_and_found_under_its_own_name_and_notes() {
-        let entry = |name: &str, text: &str| LibraryEntry {
-            place: SavePlace::Run("saves/climb-seed1-be07eab1".into()),
-            bytes: 0,
-            modified: Duration::ZERO,
-            notes: Ok(EntryNotes { name: name.to_owned(), text: text.to_owned() }),
+        let entry = |name: &str, text: &str| {
+            let notes = EntryNotes { name: name.to_owned(), text: text.to_owned() };
+            entry(SavePlace::Run("saves/climb-seed1-be07eab1".into()), notes)
         };
         let mut item = LibraryItem::new(entry("", ""));
         assert_eq!(item.name(), "climb-seed1-be07eab1");
@@ -304,9 +305,7 @@ mod tests {
     #[test]
     fn a_file_of_a_newer_version_is_not_called_damaged() {
         let place = SavePlace::Champion("saves/future.ron".into());
-        let notes = Ok(EntryNotes::default());
-        let entry = LibraryEntry { place, bytes: 0, modified: Duration::ZERO, notes };
-        let mut item = LibraryItem::new(entry);
+        let mut item = LibraryItem::new(entry(place, EntryNotes::default()));
         let message = "format is 99".to_owned();
         item.learn(Err(EntryProblem { words: "from a newer version", message }));
         assert_eq!(item.label(), "future, from a newer version: format is 99");

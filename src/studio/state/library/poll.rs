@@ -32,7 +32,7 @@ fn take_in(
     mut send: MessageWriter<Command>,
 ) {
     library.take_in(&mut history, &mut notices);
-    if library.has_loaded() {
+    if library.loaded.is_some() {
         send.write(Command::Library(LibraryCommand::ShowLoaded));
     }
 }
@@ -93,11 +93,6 @@ impl Library {
         for event in reader.poll(MOST_EVENTS) {
             self.learn(event);
         }
-    }
-
-    /// Returns whether champions for the stage have been read: see [`LibraryCommand::ShowLoaded`].
-    pub(super) fn has_loaded(&self) -> bool {
-        self.loaded.is_some()
     }
 
     pub(super) fn learn(&mut self, event: LibraryEvent) {

@@ -22,19 +22,14 @@ fn note(place: SavePlace, text: &str) -> Command {
 
 #[test]
 fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
     assert!(harness.get_by_label("New name").is_focused());
     // The old name is selected, so typing replaces it.
     type_text(&mut harness, "a/x");
     press(&mut harness, Modifiers::NONE, Press::Enter);
-    assert!(
-        harness
-            .query_by_label("The name must be a name without the characters / \\ < > : \" | ? *.")
-            .is_some()
-    );
+    harness.get_by_label("The name must be a name without the characters / \\ < > : \" | ? *.");
     assert_eq!(taken(&mut harness), []);
     for _ in 0.."/x".len() {
         press(&mut harness, Modifiers::NONE, Press::Backspace);
@@ -51,8 +46,7 @@ fn a_name_is_edited_in_its_row_and_invalid_names_are_refused() {
 
 #[test]
 fn the_name_field_leaves_the_second_line_and_the_next_row_where_they_are() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     let [row, next] = ["alpha", "beta"].map(|name| row_of(&harness, name).rect());
     select(&mut harness, "alpha");
     press(&mut harness, Modifiers::NONE, Press::F2);
@@ -64,10 +58,9 @@ fn the_name_field_leaves_the_second_line_and_the_next_row_where_they_are() {
 
 #[test]
 fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
-    let library = library();
     let run = SavePlace::Run(run_folder());
     for name in ["Ice: 1/2", ""] {
-        let mut harness = harness(&library, [420.0, 900.0]);
+        let mut harness = harness(library(), [420.0, 900.0]);
         select(&mut harness, RUN);
         clicked(&mut harness, "Rename");
         press(&mut harness, Modifiers::NONE, Press::Backspace);
@@ -81,8 +74,7 @@ fn a_run_gets_a_name_with_any_letters_and_an_empty_one_takes_it_back() {
 
 #[test]
 fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     for (row, place) in [("alpha", file("alpha")), (RUN, SavePlace::Run(run_folder()))] {
         select(&mut harness, row);
         type_into(&mut harness, "Notes", "slips");
@@ -93,9 +85,7 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
     }
     select(&mut harness, "beta");
     assert_eq!(taken(&mut harness), [], "sent once");
-    harness.get_by_label("Notes").focus();
-    harness.run();
-    type_text(&mut harness, "wrong");
+    type_into(&mut harness, "Notes", "wrong");
     press(&mut harness, Modifiers::NONE, Press::Escape);
     assert_eq!(taken(&mut harness), []);
     select(&mut harness, "fast");
@@ -104,12 +94,9 @@ fn notes_are_kept_when_their_field_is_left_and_escape_restores_them() {
 
 #[test]
 fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 900.0]);
+    let mut harness = harness(library(), [420.0, 900.0]);
     select(&mut harness, "alpha");
-    harness.get_by_label("Notes").focus();
-    harness.run();
-    type_text(&mut harness, "slips");
+    type_into(&mut harness, "Notes", "slips");
     select(&mut harness, "beta");
     assert_eq!(taken(&mut harness), [note(file("alpha"), "slips")]);
     assert_eq!(harness.get_by_label("Notes").value(), Some(String::new()));
@@ -117,8 +104,7 @@ fn notes_are_kept_when_another_save_is_selected_while_they_are_typed() {
 
 #[test]
 fn import_and_export_ask_with_the_systems_dialog() {
-    let library = library();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let mut harness = harness(library(), [420.0, 800.0]);
     clicked(&mut harness, "Import");
     select(&mut harness, "alpha");
     clicked(&mut harness, "Export");
@@ -138,7 +124,7 @@ fn without_a_system_dialog_a_field_for_the_path_opens_with_the_focus_and_the_rea
     ] {
         let mut library = library();
         library.ask_in_panel(question.clone(), "This desktop offers no dialog.".to_owned());
-        let mut harness = harness(&library, [420.0, 800.0]);
+        let mut harness = harness(library, [420.0, 800.0]);
         assert!(harness.query_by_label("This desktop offers no dialog.").is_some());
         if !typed.is_empty() {
             type_text(&mut harness, typed);
@@ -152,12 +138,15 @@ fn without_a_system_dialog_a_field_for_the_path_opens_with_the_focus_and_the_rea
 
 #[test]
 fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
-    let mut library = library();
-    library.request_export();
-    let mut harness = harness(&library, [420.0, 800.0]);
+    let requested = || {
+        let mut library = library();
+        library.request_export();
+        library
+    };
+    let mut harness = harness(requested(), [420.0, 800.0]);
     // Removes the commands that were sent at the start.
     assert_eq!(taken(&mut harness), []);
-    let mut panel = LibraryPanel::default();
+    let (mut panel, library) = (LibraryPanel::default(), requested());
     panel.selection.only(&file("alpha"));
     panel.take_requests(&library);
     panel.take_requests(&library);

@@ -1,8 +1,9 @@
 //! The lesson about bodies that evolve with their gaits.
 
 use crate::studio::state::lessons::lesson::{
-    Lesson, LessonScene, furthest, lane, lane_of_body, later_bodies, run,
+    Lesson, LessonScene, furthest, lane, lane_of_body, run,
 };
+use crate::studio::state::lessons::prediction::{Asks, Question};
 use snakes_core::genome::BodyChange;
 
 /// Lesson on protection: new bodies need time for their gaits to adapt.
@@ -32,13 +33,15 @@ pub(super) const PROTECTION: Lesson = Lesson {
         LessonScene::Runs {
             label: "With and without protection",
             preset: "bodies",
-            question: later_bodies(
-                "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait improves. \
-                 Other seeds may differ.",
-            ),
+            question: Question {
+                text: "In which run does the body of the best snake change more often in the second half?",
+                asks: Asks::LateBodyChanges,
+                finding: "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait \
+                          improves. Other seeds may differ.",
+            },
             runs: &[
-                run("with protection", 1, 1, &PROTECTED),
-                run("without protection", 1, 1, &UNPROTECTED),
+                run("with protection", 1, &PROTECTED),
+                run("without protection", 1, &UNPROTECTED),
             ],
         },
     ],

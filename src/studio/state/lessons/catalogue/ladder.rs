@@ -29,7 +29,7 @@ pub(super) const LADDER: Lesson = Lesson {
             question: best_run(
                 "With as many simulations, the direct search has come no further than the fourth step. Other seeds may differ.",
             ),
-            runs: &[run("direct", 102, 1, &DIRECT), run("by a ladder", 102, 1, &BY_LADDER)],
+            runs: &[run("direct", 102, &DIRECT), run("by a ladder", 102, &BY_LADDER)],
         },
     ],
     worksheet: include_str!("../../../../../docs/worksheets/9.md"),

@@ -1,7 +1,7 @@
 //! The lessons on the experiences that the authors of the report describe.
 
 use crate::studio::state::lessons::lesson::{
-    AS_FOUND, Lesson, LessonScene, best_run, furthest, lane, run, same_hash,
+    AS_FOUND, Lesson, LessonScene, Side, best_run, furthest, lane, run, same_hash,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 
@@ -112,11 +112,10 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
                  best snake with limits gets further, but it passes the stairs at their side.",
             ),
             runs: &[
-                run("with limits", 3, 1, &[("population", "120"), ("generations", "6")]),
+                run("with limits", 3, &[("population", "120"), ("generations", "6")]),
                 run(
                     "almost no limits",
                     3,
-                    1,
                     &[
                         ("population", "120"),
                         ("generations", "6"),
@@ -152,11 +151,10 @@ pub(super) const MUTATIONS: Lesson = Lesson {
                  because some runs are lucky early.",
             ),
             runs: &[
-                run("range halves", 4, 1, &[("population", "120"), ("generations", "14")]),
+                run("range halves", 4, &[("population", "120"), ("generations", "14")]),
                 run(
                     "range stays large",
                     4,
-                    1,
                     &[("population", "120"), ("generations", "14"), ("mutation_decay", "0.95")],
                 ),
             ],
@@ -188,8 +186,11 @@ pub(super) const REPETITION: Lesson = Lesson {
                  computer with an x86-64 processor.",
             ),
             runs: &[
-                run("on one thread", 1, 1, &[("population", "60"), ("generations", "6")]),
-                run("on two threads", 1, 2, &[("population", "60"), ("generations", "6")]),
+                run("on one thread", 1, &[("population", "60"), ("generations", "6")]),
+                Side {
+                    threads: 2,
+                    ..run("on two threads", 1, &[("population", "60"), ("generations", "6")])
+                },
             ],
         },
         LessonScene::Runs {
@@ -197,10 +198,9 @@ pub(super) const REPETITION: Lesson = Lesson {
             preset: "quick",
             question: same_hash("Even a change of a millionth gives another result."),
             runs: &[
-                run("friction 1", 1, 1, &[("population", "60"), ("generations", "6")]),
+                run("friction 1", 1, &[("population", "60"), ("generations", "6")]),
                 run(
                     "friction 1.000001",
-                    1,
                     1,
                     &[("population", "60"), ("generations", "6"), ("surface.friction", "1.000001")],
                 ),
