@@ -8,12 +8,12 @@ use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
 use snakes_lab::run::BackgroundTask;
 
 /// Runs of the saves folder, with the description of each one's settings, and each one's readable name.
-type Listing = (Vec<RunSummary>, Vec<String>, Vec<String>);
+type RunListing = (Vec<RunSummary>, Vec<String>, Vec<String>);
 
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<Listing>>,
+    listing: Option<BackgroundTask<RunListing>>,
     /// All runs in the saves folder; `None` until they are listed.
     runs: Option<Vec<RunSummary>>,
     /// Description of the settings of each listed run.
