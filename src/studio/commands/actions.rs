@@ -188,28 +188,18 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
-/// Tooltip of the action that enlarges all texts.
-pub(crate) const LARGER_HINT: &str =
-    "All texts a quarter larger; at the largest size, the usual size again";
-
 /// Builds the actions of a menu.
 fn in_menu(menu: Menu, rows: impl IntoIterator<Item = ActionRow>) -> Vec<Action> {
     let hint_of = |command: &Command| match command {
         View(ViewCommand::ToggleOverlay(of)) => of.hint(),
-        View(ViewCommand::ToggleSmoothEdges) => {
-            "Smooth edges with four samples per pixel; slow without a graphics card"
-        }
-        Window(WindowCommand::ToggleTorques) => {
-            "Torques of each joint over the whole trial, below the player"
-        }
-        Window(WindowCommand::Enlarge) => LARGER_HINT,
+        View(ViewCommand::ToggleSmoothEdges) => "Smooth edges; slow without a graphics card",
+        Window(WindowCommand::ToggleTorques) => "Torques over the whole trial, below the player",
+        Window(WindowCommand::Enlarge) => "A quarter larger; after the largest, the usual size",
         _ => "",
     };
-    let action = |(name, keys, command)| {
-        let hint = hint_of(&command);
-        Action { menu, name, keys, hint, command }
-    };
-    rows.into_iter().map(action).collect()
+    let rows =
+        rows.into_iter().map(|(name, keys, command)| (hint_of(&command), name, keys, command));
+    rows.map(|(hint, name, keys, command)| Action { menu, name, keys, hint, command }).collect()
 }
 
 /// Builds the action that writes a file of this format.
