@@ -187,10 +187,6 @@ pub(crate) fn hint_with_key(hint: &str, command: &Command) -> String {
 /// Name of an action, its shortcuts, and its usual command.
 type ActionRow = (&'static str, &'static [&'static str], Command);
 
-/// Tooltip of the action that enlarges all texts.
-pub(crate) const LARGER_HINT: &str =
-    "All texts a quarter larger; at the largest size, the usual size again";
-
 /// Returns all actions, grouped by menu.
 pub(crate) fn actions() -> &'static [Action] {
     static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
@@ -199,9 +195,11 @@ pub(crate) fn actions() -> &'static [Action] {
                 Share(ShareCommand::Ask(format)) => format.info().sentence,
                 View(ViewCommand::ToggleOverlay(of)) => of.hint(),
                 Window(WindowCommand::ToggleTorques) => {
-                    "Torques of each joint over the whole trial, below the player"
+                    "Torques over the whole trial, below the player"
                 }
-                Window(WindowCommand::Enlarge) => LARGER_HINT,
+                Window(WindowCommand::Enlarge) => {
+                    "A quarter larger; after the largest, the usual size"
+                }
                 _ => "",
             };
             Action { menu, name, keys, hint, command }

@@ -4,7 +4,7 @@ use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 
 use super::stage_card::CardStates;
-use crate::studio::commands::actions::{LARGER_HINT, Situation, actions};
+use crate::studio::commands::actions::{Situation, actions};
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::quality::Quality;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
@@ -65,7 +65,9 @@ pub(crate) fn view_bar(
         let is_larger = is_on(&larger).unwrap_or(false);
         if !is_narrow {
             let button = egui::Button::new("Larger").selected(is_larger);
-            CommandButton::of(button, LARGER_HINT, larger).show(ui, commands);
+            let hint =
+                "All texts a quarter larger, for a projector; after the largest, the usual size";
+            CommandButton::of(button, hint, larger).show(ui, commands);
         }
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
         if ui.button("Picture").on_hover_text(hint).clicked() {
