@@ -80,7 +80,7 @@ impl BodyEditor {
             original: &edited.original,
             steps: [!edited.past.is_empty(), !edited.future.is_empty()],
             tuning: edited.tuning.as_ref().map(|task| [task.done(), task.total()]),
-            problem: edited.problem(),
+            problem: edited.check().err(),
         })
     }
 
@@ -234,10 +234,9 @@ impl Edited {
         })
     }
 
-    /// Returns the reason why the body cannot be simulated, if there is one.
-    fn problem(&self) -> Option<String> {
-        let checked = self.trial().check_genome(&self.genome);
-        checked.err().map(|error| error.to_string())
+    /// Checks whether the body can be simulated.
+    fn check(&self) -> Result<(), String> {
+        self.trial().check_genome(&self.genome).map_err(|error| error.to_string())
     }
 
     /// Replaces the genome, as a step that can be undone.
@@ -299,9 +298,7 @@ impl Edited {
 
     /// Returns the edited snake, with the evaluation of the original in place of its own.
     fn unevaluated(&self) -> Result<Champion, String> {
-        if let Some(problem) = self.problem() {
-            return Err(problem);
-        }
+        self.check()?;
         let (genome, trial) = (self.genome.clone(), self.trial());
         let original = self.original.champion();
         let (evaluation, origin) = (original.evaluation, original.origin.clone());
@@ -316,9 +313,7 @@ impl Edited {
     }
 
     fn tune(&mut self) -> Result<(), String> {
-        if let Some(problem) = self.problem() {
-            return Err(problem);
-        }
+        self.check()?;
         let (genome, trial) = (self.genome.clone(), self.trial());
         self.attempts += 1;
         let size = (TUNING, self.attempts);
