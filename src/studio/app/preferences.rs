@@ -42,13 +42,10 @@ impl StoredPreferences {
         let (stored, problem) = match file.load() {
             Ok(stored) => (stored.unwrap_or_default(), None),
             Err(error) => {
-                let aside = file
-                    .put_aside()
-                    .map(|path| format!(" The old file is kept as {}.", path.display()));
-                let problem = format!(
-                    "The window preferences were reset: {error}.{}",
-                    aside.unwrap_or_default()
-                );
+                let mut problem = format!("The window preferences were reset: {error}.");
+                if let Some(path) = file.put_aside() {
+                    problem += &format!(" The old file is kept as {}.", path.display());
+                }
                 (Preferences::default(), Some(problem))
             }
         };
@@ -101,10 +98,8 @@ fn restore(
     chosen.lessons.finished = finished_lessons.into_iter().collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
-    for name in overlays {
-        let known = Overlay::ALL.into_iter().find(|overlay| overlay.name() == name);
-        known.into_iter().for_each(|overlay| chosen.overlays.show(overlay));
-    }
+    let shown = Overlay::ALL.into_iter().filter(|of| overlays.iter().any(|name| name == of.name()));
+    shown.for_each(|overlay| chosen.overlays.show(overlay));
     chosen.playback.set_speed(speed);
     chosen.playback.loops = loops;
     chosen.quality.chosen = quality.and_then(|name| Quality::named(&name));
@@ -140,11 +135,8 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     // The window's size is stored in logical pixels, in which it is also requested. Physical pixels would enlarge the
     // window at every start on a display with a scale factor above one.
     let logical = |length: f32| length.round() as u32;
-    let window_size = chosen
-        .window
-        .iter()
-        .next()
-        .map(|window| (logical(window.width()), logical(window.height())));
+    let size = |window: &Window| (logical(window.width()), logical(window.height()));
+    let window_size = chosen.window.iter().next().map(size);
     // In the presenting mode, the window's size and the loop are not the user's choice.
     let presents = chosen.workspace.is_presenting();
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));

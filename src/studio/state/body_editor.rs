@@ -105,11 +105,8 @@ impl BodyEditor {
             return Ok(None);
         }
         let Some(edited) = &mut self.edited else { return Ok(None) };
-        let is_busy = edited.tuning.is_some();
         match command {
-            BodyCommand::CancelTuning => {
-                edited.tuning.iter().for_each(BackgroundTask::cancel);
-            }
+            BodyCommand::CancelTuning => edited.tuning.iter().for_each(BackgroundTask::cancel),
             BodyCommand::Preview => return Ok(edited.show()),
             BodyCommand::Close => {
                 edited.tuning.iter().for_each(BackgroundTask::cancel);
@@ -117,7 +114,9 @@ impl BodyEditor {
                 self.edited = None;
                 return Ok(Some(Show::solo(original)));
             }
-            _ if is_busy => return Err("The gait is being tuned: wait, or cancel it.".to_owned()),
+            _ if edited.tuning.is_some() => {
+                return Err("The gait is being tuned: wait, or cancel it.".to_owned());
+            }
             BodyCommand::Edit => {}
             BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
             BodyCommand::MakeRigid { block } => {

@@ -38,7 +38,7 @@ pub(crate) struct Following {
     shown_for: Duration,
 }
 
-/// Plan for the next generations on the stage.
+/// What the stage shows next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 enum FollowPlan {
     /// There is no plan: the user's choice stays on the stage.
@@ -259,6 +259,9 @@ mod tests {
         assert_eq!(following.due(&run, true), None, "nothing better");
         following.follow_evolution();
         assert_eq!(following.due(&run, false), Some(last), "the user asked to see where it is");
+        following = Following::from_start();
+        following.stop();
+        assert_eq!((following.due(&run, true), following.holds), (None, false), "what was chosen");
     }
 
     #[test]
@@ -299,15 +302,6 @@ mod tests {
         }
         assert_eq!(shown, [1, 3, 5, 6]);
         assert!(next_of(&found, 9).is_none());
-    }
-
-    #[test]
-    fn what_was_chosen_stays() {
-        let run = explored_run();
-        let mut following = Following::from_start();
-        following.stop();
-        assert_eq!(following.due(&run, true), None);
-        assert!(!following.holds);
     }
 
     #[test]

@@ -64,17 +64,15 @@ impl Shooting<'_> {
         let mut pending = VecDeque::new();
         for index in indices {
             pending.push_back(self.draw(*index)?);
-            while let Some(frame) = pending.pop_front() {
-                let picture = if pending.len() >= IN_FLIGHT {
+            while let Some(frame) = pending.front() {
+                let picture = if pending.len() > IN_FLIGHT {
                     Some(self.studio.await_shot(frame.shot)?)
                 } else {
                     self.studio.taken(frame.shot)?
                 };
-                let Some(picture) = picture else {
-                    pending.push_front(frame);
-                    break;
-                };
-                each(frame.index, written_on(picture, &frame)?)?;
+                let Some(picture) = picture else { break };
+                each(frame.index, written_on(picture, frame)?)?;
+                pending.pop_front();
             }
         }
         for frame in pending {
