@@ -327,10 +327,7 @@ mod tests {
         assert!(following.tell_story(&prepared_run()).is_err());
         following.tell_story(&run).expect("two better generations");
         let parts = following.story_part().expect("a story").1;
-        let mut told = Vec::new();
-        for _ in 0..parts {
-            told.extend(following.due(&run, true));
-        }
+        let told: Vec<u32> = (0..parts).filter_map(|_| following.due(&run, true)).collect();
         assert_eq!(told.first(), run.milestones.first().map(|first| &first.generation));
         assert_eq!(told.last(), run.milestones.last().map(|last| &last.generation));
         assert_eq!(following.due(&run, true), None);
