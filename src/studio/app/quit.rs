@@ -79,8 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_never_comes_does_not_keep_the_program_open_and_slow_frames_have_time_for_one()
-    {
+    fn a_picture_that_never_comes_keeps_no_program_open_and_slow_frames_have_time_for_one() {
         assert_eq!(frames_to_the_end(Duration::from_millis(100)), 51, "more than 5 s");
         assert_eq!(frames_to_the_end(Duration::from_secs(60)), 1, "not drawn");
         assert_eq!(frames_to_the_end(Duration::from_secs(2)), 11, "slow frames");

@@ -278,11 +278,10 @@ impl Edited {
     }
 
     fn step(&mut self, is_back: bool) {
-        let (from, to) = if is_back {
-            (&mut self.past, &mut self.future)
-        } else {
-            (&mut self.future, &mut self.past)
-        };
+        let (mut from, mut to) = (&mut self.past, &mut self.future);
+        if !is_back {
+            std::mem::swap(&mut from, &mut to);
+        }
         if let Some(genome) = from.pop() {
             to.push(std::mem::replace(&mut self.genome, genome));
             self.last_set = None;

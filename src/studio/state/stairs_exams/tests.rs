@@ -71,11 +71,8 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
 fn only_the_latest_exams_are_kept() {
     let mut exams = StairsExams::default();
     let staged = climber(0);
-    let champion = |duration_s| {
-        let mut champion = staged.champion().clone();
-        champion.trial.duration_s = duration_s;
-        champion
-    };
+    let trial = |duration_s| Trial { duration_s, ..staged.trial().clone() };
+    let champion = |duration_s| Champion { trial: trial(duration_s), ..staged.champion().clone() };
     for number in 0..=MOST_KEPT {
         exams.keep(champion(number as f32 + 1.0), Vec::new());
     }
