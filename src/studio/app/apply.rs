@@ -3,8 +3,7 @@
 mod excursions;
 pub mod stage;
 
-use std::path::PathBuf;
-
+use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
 use super::quit::QuitRequest;
@@ -39,68 +38,76 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Executes the commands in the order in which they were sent.
-pub(super) fn apply(
-    mut commands: MessageReader<Command>,
-    mut run: ResMut<CurrentRun>,
-    mut notices: ResMut<Notices>,
-    mut history: ResMut<UndoHistory>,
-    (opening, mut quit): (Res<OpeningChampions>, ResMut<QuitRequest>),
-    mut workspace: ResMut<Workspace>,
-    (mut lessons, mut exams, mut machines, mut shares): (
-        ResMut<Lessons>,
-        ResMut<StairsExams>,
-        ResMut<MachinesLink>,
-        ResMut<Shares>,
-    ),
-    (mut library, mut files, mut bodies): (ResMut<Library>, ResMut<Files>, ResMut<BodyEditor>),
-    mut stage: StageParams,
-    mut view: ViewParams,
-) {
-    let notices = &mut *notices;
+pub(super) fn apply(mut commands: MessageReader<Command>, mut studio: StudioParams) {
     for command in commands.read() {
-        let before = run.next_plan().clone();
-        let left = stage.scene(command, &view.rig);
-        let frames = |workspace: &Workspace, lessons: &Lessons| {
-            [workspace.is_presenting(), lessons.view().is_some()]
-        };
-        let frames_before = frames(&workspace, &lessons);
-        let done = match command {
-            command if lessons.view().is_some() && changes_own_run(command) => {
-                Err(LESSON.to_owned())
-            }
+        let before = studio.run.next_plan().clone();
+        let left = studio.stage.scene(command, &studio.view.rig);
+        let frames = studio.frames();
+        let done = studio.execute(command);
+        let frames = (frames, studio.frames());
+        studio.stage.finish(command, left, frames, &mut studio.view.rig);
+        studio.history.note(command, before, studio.run.next_plan());
+        studio.notices.refusal(done.err());
+    }
+}
+
+/// System parameters of everything that commands change.
+#[derive(SystemParam)]
+pub(super) struct StudioParams<'w, 's> {
+    run: ResMut<'w, CurrentRun>,
+    notices: ResMut<'w, Notices>,
+    history: ResMut<'w, UndoHistory>,
+    opening: Res<'w, OpeningChampions>,
+    quit: ResMut<'w, QuitRequest>,
+    workspace: ResMut<'w, Workspace>,
+    lessons: ResMut<'w, Lessons>,
+    exams: ResMut<'w, StairsExams>,
+    machines: ResMut<'w, MachinesLink>,
+    shares: ResMut<'w, Shares>,
+    library: ResMut<'w, Library>,
+    files: ResMut<'w, Files>,
+    bodies: ResMut<'w, BodyEditor>,
+    stage: StageParams<'w, 's>,
+    view: ViewParams<'w>,
+}
+
+impl StudioParams<'_, '_> {
+    /// Returns whether a presentation and a lesson are open.
+    fn frames(&self) -> [bool; 2] {
+        [self.workspace.is_presenting(), self.lessons.view().is_some()]
+    }
+
+    /// Executes a command. The error is a sentence for the user.
+    fn execute(&mut self, command: &Command) -> Result<(), String> {
+        if self.lessons.view().is_some() && changes_own_run(command) {
+            return Err(LESSON.to_owned());
+        }
+        let Self { run, notices, history, opening, workspace, library, stage, .. } = self;
+        match command {
             Command::Run(command) => {
-                let is_other = replaces_run(command, &run);
-                if is_other {
-                    let takes_change = !matches!(command, RunCommand::Continue(_));
-                    if let Some(change) = stage.settle().filter(|_| takes_change) {
-                        notices
-                            .info(format!("The new run has the change that was tried: {change}."));
-                    }
+                let is_other = replaces_run(command, run);
+                let change = if is_other { stage.settle() } else { None };
+                if let Some(change) = change.filter(|_| !matches!(command, RunCommand::Continue(_)))
+                {
+                    notices.info(format!("The new run has the change that was tried: {change}."));
                 }
-                run.apply(command, notices).inspect(|()| {
-                    if is_other {
-                        // Nothing leads from the new run back to the scenes of the one before.
-                        stage.way_back.forget();
-                    }
-                })
+                run.apply(command, notices)?;
+                if is_other {
+                    // Nothing leads from the new run back to the scenes of the one before.
+                    stage.way_back.forget();
+                }
             }
             Command::Plan(command) => {
-                stage.apply_to_plan(command, &mut run, (&library, &opening), &history, notices)
+                stage.apply_to_plan(command, run, (library, opening), history, notices)?;
             }
             Command::Stage(command) => {
                 if matches!(command, StageCommand::TakeTurn(_)) {
                     workspace.end_black();
                 }
-                stage.apply(command, &run, &opening, notices)
+                stage.apply(command, run, opening, notices)?;
             }
-            Command::Player(command) => {
-                stage.apply_to_player(command);
-                Ok(())
-            }
-            Command::View(command) => {
-                view.apply(command);
-                Ok(())
-            }
+            Command::Player(command) => stage.apply_to_player(command),
+            Command::View(command) => self.view.apply(command),
             Command::Window(command) => {
                 if let WindowCommand::ToggleModal(Modal::Tour(step)) = command {
                     highlighted_panel(*step).into_iter().for_each(|kind| workspace.open(kind));
@@ -109,65 +116,59 @@ pub(super) fn apply(
                 if let Some(news) = workspace.apply(command) {
                     notices.update("panel size", news.to_owned());
                 }
-                Ok(())
             }
-            Command::Library(command) => library
-                .apply(command, &mut history, notices)
-                .map(|show| stage.present_others(show, notices)),
+            Command::Library(command) => {
+                stage.present_others(library.apply(command, history, notices)?, notices);
+            }
             Command::Share(ShareCommand::Ask(format)) => {
                 // The number of champions is checked before the user chooses a file.
-                refuse_number(*format, stage.champions_to_share().len()).and_then(|()| {
-                    let question = FileQuestion::Share(*format, stage.name_for_file());
-                    let ask = FileCommand::Ask(question);
-                    files.apply(&ask, &mut library, &mut history, notices).map(drop)
-                })
+                refuse_number(*format, stage.champions_to_share().len())?;
+                let ask = FileCommand::Ask(FileQuestion::Share(*format, stage.name_for_file()));
+                self.files.apply(&ask, library, history, notices)?;
             }
-            Command::Share(ShareCommand::Cancel) => shares.cancel(),
+            Command::Share(ShareCommand::Cancel) => self.shares.cancel()?,
             Command::File(FileCommand::Answer(FileQuestion::Share(format, _), paths)) => {
-                let path = paths.first().map(PathBuf::as_path);
-                let begin =
-                    |path| shares.begin(*format, path, &stage.champions_to_share(), &view.look());
-                path.map_or(Ok(()), begin)
+                if let Some(path) = paths.first() {
+                    let (champions, look) = (stage.champions_to_share(), self.view.look());
+                    self.shares.begin(*format, path, &champions, &look)?;
+                }
             }
             Command::File(command) => {
                 if *command == FileCommand::AskExport {
                     workspace.open(PanelKind::Library);
                 }
-                files
-                    .apply(command, &mut library, &mut history, notices)
-                    .map(|show| stage.present_others(show, notices))
+                let show = self.files.apply(command, library, history, notices)?;
+                stage.present_others(show, notices);
             }
             Command::Lesson(command) => {
                 if matches!(command, LessonCommand::Begin(_)) {
                     workspace.open(PanelKind::Lessons);
                 }
-                let show = lessons.apply(command, &mut run, &mut history);
-                show.map(|show| {
-                    let is_new = show.is_some();
-                    stage.present_for_now(show);
-                    if is_new && lessons.awaits_guess() {
-                        // The race is paused at its start until the user has made a guess.
-                        stage.apply_to_player(&PlayerCommand::Toggle);
-                    }
-                })
+                let show = self.lessons.apply(command, run, history)?;
+                let is_new = show.is_some();
+                stage.present_for_now(show);
+                if is_new && self.lessons.awaits_guess() {
+                    // The race is paused at its start until the user has made a guess.
+                    stage.apply_to_player(&PlayerCommand::Toggle);
+                }
             }
             Command::Exam(command) => {
                 if *command == ExamCommand::Examine {
                     workspace.open(PanelKind::Senses);
                 }
-                let show = exams.apply(command, stage.selected().as_ref());
-                show.map(|show| stage.present_others(show, notices))
+                let show = self.exams.apply(command, stage.selected().as_ref())?;
+                stage.present_others(show, notices);
             }
             Command::Body(command) => {
                 if *command == BodyCommand::Edit {
                     workspace.open(PanelKind::Body);
                 }
-                let show = bodies.apply(command, stage.selected().as_ref(), &mut run);
-                show.map(|show| stage.present_others(show, notices))
+                let show = self.bodies.apply(command, stage.selected().as_ref(), run)?;
+                stage.present_others(show, notices);
             }
-            Command::Machines(command) => machines.apply(command, &mut run),
+            Command::Machines(command) => self.machines.apply(command, run)?,
             // A running batch operation is not in the history yet, so undo would revert an earlier step.
-            Command::Undo | Command::Redo if let Some(busy) = library.busy() => Err(busy),
+            Command::Undo | Command::Redo if let Some(busy) = library.busy() => return Err(busy),
             Command::Undo | Command::Redo => {
                 let way = match command {
                     Command::Undo => UndoDirection::Back,
@@ -177,30 +178,18 @@ pub(super) fn apply(
                     Some(UndoStep::Plan(step)) => {
                         notices.update(UNDO_SUBJECT, step.message(way));
                         history.complete(way, Some(UndoStep::Plan(step.clone())), None);
-                        stage.step(&mut run, &step, way, &history)
+                        stage.step(run, &step, way, history)?;
                     }
                     Some(UndoStep::Files { label, steps }) => {
-                        library.step(way, label, steps, &mut history, notices)
+                        library.step(way, label, steps, history, notices)?;
                     }
-                    None => {
-                        notices.update(UNDO_SUBJECT, way.nothing().to_owned());
-                        Ok(())
-                    }
+                    None => notices.update(UNDO_SUBJECT, way.nothing().to_owned()),
                 }
             }
-            Command::Notify(text) => {
-                notices.info(text.clone());
-                Ok(())
-            }
-            Command::Quit => {
-                quit.0 = true;
-                Ok(())
-            }
-        };
-        let frames = (frames_before, frames(&workspace, &lessons));
-        stage.finish(command, left, frames, &mut view.rig);
-        history.note(command, before, run.next_plan());
-        notices.refusal(done.err());
+            Command::Notify(text) => notices.info(text.clone()),
+            Command::Quit => self.quit.0 = true,
+        }
+        Ok(())
     }
 }
 
@@ -238,4 +227,4 @@ fn changes_own_run(command: &Command) -> bool {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

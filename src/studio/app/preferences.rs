@@ -42,13 +42,10 @@ impl StoredPreferences {
         let (stored, problem) = match file.load() {
             Ok(stored) => (stored.unwrap_or_default(), None),
             Err(error) => {
-                let aside = file
-                    .put_aside()
-                    .map(|path| format!(" The old file is kept as {}.", path.display()));
-                let problem = format!(
-                    "The window preferences were reset: {error}.{}",
-                    aside.unwrap_or_default()
-                );
+                let mut problem = format!("The window preferences were reset: {error}.");
+                if let Some(path) = file.put_aside() {
+                    problem += &format!(" The old file is kept as {}.", path.display());
+                }
                 (Preferences::default(), Some(problem))
             }
         };
@@ -101,10 +98,8 @@ fn restore(
     chosen.lessons.finished = finished_lessons.into_iter().collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
-    for name in overlays {
-        let known = Overlay::ALL.into_iter().find(|overlay| overlay.name() == name);
-        known.into_iter().for_each(|overlay| chosen.overlays.show(overlay));
-    }
+    let shown = Overlay::ALL.into_iter().filter(|of| overlays.iter().any(|name| name == of.name()));
+    shown.for_each(|overlay| chosen.overlays.show(overlay));
     chosen.playback.set_speed(speed);
     chosen.playback.loops = loops;
     chosen.quality.chosen = quality.and_then(|name| Quality::named(&name));
@@ -140,11 +135,8 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     // The window's size is stored in logical pixels, in which it is also requested. Physical pixels would enlarge the
     // window at every start on a display with a scale factor above one.
     let logical = |length: f32| length.round() as u32;
-    let window_size = chosen
-        .window
-        .iter()
-        .next()
-        .map(|window| (logical(window.width()), logical(window.height())));
+    let size = |window: &Window| (logical(window.width()), logical(window.height()));
+    let window_size = chosen.window.iter().next().map(size);
     // In the presenting mode, the window's size and the loop are not the user's choice.
     let presents = chosen.workspace.is_presenting();
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
@@ -170,22 +162,13 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::app::apply::tests;
     use crate::studio::commands::WindowCommand;
     use bevy::window::WindowResolution;
 
     fn app(file: &PreferencesFile) -> App {
-        let mut app = App::new();
-        app.add_message::<AppExit>()
-            .insert_resource(StoredPreferences::read(file))
-            .init_resource::<Workspace>()
-            .init_resource::<Theme>()
-            .init_resource::<Overlays>()
-            .init_resource::<StageQuality>()
-            .init_resource::<Playback>()
-            .init_resource::<Files>()
-            .init_resource::<MachinesLink>()
-            .init_resource::<Lessons>()
-            .init_resource::<Notices>()
+        let mut app = tests::app();
+        app.insert_resource(StoredPreferences::read(file))
             .init_resource::<Time<Real>>()
             .add_plugins(plugin);
         app.update();
@@ -237,30 +220,24 @@ mod tests {
     }
 
     #[test]
-    fn the_size_of_a_presentation_is_not_remembered() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
-        let mut app = app(&file);
-        let resolution = WindowResolution::new(3840, 2160);
-        app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
-        let mut workspace = app.world_mut().resource_mut::<Workspace>();
-        workspace.apply(&WindowCommand::TogglePresenting);
-        app.world_mut().write_message(AppExit::Success);
-        app.update();
-        assert_eq!(StoredPreferences::read(&file).stored.window_size, None);
-    }
-
-    #[test]
-    fn the_window_size_is_stable_on_scaled_displays() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let file = PreferencesFile::at(&folder.path().join("studio.ron"));
-        let mut app = app(&file);
-        let mut resolution = WindowResolution::new(2560, 1440);
-        resolution.set_scale_factor(2.0);
-        app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
-        app.world_mut().write_message(AppExit::Success);
-        app.update();
-        let chosen = StoredPreferences::read(&file).stored.clone();
-        assert_eq!(chosen.window_size, Some((1280, 720)));
+    fn the_window_size_is_stable_on_scaled_displays_and_that_of_a_presentation_is_not_remembered() {
+        for (physical, scale, presents, remembered) in
+            [([2560, 1440], 2.0, false, Some((1280, 720))), ([3840, 2160], 1.0, true, None)]
+        {
+            let folder = tempfile::tempdir().expect("a folder");
+            let file = PreferencesFile::at(&folder.path().join("studio.ron"));
+            let mut app = app(&file);
+            let mut resolution = WindowResolution::new(physical[0], physical[1]);
+            resolution.set_scale_factor(scale);
+            app.world_mut().spawn((Window { resolution, ..default() }, PrimaryWindow));
+            if presents {
+                let mut workspace = app.world_mut().resource_mut::<Workspace>();
+                workspace.apply(&WindowCommand::TogglePresenting);
+            }
+            app.world_mut().write_message(AppExit::Success);
+            app.update();
+            let size = StoredPreferences::read(&file).stored.window_size;
+            assert_eq!(size, remembered, "{physical:?}");
+        }
     }
 }

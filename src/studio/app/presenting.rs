@@ -116,20 +116,8 @@ fn hide_resting_pointer(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::app::apply::tests::app;
     use crate::studio::commands::WindowCommand;
-
-    fn app() -> App {
-        let mut app = App::new();
-        app.init_resource::<Workspace>()
-            .init_resource::<CameraRig>()
-            .init_resource::<Playback>()
-            .init_resource::<Following>()
-            .init_resource::<Turns>()
-            .init_resource::<Notices>()
-            .add_systems(Update, present);
-        app.world_mut().spawn((Window::default(), PrimaryWindow));
-        app
-    }
 
     fn toggle(app: &mut App) {
         app.world_mut().resource_mut::<Workspace>().apply(&WindowCommand::TogglePresenting);
@@ -147,6 +135,8 @@ mod tests {
     #[test]
     fn presenting_fills_the_screen_follows_and_loops_and_its_end_restores_the_window() {
         let mut app = app();
+        app.add_systems(Update, present);
+        app.world_mut().spawn((Window::default(), PrimaryWindow));
         app.world_mut().resource_mut::<CameraRig>().take(CameraMode::Side);
         app.world_mut().resource_mut::<Playback>().loops = false;
         app.update();

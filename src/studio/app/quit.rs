@@ -46,11 +46,17 @@ mod tests {
     use super::*;
     use bevy::render::view::screenshot::Screenshot;
 
+    /// Creates a program with a picture that is not saved yet.
+    fn app() -> (App, Entity) {
+        let mut app = App::new();
+        app.init_resource::<Time<Real>>().add_plugins(plugin);
+        let picture = app.world_mut().spawn(Screenshot::primary_window()).id();
+        (app, picture)
+    }
+
     #[test]
     fn a_picture_that_was_asked_for_is_saved_before_the_program_ends() {
-        let mut app = App::new();
-        app.init_resource::<Time<Real>>().add_message::<AppExit>().add_plugins(plugin);
-        let picture = app.world_mut().spawn(Screenshot::primary_window()).id();
+        let (mut app, picture) = app();
         app.update();
         app.world_mut().resource_mut::<QuitRequest>().0 = true;
         app.update();
@@ -62,9 +68,7 @@ mod tests {
 
     /// Counts the frames of this length until a program that waits for a picture ends.
     fn frames_to_the_end(frame: Duration) -> usize {
-        let mut app = App::new();
-        app.init_resource::<Time<Real>>().add_message::<AppExit>().add_plugins(plugin);
-        app.world_mut().spawn(Screenshot::primary_window());
+        let (mut app, _) = app();
         app.world_mut().resource_mut::<QuitRequest>().0 = true;
         let has_ended = |_: &usize| {
             app.world_mut().resource_mut::<Time<Real>>().advance_by(frame);
@@ -75,13 +79,9 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_never_comes_does_not_keep_the_program_open() {
+    fn a_picture_that_never_comes_keeps_no_program_open_and_slow_frames_have_time_for_one() {
         assert_eq!(frames_to_the_end(Duration::from_millis(100)), 51, "more than 5 s");
         assert_eq!(frames_to_the_end(Duration::from_secs(60)), 1, "not drawn");
-    }
-
-    #[test]
-    fn slow_frames_have_time_for_a_picture() {
-        assert_eq!(frames_to_the_end(Duration::from_secs(2)), 11);
+        assert_eq!(frames_to_the_end(Duration::from_secs(2)), 11, "slow frames");
     }
 }

@@ -35,15 +35,15 @@ impl CameraMode {
     /// # Errors
     /// No mode has this name, or it is [`Self::Free`], which has no view of its own.
     pub fn named(name: &str) -> Result<Self, Invalid> {
-        let named =
-            Self::ALL.into_iter().find(|camera_mode| camera_mode.name().to_lowercase() == name);
-        let still = named.filter(|camera_mode| *camera_mode != Self::Free);
-        still.ok_or_else(|| Invalid::new("camera", format!("{name:?}"), "follow, side or top"))
+        let following = [Self::Follow, Self::Side, Self::Top].into_iter();
+        let mut named = following.filter(|mode| mode.name().to_lowercase() == name);
+        named
+            .next()
+            .ok_or_else(|| Invalid::new("camera", format!("{name:?}"), "follow, side or top"))
     }
 
     /// Returns the next mode. The last mode is followed by the first.
     pub fn next(self) -> Self {
-        let place = Self::ALL.iter().position(|camera_mode| *camera_mode == self).unwrap_or(0);
-        Self::ALL[(place + 1) % Self::ALL.len()]
+        Self::ALL[(self as usize + 1) % Self::ALL.len()]
     }
 }

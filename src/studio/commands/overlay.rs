@@ -22,14 +22,14 @@ impl Overlay {
     pub const ALL: [Self; 5] =
         [Self::Contacts, Self::Torques, Self::Trail, Self::FitnessLine, Self::Wireframe];
 
-    /// Returns the label of the button, and its tooltip.
-    fn words(self) -> (&'static str, &'static str) {
+    /// Returns the label of the button, its tooltip, and the short name.
+    fn words(self) -> (&'static str, &'static str, Option<&'static str>) {
         match self {
-            Self::Contacts => ("Contacts", "Contact points and forces"),
-            Self::Torques => ("Torques", "Bend and twist torques of the joints"),
-            Self::Trail => ("Trail", "Path of the middle block"),
-            Self::FitnessLine => ("Fitness line", "Distance of the middle block"),
-            Self::Wireframe => ("Collision shapes", "Shapes that the physics engine uses"),
+            Self::Contacts => ("Contacts", "Contact points and forces", Some("contacts")),
+            Self::Torques => ("Torques", "Bend and twist torques of the joints", Some("torques")),
+            Self::Trail => ("Trail", "Path of the middle block", Some("trail")),
+            Self::FitnessLine => ("Fitness line", "Distance of the middle block", Some("line")),
+            Self::Wireframe => ("Collision shapes", "Shapes that the physics engine uses", None),
         }
     }
 
@@ -55,12 +55,6 @@ impl Overlay {
 
     /// Returns the name by which [`Self::named`] finds the overlay, or `None` if it cannot be drawn in pictures.
     pub fn short_name(self) -> Option<&'static str> {
-        match self {
-            Self::Contacts => Some("contacts"),
-            Self::Torques => Some("torques"),
-            Self::Trail => Some("trail"),
-            Self::FitnessLine => Some("line"),
-            Self::Wireframe => None,
-        }
+        self.words().2
     }
 }

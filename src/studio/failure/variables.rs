@@ -136,11 +136,10 @@ mod linux {
 
     /// Whether this process has an open socket with this number.
     fn is_open_socket(number: &OsStr) -> bool {
-        let Some(number) = number.to_str().and_then(|text| text.parse::<u32>().ok()) else {
-            return false;
-        };
-        let target = Path::new("/proc/self/fd").join(number.to_string()).read_link();
-        target.is_ok_and(|target| target.as_os_str().as_encoded_bytes().starts_with(b"socket:"))
+        let number = number.to_str().and_then(|text| text.parse::<u32>().ok());
+        let file = number.map(|number| Path::new("/proc/self/fd").join(number.to_string()));
+        let target = file.and_then(|file| file.read_link().ok());
+        target.is_some_and(|target| target.as_os_str().as_encoded_bytes().starts_with(b"socket:"))
     }
 
     #[cfg(test)]

@@ -85,6 +85,9 @@ impl Offscreen {
     }
 
     fn new((width, height): (u32, u32), theme: Theme) -> Self {
+        // Bevy's messages about pictures that had not arrived when the work ended are hidden. A missing picture is
+        // reported separately.
+        let filter = format!("{DEFAULT_FILTER},bevy_render::view::window::screenshot=off");
         let mut plugins = DefaultPlugins
             .set(WindowPlugin {
                 primary_window: None,
@@ -94,7 +97,7 @@ impl Offscreen {
             // Each frame waits until all pipelines are compiled.
             .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
             .set(TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) })
-            .set(LogPlugin { level: Level::ERROR, filter: log_filter(), ..default() })
+            .set(LogPlugin { level: Level::ERROR, filter, ..default() })
             // Its handler of the interrupt key would ask an event loop to end, which does not run here.
             .disable::<TerminalCtrlCHandlerPlugin>()
             .disable::<WinitPlugin>()
@@ -174,18 +177,14 @@ impl Offscreen {
         let mut complete = 0;
         for _ in 0..MAX_FRAMES {
             self.app.update();
-            complete = if self.awaits_pipelines() { 0 } else { complete + 1 };
+            let renderer = self.app.get_sub_app(RenderApp);
+            let pipelines = renderer.and_then(|of| of.world().get_resource::<PipelineCache>());
+            let waits = pipelines.is_some_and(|of| of.waiting_pipelines().next().is_some());
+            complete = if waits { 0 } else { complete + 1 };
             if complete >= FRAMES {
                 return;
             }
         }
-    }
-
-    /// Returns whether the renderer is still waiting for a pipeline.
-    fn awaits_pipelines(&self) -> bool {
-        let renderer = self.app.get_sub_app(RenderApp);
-        let pipelines = renderer.and_then(|of| of.world().get_resource::<PipelineCache>());
-        pipelines.is_some_and(|pipelines| pipelines.waiting_pipelines().next().is_some())
     }
 
     /// Draws the scene once, as it is now, and requests its picture, which arrives some frames later. Returns the
@@ -260,12 +259,6 @@ fn run_systems_in_order(app: &mut SubApp) {
     for (_, schedule) in schedules.iter_mut() {
         schedule.set_executor(SingleThreadedExecutor::new());
     }
-}
-
-/// Returns a log filter that hides Bevy's messages about pictures that had not arrived when the work ended. A missing
-/// picture is reported separately.
-fn log_filter() -> String {
-    format!("{DEFAULT_FILTER},bevy_render::view::window::screenshot=off")
 }
 
 fn no_picture() -> StudioError {

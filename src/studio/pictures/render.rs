@@ -47,7 +47,11 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
         lane.skip_to(scene.at_s.unwrap_or(f64::MAX));
     }
     let (width, height) = scene.size;
-    let place = overview(&lanes, scene.camera, width as f32 / height.max(1) as f32);
+    let points = in_view(&lanes);
+    let target = middle_of(&points);
+    let mut view = CameraView::of(scene.camera, lanes.len());
+    view.distance_m = view.distance_to_see(target, points, width as f32 / height.max(1) as f32);
+    let place = view.looking_at(target);
     let heads = over_heads(&lanes.iter().collect::<Vec<_>>());
     Offscreen::draw(scene.size, scene.theme, |studio| {
         studio.show_overlays(&scene.overlays);
@@ -80,15 +84,6 @@ pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
         Some((head + Vec3::Z * OVER_HEAD_M, text))
     };
     if lanes.len() > 1 { lanes.iter().filter_map(text).collect() } else { Vec::new() }
-}
-
-/// Returns the transform of a camera with all snakes and some of the stairs in view.
-fn overview(lanes: &[Lane], camera_mode: CameraMode, aspect: f32) -> Transform {
-    let points = in_view(lanes);
-    let target = middle_of(&points);
-    let mut view = CameraView::of(camera_mode, lanes.len());
-    view.distance_m = view.distance_to_see(target, points, aspect);
-    view.looking_at(target)
 }
 
 /// Returns the points that a picture must show: the snakes, some of their lanes, and the lanes' width.

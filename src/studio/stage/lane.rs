@@ -117,13 +117,10 @@ impl Lane {
 
     /// Returns the end of the lane, in simulated seconds: the time of disqualification, if it is known, or else the end of the trial.
     pub fn end_s(&self) -> f64 {
-        let steps = if self.replay.is_over() {
-            self.replay.step()
-        } else {
-            match self.history() {
-                Some(history) if !self.replay.is_disturbed() => history.evaluation().steps,
-                _ => self.replay.last_step(),
-            }
+        let steps = match self.history() {
+            _ if self.replay.is_over() => self.replay.step(),
+            Some(history) if !self.replay.is_disturbed() => history.evaluation().steps,
+            _ => self.replay.last_step(),
         };
         f64::from(steps) * self.step_s
     }
@@ -181,13 +178,10 @@ impl Lane {
 
     /// Returns the speed of the middle limb during the last step, in m/s.
     pub fn speed_m_s(&self) -> f32 {
-        let middle = self.body.middle_part;
-        match (self.before.get(middle), self.replay.poses().get(middle)) {
-            (Some(before), Some(after)) => {
-                before.translation.distance(after.translation) / self.step_s as f32
-            }
-            _ => 0.0,
-        }
+        let mut ends = self.before.iter().zip(self.replay.poses());
+        ends.nth(self.body.middle_part).map_or(0.0, |(before, after)| {
+            before.translation.distance(after.translation) / self.step_s as f32
+        })
     }
 
     /// Returns the time of the first landing, in simulated seconds, if the snake has landed by `time_s`.

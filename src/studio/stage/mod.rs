@@ -225,11 +225,8 @@ fn advance(
 ) {
     // The physics steps of a frame are divided among the lanes.
     let most_steps = MAX_STEPS_PER_FRAME / (lanes.iter().len() as u32).max(1);
-    let (mut steps_per_s, mut end_s) = (0.0, 0.0_f64);
-    for (_, lane) in &lanes {
-        steps_per_s += lane.step_s.recip();
-        end_s = end_s.max(lane.end_s());
-    }
+    let steps_per_s: f64 = lanes.iter().map(|(_, lane)| lane.step_s.recip()).sum();
+    let end_s = end_s(lanes.iter().map(|(_, lane)| lane));
     if steps_per_s == 0.0 {
         return;
     }

@@ -71,9 +71,16 @@ fn play(app: &mut App, frames_s: &[f32], until: impl Fn(&Lane) -> bool) {
     panic!("the stage never got there");
 }
 
+/// Returns the lanes by number, with their entities.
+fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
+    let mut query = app.world_mut().query::<(Entity, &Lane)>();
+    let mut lanes: Vec<_> = query.iter(app.world()).collect();
+    lanes.sort_by_key(|(_, lane)| lane.number);
+    lanes
+}
+
 fn lane(app: &mut App) -> &Lane {
-    let mut lanes = app.world_mut().query::<&Lane>();
-    lanes.iter(app.world()).min_by_key(|lane| lane.number).expect("a lane")
+    lanes_of(app)[0].1
 }
 
 fn clock(app: &mut App) -> Mut<'_, Playback> {
@@ -230,9 +237,7 @@ fn ten_lanes_stand_side_by_side_and_stay_bit_identical() {
     let mut app = stage_of(vec![shipped(); 12]);
     assert_eq!(*app.world().resource::<StageMode>(), StageMode::Race);
     play(&mut app, &[0.05], |lane| lane.replay.step() > 60);
-    let mut lanes = app.world_mut().query::<&Lane>();
-    let mut lanes: Vec<&Lane> = lanes.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number);
+    let lanes: Vec<&Lane> = lanes_of(&mut app).into_iter().map(|(_, lane)| lane).collect();
     assert_eq!(lanes.len(), MAX_LANES, "and no more");
     let xs: Vec<f32> = lanes.iter().map(|lane| lane.offset().x).collect();
     let spacing_m = champion.trial.stairs.width_m + GAP_M;
@@ -267,9 +272,8 @@ fn a_genome_that_does_not_fit_is_reported_and_the_others_are_shown() {
 
 /// Holds the head of the only snake with the mouse, and pulls it this far.
 fn pull(app: &mut App, way_m: Vector) {
-    let mut lanes = app.world_mut().query_filtered::<Entity, With<Lane>>();
-    let entity = lanes.single(app.world()).expect("one lane");
-    let to_m = lane(app).replay.poses()[0].translation + way_m;
+    let [(entity, lane)] = lanes_of(app)[..] else { panic!("one lane") };
+    let to_m = lane.replay.poses()[0].translation + way_m;
     let pull = Pull { part: 0, held_at_m: Vector::ZERO, to_m };
     let held = HeldLimb { lane: entity, pull, pressed_at: Vec2::ZERO, is_pulling: true };
     app.world_mut().resource_mut::<Selection>().grab(0, 0, held);
@@ -350,9 +354,8 @@ fn a_recording_has_a_landing_time_and_a_trail() {
     finish_lookahead(&mut app);
     clock(&mut app).hold_at(1.0e9);
     (0..10).for_each(|_| frame(&mut app, 0.1));
-    let mut lanes = app.world_mut().query::<&Lane>();
-    let landed: Vec<f64> =
-        lanes.iter(app.world()).filter_map(|lane| lane.landed_s(1.0e9)).collect();
+    let lanes = lanes_of(&mut app);
+    let landed: Vec<f64> = lanes.iter().filter_map(|(_, lane)| lane.landed_s(1.0e9)).collect();
     let [first, second] = landed[..] else { panic!("both land: {landed:?}") };
     assert!((first - second).abs() < 0.05, "{landed:?}");
     assert!(lane(&mut app).trail_m().len() > 100);

@@ -80,7 +80,7 @@ impl BodyEditor {
             original: &edited.original,
             steps: [!edited.past.is_empty(), !edited.future.is_empty()],
             tuning: edited.tuning.as_ref().map(|task| [task.done(), task.total()]),
-            problem: edited.problem(),
+            problem: edited.check().err(),
         })
     }
 
@@ -105,11 +105,8 @@ impl BodyEditor {
             return Ok(None);
         }
         let Some(edited) = &mut self.edited else { return Ok(None) };
-        let is_busy = edited.tuning.is_some();
         match command {
-            BodyCommand::CancelTuning => {
-                edited.tuning.iter().for_each(BackgroundTask::cancel);
-            }
+            BodyCommand::CancelTuning => edited.tuning.iter().for_each(BackgroundTask::cancel),
             BodyCommand::Preview => return Ok(edited.show()),
             BodyCommand::Close => {
                 edited.tuning.iter().for_each(BackgroundTask::cancel);
@@ -117,7 +114,9 @@ impl BodyEditor {
                 self.edited = None;
                 return Ok(Some(Show::solo(original)));
             }
-            _ if is_busy => return Err("The gait is being tuned: wait, or cancel it.".to_owned()),
+            _ if edited.tuning.is_some() => {
+                return Err("The gait is being tuned: wait, or cancel it.".to_owned());
+            }
             BodyCommand::Edit => {}
             BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
             BodyCommand::MakeRigid { block } => {
@@ -234,10 +233,9 @@ impl Edited {
         })
     }
 
-    /// Returns the reason why the body cannot be simulated, if there is one.
-    fn problem(&self) -> Option<String> {
-        let checked = self.trial().check_genome(&self.genome);
-        checked.err().map(|error| error.to_string())
+    /// Checks whether the body can be simulated.
+    fn check(&self) -> Result<(), String> {
+        self.trial().check_genome(&self.genome).map_err(|error| error.to_string())
     }
 
     /// Replaces the genome, as a step that can be undone.
@@ -280,11 +278,10 @@ impl Edited {
     }
 
     fn step(&mut self, is_back: bool) {
-        let (from, to) = if is_back {
-            (&mut self.past, &mut self.future)
-        } else {
-            (&mut self.future, &mut self.past)
-        };
+        let (mut from, mut to) = (&mut self.past, &mut self.future);
+        if !is_back {
+            std::mem::swap(&mut from, &mut to);
+        }
         if let Some(genome) = from.pop() {
             to.push(std::mem::replace(&mut self.genome, genome));
             self.last_set = None;
@@ -299,9 +296,7 @@ impl Edited {
 
     /// Returns the edited snake, with the evaluation of the original in place of its own.
     fn unevaluated(&self) -> Result<Champion, String> {
-        if let Some(problem) = self.problem() {
-            return Err(problem);
-        }
+        self.check()?;
         let (genome, trial) = (self.genome.clone(), self.trial());
         let original = self.original.champion();
         let (evaluation, origin) = (original.evaluation, original.origin.clone());
@@ -316,9 +311,7 @@ impl Edited {
     }
 
     fn tune(&mut self) -> Result<(), String> {
-        if let Some(problem) = self.problem() {
-            return Err(problem);
-        }
+        self.check()?;
         let (genome, trial) = (self.genome.clone(), self.trial());
         self.attempts += 1;
         let size = (TUNING, self.attempts);

@@ -58,7 +58,6 @@ pub(crate) struct CurrentRun {
     source: RunSource,
     /// Plan of the current run after all its changes.
     pub plan_now: RunPlan,
-    /// Plan of the next run.
     plan_next: RunPlan,
     /// Requested changes of the current run that take effect with its next generation: full dotted names and values.
     pending: Vec<(String, SettingValue)>,
@@ -176,11 +175,8 @@ impl CurrentRun {
     /// Returns the ten best snakes of a generation, or of the latest one, the best first. Empty if the generation is
     /// too old or was finished before the program started.
     pub fn leaders(&self, generation: Option<u32>) -> &[Champion] {
-        let is_it = |leaders: &&Vec<Champion>| match (generation, leaders.first()) {
-            (None, _) => true,
-            (Some(generation), Some(first)) => first.origin.generation == generation,
-            (Some(_), None) => false,
-        };
+        let of = |leaders: &Vec<Champion>| Some(leaders.first()?.origin.generation);
+        let is_it = |leaders: &&Vec<Champion>| generation.is_none() || of(leaders) == generation;
         self.leaders.iter().rev().find(is_it).map_or(&[], Vec::as_slice)
     }
 

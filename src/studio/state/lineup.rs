@@ -82,11 +82,10 @@ pub(crate) fn leaders(
         return Err("Nothing to race yet: finish a generation first.".to_owned());
     }
     let number = run.number();
-    let names = (1..).map(|rank| format!("No. {rank}"));
-    let champions = leaders.iter().zip(names);
-    Ok(champions
-        .map(|(champion, name)| StagedChampion::from_run(champion, number).named(name))
-        .collect())
+    let staged = |(rank, champion): (usize, &Champion)| {
+        StagedChampion::from_run(champion, number).named(format!("No. {rank}"))
+    };
+    Ok((1..).zip(leaders).map(staged).collect())
 }
 
 #[cfg(test)]
@@ -106,18 +105,16 @@ mod tests {
     fn joining_twice_removes_and_an_eleventh_lane_is_refused() {
         let mut on_show = vec![climber(0)];
         for index in 1..10 {
-            on_show =
-                with_one_more(on_show, climber(index)).expect("not full").expect("new").champions;
+            let more = with_one_more(on_show, climber(index)).expect("not full");
+            on_show = more.expect("new").champions;
         }
         assert_eq!(on_show.len(), 10);
         let full = with_one_more(on_show.clone(), climber(10)).expect_err("full");
         assert!(full.contains("At most 10 snakes"), "{full}");
         let fewer = with_one_more(on_show, climber(3)).expect("fine").expect("one less");
         assert_eq!(fewer.champions.len(), 9);
-        assert!(
-            with_one_more(vec![climber(0)], climber(0)).expect("fine").is_none(),
-            "the last stays"
-        );
+        let last = with_one_more(vec![climber(0)], climber(0));
+        assert!(last.expect("fine").is_none(), "the last stays");
     }
 
     #[test]

@@ -17,10 +17,9 @@ use snakes_core::score::Trial;
 /// Describes the setting that was changed because it has to suit the chosen strategy or controller.
 fn partner_in_words((field, name): (&str, &str)) -> String {
     match field {
-        "genome.controller" => match ControllerKind::named(field, name) {
-            Ok(kind) => format!("The controller is now {}, to suit the strategy.", kind.title()),
-            Err(_) => String::new(),
-        },
+        "genome.controller" => ControllerKind::named(field, name)
+            .map(|kind| format!("The controller is now {}, to suit the strategy.", kind.title()))
+            .unwrap_or_default(),
         "genome.bodies.vary" if name == "true" => {
             "Bodies evolve now, to suit the strategy.".to_owned()
         }
@@ -29,11 +28,14 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             "The physics engine is now rapier: lanes simulates only rigid limbs in a row."
                 .to_owned()
         }
-        _ => match StrategyKind::named(field, name) {
-            Ok(kind) => format!("The strategy is now {}, to suit your choice.", kind.title()),
-            Err(_) => String::new(),
-        },
+        _ => StrategyKind::named(field, name)
+            .map(|kind| format!("The strategy is now {}, to suit your choice.", kind.title()))
+            .unwrap_or_default(),
     }
+}
+
+fn borrowed(changes: &[(String, String)]) -> Vec<(&str, &str)> {
+    changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect()
 }
 
 /// Executes a command to the plan. Returns what to show on the stage, if that changes.
@@ -61,8 +63,7 @@ pub(crate) fn apply_to_plan(
             return what_if(run, stage, &WorldChange::Fields(fields));
         }
         PlanCommand::SetFields(changes) => {
-            let changes = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
-            return what_if(run, stage, &WorldChange::Fields(changes.collect()));
+            return what_if(run, stage, &WorldChange::Fields(borrowed(changes)));
         }
         PlanCommand::SetPreset(name) => {
             if !run.preset_suits(name, on_show.first())? {
@@ -99,8 +100,7 @@ pub(crate) fn apply_to_plan(
         PlanCommand::ForgetFounder => run.forget_founder(),
         PlanCommand::UseWorldOfLane => {
             let changes = on_show.first().map(changes_of).unwrap_or_default();
-            let texts = changes.iter().map(|(field, text)| (field.as_str(), text.as_str()));
-            run.set_fields(&texts.collect::<Vec<_>>())?;
+            run.set_fields(&borrowed(&changes))?;
             notices.info("The next run uses this world.".to_owned());
         }
         PlanCommand::KeepLane(lane) => return kept_lane(run, stage.show, *lane),

@@ -62,18 +62,16 @@ impl StairsExams {
                 let grid = grids.find(|grid| grid.suite == *suite);
                 let cell = grid.and_then(|grid| grid.cells.get(*cell));
                 // The selected champion may have changed since the click. Then nothing happens.
-                return Ok(cell.map(|cell| {
-                    Show::solo(
-                        selected.on_stairs_of_exam(&cell.typical, stairs_in_words(*suite, cell)),
-                    )
-                }));
+                let there = |cell: &StairsCell| {
+                    selected.on_stairs_of_exam(&cell.typical, stairs_in_words(*suite, cell))
+                };
+                return Ok(cell.map(there).map(Show::solo));
             }
             ExamCommand::BackToOwnStairs => return Ok(Some(Show::solo(selected?.as_found()))),
         }
         Ok(None)
     }
 
-    /// Begins to examine a champion.
     fn examine(&mut self, staged: &StagedChampion) -> Result<(), String> {
         if self.under_way.is_some() {
             return Err("An exam is in progress: wait for it, or cancel it.".to_owned());

@@ -259,8 +259,7 @@ mod tests {
 
     #[test]
     fn after_a_lesson_its_file_operations_stay_and_its_plan_steps_do_not() {
-        let mut history = UndoHistory::default();
-        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        let mut history = changed();
         let own = std::mem::take(&mut history);
         assert_eq!(history.next(UndoDirection::Back), None);
         history.note(&set("0.3"), plan("0.5"), &plan("0.3"));
@@ -271,7 +270,6 @@ mod tests {
         assert_eq!(step(&mut history, UndoDirection::Back), None);
     }
 
-    /// Returns a plan with this friction.
     fn plan(friction: &str) -> RunPlan {
         let settings = with_field(&Settings::default(), "surface.friction", friction);
         RunPlan::new("report", 1, settings.expect("allowed"))
@@ -279,6 +277,13 @@ mod tests {
 
     fn set(text: &str) -> Command {
         Command::Plan(PlanCommand::set("trial.surface.friction", text))
+    }
+
+    /// Returns a history in which the friction was changed from 1 to 0.5.
+    fn changed() -> UndoHistory {
+        let mut history = UndoHistory::default();
+        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        history
     }
 
     /// Returns the plans before and after a step.
@@ -289,8 +294,7 @@ mod tests {
 
     #[test]
     fn steps_are_undone_and_redone_with_their_labels() {
-        let mut history = UndoHistory::default();
-        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        let mut history = changed();
         history.is_settled = true;
         history.note(&set("0.2"), plan("0.5"), &plan("0.2"));
         assert_eq!(history.next(UndoDirection::Back), Some("friction 0.2"));
@@ -317,8 +321,7 @@ mod tests {
 
     #[test]
     fn a_new_change_clears_the_redo_stack_and_a_change_without_effect_is_no_step() {
-        let mut history = UndoHistory::default();
-        history.note(&set("0.5"), plan("1"), &plan("0.5"));
+        let mut history = changed();
         step(&mut history, UndoDirection::Back);
         history.note(&set("1"), plan("1"), &plan("1"));
         assert!(history.next(UndoDirection::Forth).is_some(), "nothing was changed");

@@ -57,9 +57,8 @@ impl ChangedStage<'_> {
             _ => (Box::new(before.clone()), Vec::new()),
         };
         // All lanes are simulated, so that their only difference is the change.
-        let staying =
-            self.show.champions.iter().take(1 + beside.len()).map(StagedChampion::simulated);
-        let mut champions: Vec<StagedChampion> = staying.collect();
+        let staying = self.show.champions.iter().take(1 + beside.len());
+        let mut champions: Vec<StagedChampion> = staying.map(StagedChampion::simulated).collect();
         let Some(original) = champions.first().cloned() else {
             return Err("There is no snake on the stage.".to_owned());
         };

@@ -51,13 +51,10 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
             Some(false) if is_what_if(from) => Effect::Leave(Excursion::WhatIf),
             _ => Effect::None,
         },
-        Command::Stage(Sweep(_) | RaceStairs | RaceGenerations | RaceLeaders(_)) => {
+        Command::Stage(Join(_)) if !is_race || *from == StageMode::Race => Effect::None,
+        Command::Stage(Join(_) | Sweep(_) | RaceStairs | RaceGenerations | RaceLeaders(_)) => {
             Effect::Enter(Excursion::Race)
         }
-        Command::Stage(Join(_)) if is_race && *from != StageMode::Race => {
-            Effect::Enter(Excursion::Race)
-        }
-        Command::Stage(Join(_)) => Effect::None,
         Command::Stage(Single) => Effect::Enter(Excursion::Snake),
         Command::Stage(Show(_)) | Command::Library(_) | Command::File(_) => match way.innermost() {
             _ if is_race => Effect::Enter(Excursion::Race),

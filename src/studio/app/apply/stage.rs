@@ -89,10 +89,8 @@ impl StageParams<'_, '_> {
 
     /// Returns the champion of the selected lane, or of the first lane if the selected one does not exist.
     pub fn selected(&self) -> Option<StagedChampion> {
-        let lanes = || self.all_lanes();
-        let selected = lanes().find(|lane| lane.number == self.selection.lane);
-        let lane = selected.or_else(|| lanes().min_by_key(|lane| lane.number));
-        lane.map(|lane| lane.staged.clone())
+        let nearness = |lane: &&Lane| (lane.number != self.selection.lane, lane.number);
+        self.all_lanes().min_by_key(nearness).map(|lane| lane.staged.clone())
     }
 
     /// Shows other champions from their start until the user chooses again. A pause command later in the same frame

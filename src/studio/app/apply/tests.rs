@@ -15,15 +15,16 @@ use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::{Show, StageMode};
-use crate::studio::state::current_run::prepared_run;
+use crate::studio::state::current_run::{climber, prepared_run};
 use crate::studio::state::following::Following;
 use crate::studio::state::turns::Turns;
 use crate::studio::ui::theme::Theme;
+use snakes_core::evolve::RunPlan;
 use snakes_core::save::library::SavePlace;
 use snakes_core::save::shipped_champion;
 
 /// Creates an app that executes commands, with an empty stage.
-fn app() -> App {
+pub(in crate::studio::app) fn app() -> App {
     let loaded = shipped_champion().expect("well formed");
     let mut app = App::new();
     app.add_message::<Command>()
@@ -61,6 +62,10 @@ fn set(friction: &str) -> Command {
     Command::Plan(PlanCommand::set("trial.surface.friction", friction))
 }
 
+fn plan(app: &App) -> RunPlan {
+    app.world().resource::<CurrentRun>().next_plan().clone()
+}
+
 /// Sends one command per frame and returns the friction of the next run.
 fn friction_after(app: &mut App, commands: &[Command]) -> f32 {
     for command in commands {
@@ -89,8 +94,7 @@ fn settings_are_undone_and_redone_drag_by_drag() {
 #[test]
 fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
     let mut app = app();
-    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
-    app.world_mut().spawn(Lane::new(staged, 0));
+    app.world_mut().spawn(Lane::new(climber(0), 0));
     let mut tried = |friction: &str, act: &dyn Fn(&mut Playback)| {
         act(&mut app.world_mut().resource_mut::<Playback>());
         app.world_mut().write_message(set(friction));
@@ -105,15 +109,10 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
         assert!(playback.is_playing, "or there would be nothing to see");
         (step, playback.time_s())
     };
-    let goes_to = |time_s| {
-        move |playback: &mut Playback| {
-            playback.apply(&PlayerCommand::Seek(time_s), 1.0 / 60.0, 15.0);
-        }
-    };
+    let goes_to =
+        |time_s| move |of: &mut Playback| of.apply(&PlayerCommand::Seek(time_s), 1.0 / 60.0, 15.0);
     assert_eq!(tried("0.3", &|playback| playback.hold_at(5.0)), (Some(300), 5.0));
-    let plays_on = |playback: &mut Playback| {
-        (0..8).for_each(|_| playback.pass(0.5, 1.0, 15.0));
-    };
+    let plays_on = |playback: &mut Playback| (0..8).for_each(|_| playback.pass(0.5, 1.0, 15.0));
     assert_eq!(tried("0.4", &plays_on), (Some(300), 5.0));
     assert_eq!(tried("0.5", &goes_to(3.0)), (Some(180), 3.0));
     assert_eq!(tried("0.6", &plays_on), (Some(180), 3.0));
@@ -123,9 +122,8 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
 #[test]
 fn a_preset_a_seed_and_a_group_of_settings_are_one_undo_step_each() {
     let mut app = app();
-    let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
-    let back = [("trial.surface.friction", "0.7"), ("trial.surface.bounce", "0.1")];
-    let back = back.map(|(field, text)| (field.to_owned(), text.to_owned()));
+    let back = [("trial.surface.friction", "0.7"), ("trial.surface.bounce", "0.1")]
+        .map(|(field, text)| (field.to_owned(), text.to_owned()));
     let mut plans = vec![plan(&app)];
     for command in [
         Command::Plan(PlanCommand::SetPreset("ice".to_owned())),
@@ -154,18 +152,11 @@ fn a_rejected_command_is_no_undo_step() {
 fn a_lesson_leaves_the_own_run_untouched() {
     let mut app = app();
     let friction = friction_after(&mut app, &[]);
-    let plan = |app: &App| app.world().resource::<CurrentRun>().next_plan().clone();
     let number = |app: &App| app.world().resource::<CurrentRun>().number();
     friction_after(&mut app, &[set("0.5")]);
     let (own, run) = (plan(&app), number(&app));
-    friction_after(
-        &mut app,
-        &[
-            Command::Lesson(LessonCommand::Begin(0)),
-            Command::Run(RunCommand::Reset),
-            Command::Run(RunCommand::Start),
-        ],
-    );
+    let [reset, start] = [RunCommand::Reset, RunCommand::Start].map(Command::Run);
+    friction_after(&mut app, &[Command::Lesson(LessonCommand::Begin(0)), reset, start]);
     assert_eq!(number(&app), run, "refused, in a sentence");
     assert!(app.world().resource::<Notices>().len() > 0);
     friction_after(&mut app, &[set("0.2"), Command::Undo, Command::Undo, set("0.3")]);
@@ -218,8 +209,7 @@ fn show_after(app: &mut App, show: Show, command: Command) -> Option<Show> {
 #[test]
 fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
     let mut app = app();
-    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
-    let what_if = show_after(&mut app, Show::solo(staged), set("0.25")).expect("a what-if");
+    let what_if = show_after(&mut app, Show::solo(climber(0)), set("0.25")).expect("a what-if");
     show_after(&mut app, what_if, Command::Run(RunCommand::Reset)).expect("the kept change");
     let said = app.world().resource::<Notices>().last();
     assert_eq!(said, Some("The new run has the change that was tried: friction 0.25."));
@@ -230,9 +220,8 @@ fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
 #[test]
 fn a_lane_that_stays_after_a_race_offers_its_world() {
     let mut app = app();
-    let staged = app.world().resource::<OpeningChampions>().staged(0).expect("a champion");
     let sweep = Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned()));
-    let race = show_after(&mut app, Show::solo(staged), sweep).expect("five lanes");
+    let race = show_after(&mut app, Show::solo(climber(0)), sweep).expect("five lanes");
     app.world_mut().resource_mut::<Selection>().lane = 0;
     let left = Command::Stage(StageCommand::Single);
     let alone = show_after(&mut app, race, left).expect("one lane");

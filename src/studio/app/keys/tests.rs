@@ -13,6 +13,16 @@ fn character(text: &str) -> Key {
     Key::Character(text.into())
 }
 
+/// The command of a character's key in a calm situation.
+fn calm(text: &str, held: Held) -> Option<Command> {
+    command(&character(text), held, Situation::default())
+}
+
+/// The command that shows the champion of a generation.
+fn shown(generation: u32) -> Option<Command> {
+    Some(Command::Stage(StageCommand::Show(Pick::Generation(generation))))
+}
+
 /// The key press for a shortcut's name.
 fn pressed(name: &str) -> (Key, Held) {
     let control = name.contains("Ctrl ");
@@ -42,8 +52,7 @@ fn a7_at_the_end_of_a_run_its_key_begins_no_other() {
 
 #[test]
 fn a14_the_key_for_a_new_run_begins_one() {
-    let sent = command(&character("n"), CONTROL, Situation::default());
-    assert_eq!(sent, Some(Command::Run(RunCommand::New)));
+    assert_eq!(calm("n", CONTROL), Some(Command::Run(RunCommand::New)));
 }
 
 #[test]
@@ -66,7 +75,6 @@ fn the_command_of_a_key_depends_on_the_situation() {
     let is_what_if = Situation { is_what_if: true, ..calm };
     let is_covered = Situation { is_covered: true, ..is_what_if };
     let is_running = Situation { is_running: true, ..calm };
-    let third = Command::Stage(StageCommand::Show(Pick::Generation(3)));
     for (key, now, expected) in [
         (Key::Escape, calm, None),
         (Key::Escape, can_leave, Some(Command::Stage(StageCommand::Leave))),
@@ -74,7 +82,7 @@ fn the_command_of_a_key_depends_on_the_situation() {
         (Key::Escape, is_covered, Some(Command::Window(WindowCommand::CloseModal))),
         (character("e"), is_running, Some(Command::Run(RunCommand::Pause))),
         (character("e"), calm, Some(Command::Run(RunCommand::Start))),
-        (character("3"), calm, Some(third)),
+        (character("3"), calm, shown(3)),
     ] {
         assert_eq!(command(&key, NONE, now), expected, "{key:?} in {now:?}");
     }
@@ -106,16 +114,12 @@ fn a_clicker_leads_through_a_presentation_and_any_other_key_ends_it() {
 
 #[test]
 fn unused_keys_do_nothing() {
-    let calm = Situation::default();
     for text in ["q", "x", "*"] {
-        assert_eq!(command(&character(text), NONE, calm), None, "{text}");
+        assert_eq!(calm(text, NONE), None, "{text}");
     }
-    assert_eq!(command(&character("r"), CONTROL, calm), None, "control and R");
-    assert_eq!(command(&character("Q"), CONTROL, calm), Some(Command::Quit), "large letters");
-    assert_eq!(
-        command(&character("R"), SHIFT, calm),
-        Some(Command::Player(PlayerCommand::Restart))
-    );
+    assert_eq!(calm("r", CONTROL), None, "control and R");
+    assert_eq!(calm("Q", CONTROL), Some(Command::Quit), "large letters");
+    assert_eq!(calm("R", SHIFT), Some(Command::Player(PlayerCommand::Restart)));
 }
 
 #[test]
@@ -156,33 +160,23 @@ fn on_layout(text: &str, code: KeyCode, held: Held) -> Option<Command> {
 
 #[test]
 fn f1_letters_of_every_script_act_by_the_position_of_their_key() {
-    let theme = command(&character("t"), NONE, Situation::default());
+    let theme = calm("t", NONE);
     assert!(theme.is_some());
     // Russian, Greek, Arabic, Hebrew, Thai and Hindi.
     for text in ["е", "τ", "ف", "א", "ะ", "ू"] {
         assert_eq!(on_layout(text, KeyCode::KeyT, NONE), theme, "{text}");
-        let find = command(&character("k"), CONTROL, Situation::default());
-        assert_eq!(on_layout(text, KeyCode::KeyK, CONTROL), find, "Ctrl K as {text}");
+        let find = on_layout(text, KeyCode::KeyK, CONTROL);
+        assert_eq!(find, calm("k", CONTROL), "Ctrl K as {text}");
     }
     // An Arabic layout gives two letters for one key.
-    assert_eq!(
-        on_layout("لا", KeyCode::KeyF, NONE),
-        command(&character("f"), NONE, Situation::default())
-    );
-    let third = Some(Command::Stage(StageCommand::Show(Pick::Generation(3))));
-    assert_eq!(on_layout("٣", KeyCode::Digit3, NONE), third, "an Arabic digit");
-    assert_eq!(
-        on_layout("؟", KeyCode::Slash, SHIFT),
-        command(&character("?"), SHIFT, Situation::default())
-    );
+    assert_eq!(on_layout("لا", KeyCode::KeyF, NONE), calm("f", NONE));
+    assert_eq!(on_layout("٣", KeyCode::Digit3, NONE), shown(3), "an Arabic digit");
+    assert_eq!(on_layout("؟", KeyCode::Slash, SHIFT), calm("?", SHIFT));
     assert_eq!(on_layout("№", KeyCode::Digit3, SHIFT), None, "a number sign is no digit");
 }
 
 #[test]
 fn f1_a_latin_letter_acts_wherever_a_layout_puts_it() {
-    let of = |text: &str, held| {
-        command(&character(text), held, Situation { can_undo: true, ..Situation::default() })
-    };
     // German Z and Y, French A and Q, and a Dvorak T.
     for (text, code) in [
         ("z", KeyCode::KeyY),
@@ -195,12 +189,12 @@ fn f1_a_latin_letter_acts_wherever_a_layout_puts_it() {
             assert_eq!(meant_key(&character(text), code, held), character(text), "{text}");
         }
     }
-    assert_eq!(of("z", CONTROL), Some(Command::Undo));
+    let can_undo = Situation { can_undo: true, ..Situation::default() };
+    assert_eq!(command(&character("z"), CONTROL, can_undo), Some(Command::Undo));
 }
 
 #[test]
 fn f1_french_digit_keys_show_generations_without_shift() {
-    let shown = |number| Some(Command::Stage(StageCommand::Show(Pick::Generation(number))));
     let row = ["&", "é", "\"", "'", "(", "-", "è", "_", "ç"];
     use KeyCode::{Digit1, Digit2, Digit3, Digit4, Digit5, Digit6, Digit7, Digit8, Digit9};
     let codes = [Digit1, Digit2, Digit3, Digit4, Digit5, Digit6, Digit7, Digit8, Digit9];
@@ -212,8 +206,7 @@ fn f1_french_digit_keys_show_generations_without_shift() {
         assert_eq!(on_layout(&number.to_string(), code, SHIFT), shown(number), "Shift {text}");
     }
     assert_eq!(on_layout("&", KeyCode::Digit7, SHIFT), None, "an American Shift 7");
-    let reset = command(&character("0"), CONTROL, Situation::default());
-    assert_eq!(on_layout("à", KeyCode::Digit0, CONTROL), reset, "Ctrl 0");
+    assert_eq!(on_layout("à", KeyCode::Digit0, CONTROL), calm("0", CONTROL), "Ctrl 0");
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub fn film(
     };
     let all = plan.len();
     shoot(order, &plan, |shooting| {
-        shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
+        shooting.play(0..all, |index, frame| {
             progress.reach(index as f64 / all as f64)?;
             let added = file.add(&frame).map_err(FilmError::from);
             // If the interrupt key has cancelled the film, it may also have ended ffmpeg; the failure of ffmpeg is then not reported.
@@ -106,9 +106,8 @@ fn gif_within(
     shoot(order, &plan, |shooting| {
         let firsts = evenly(all.saturating_sub(1).max(1), PAIRS, PAIRS);
         let chosen: BTreeSet<usize> = firsts.flat_map(|first| [first, first + 1]).collect();
-        let chosen: Vec<usize> = chosen.into_iter().filter(|index| *index < all).collect();
         let mut samples = Vec::new();
-        shooting.play(&chosen, |index, frame| {
+        shooting.play(chosen.into_iter().filter(|index| *index < all), |index, frame| {
             samples.push((index, frame));
             Ok(progress.reach(0.0)?)
         })?;
@@ -120,7 +119,7 @@ fn gif_within(
         progress.expect(expected);
         let Some(begun) = begun.take() else { return Ok(()) };
         let file = file.insert(begun.with_palette(palette)?);
-        shooting.play(&(0..all).collect::<Vec<_>>(), |index, frame| {
+        shooting.play(0..all, |index, frame| {
             file.add(&frame)?;
             if most.is_some_and(|most| file.bytes() > most) {
                 return Err(FilmError::TooLarge(file.bytes() * all as u64 / (index as u64 + 1)));

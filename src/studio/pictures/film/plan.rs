@@ -62,10 +62,9 @@ fn frames_of(
     let held = if part.title.is_some() { libm::round(HOLD_S * fps) as usize } else { 0 };
     let times_s = (0..held + count + held).map(|frame| {
         let played = frame.saturating_sub(held).min(count);
-        // While a part stands still at its end, it shows exactly its last time.
-        let is_last = played == count;
         let time_s = order.start_s + played as f64 * order.speed / fps;
-        if is_last { until_s } else { time_s }
+        // While a part stands still at its end, it shows exactly its last time.
+        if played == count { until_s } else { time_s }
     });
     let times_s: Vec<f64> = times_s.collect();
     let points = times_s.iter().map(|time_s| {

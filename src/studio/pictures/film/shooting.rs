@@ -58,23 +58,21 @@ impl Shooting<'_> {
     /// Draws the frames with these indices, in ascending order, and passes each to `each` with its index.
     pub fn play(
         &mut self,
-        indices: &[usize],
+        indices: impl IntoIterator<Item = usize>,
         mut each: impl FnMut(usize, Picture) -> Result<(), FilmError>,
     ) -> Result<(), FilmError> {
         let mut pending = VecDeque::new();
         for index in indices {
-            pending.push_back(self.draw(*index)?);
-            while let Some(frame) = pending.pop_front() {
-                let picture = if pending.len() >= IN_FLIGHT {
+            pending.push_back(self.draw(index)?);
+            while let Some(frame) = pending.front() {
+                let picture = if pending.len() > IN_FLIGHT {
                     Some(self.studio.await_shot(frame.shot)?)
                 } else {
                     self.studio.taken(frame.shot)?
                 };
-                let Some(picture) = picture else {
-                    pending.push_front(frame);
-                    break;
-                };
-                each(frame.index, written_on(picture, &frame)?)?;
+                let Some(picture) = picture else { break };
+                each(frame.index, written_on(picture, frame)?)?;
+                pending.pop_front();
             }
         }
         for frame in pending {
@@ -234,7 +232,7 @@ mod tests {
         let frames = |indices: &[usize]| {
             let mut drawn = Vec::new();
             let shot = shoot(&order, &plan, |shooting| {
-                shooting.play(indices, |index, picture| {
+                shooting.play(indices.iter().copied(), |index, picture| {
                     drawn.push((index, picture));
                     Ok(())
                 })

@@ -4,15 +4,21 @@ use super::*;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use snakes_core::save::{load_preset, shipped_champion};
+use snakes_core::score::Trial;
 use snakes_core::world::Vector;
+
+/// Creates a lane with the shipped champion in an edited world.
+fn lane_in(edit: impl FnOnce(&mut Trial)) -> Lane {
+    let staged = StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "one");
+    let mut trial = staged.trial().clone();
+    edit(&mut trial);
+    Lane::new(staged.in_world(&trial, "edited".to_owned()), 0)
+}
 
 /// Creates a lane with the shipped champion, on the surface of a preset if one is named.
 fn lane(preset: Option<&str>) -> Lane {
-    let staged = StagedChampion::from_file(&shipped_champion().expect("well formed"), 0, "one");
-    let Some(preset) = preset else { return Lane::new(staged, 0) };
-    let mut trial = staged.trial().clone();
-    trial.surface = load_preset(preset).expect("shipped").settings.trial.surface;
-    Lane::new(staged.in_world(&trial, preset.to_owned()), 0)
+    let preset = preset.map(|name| load_preset(name).expect("shipped"));
+    lane_in(|trial| preset.into_iter().for_each(|of| trial.surface = of.settings.trial.surface))
 }
 
 fn reading(lane: &Lane) -> Option<SurfaceReading> {
@@ -64,13 +70,7 @@ fn while_the_stage_plays_a_reading_stays_for_an_eighth_of_a_second() {
 
 #[test]
 fn ice_uses_nearly_all_grip_glue_little_and_mud_is_dented_and_takes_energy() {
-    let over_time = |preset: Option<&str>, friction: Option<f32>| {
-        let mut lane = lane(preset);
-        if let Some(friction) = friction {
-            let mut trial = lane.trial().clone();
-            trial.surface.friction = friction;
-            lane = Lane::new(lane.staged.in_world(&trial, "changed".to_owned()), 0);
-        }
+    let over_time = |mut lane: Lane| {
         let mut readings = Vec::new();
         for quarter in 1..=56 {
             lane.show(f64::from(quarter) / 4.0, None, 3000).expect("healthy");
@@ -81,9 +81,8 @@ fn ice_uses_nearly_all_grip_glue_little_and_mud_is_dented_and_takes_energy() {
         };
         [mean(|one| one.grip_share.unwrap_or(0.0)), mean(|one| one.depth_m), mean(|one| one.lost_w)]
     };
-    let (own, ice, mud) =
-        (over_time(None, None), over_time(Some("ice"), None), over_time(Some("mud"), None));
-    let glue = over_time(None, Some(5.0));
+    let [own, ice, mud] = [None, Some("ice"), Some("mud")].map(|preset| over_time(lane(preset)));
+    let glue = over_time(lane_in(|trial| trial.surface.friction = 5.0));
     assert!(ice[0] > 0.85 && own[0] < 0.85 && glue[0] < 0.4, "{ice:?} {own:?} {glue:?}");
     assert!(mud[1] > 0.2 && own[1] < 0.05, "{mud:?} {own:?}");
     assert!(mud[2] > 3.0 * own[2], "{mud:?} {own:?}");
@@ -104,9 +103,7 @@ fn the_fine_print_of_a_limb_covers_only_that_limb() {
 
 #[test]
 fn a_fast_step_rate_takes_no_more_samples() {
-    let mut trial = lane(None).trial().clone();
-    trial.physics.steps_per_s = 960;
-    let mut lane = Lane::new(lane(None).staged.in_world(&trial, "fine".to_owned()), 0);
+    let mut lane = lane_in(|trial| trial.physics.steps_per_s = 960);
     lane.show(2.0, None, 3000).expect("healthy");
     let samples = lane.readings.meter.samples.len();
     assert!((20..=25).contains(&samples), "{samples} samples of 0.375 s");

@@ -60,14 +60,6 @@ fn stage_at_moment() -> App {
     app
 }
 
-/// Returns the lanes by number, with their entities.
-fn lanes_of(app: &mut App) -> Vec<(Entity, &Lane)> {
-    let mut query = app.world_mut().query::<(Entity, &Lane)>();
-    let mut lanes: Vec<_> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|(_, lane)| lane.number);
-    lanes
-}
-
 #[test]
 fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on() {
     let mut app = stage_at_moment();

@@ -19,7 +19,6 @@ fn start_at_once(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     }
 }
 
-/// Handles the events of the background run.
 fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
     run.others.take_in();
     let Some(background) = &run.background else { return };
@@ -38,9 +37,7 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                     notices
                         .info(format!("The run continues after generation {}.", last.generation));
                 }
-                for report in &behind {
-                    run.note_milestone(report);
-                }
+                behind.iter().for_each(|report| run.note_milestone(report));
                 run.reports = behind;
             }
             RunEvent::Refused(problem) => {
@@ -100,31 +97,38 @@ mod tests {
     use bevy::time::TimeUpdateStrategy;
     use snakes_core::save::SavesFolder;
     use snakes_core::schema::SettingValue;
+    use std::path::Path;
     use std::time::{Duration, Instant};
     use tempfile::TempDir;
 
     /// Creates a studio without a window, whose run is saved in this folder.
-    fn studio(saves: &SavesFolder) -> App {
+    fn studio(folder: &Path) -> App {
+        let saves = SavesFolder::find(Some(folder));
         let mut app = App::new();
-        app.insert_resource(run_in(saves, small_run(saves, 1, 3)))
+        app.insert_resource(run_in(&saves, small_run(&saves, 1, 3)))
             .init_resource::<Notices>()
             .add_systems(Update, take_in);
         app
     }
 
-    /// Updates the app until a condition holds.
-    fn wait_until(app: &mut App, is_so: impl Fn(&CurrentRun) -> bool) {
+    /// Updates the app until a condition holds. Returns the run.
+    fn wait_until(app: &mut App, is_so: impl Fn(&CurrentRun) -> bool) -> &CurrentRun {
         // A channel without messages serves as a sleep.
         let (_never, rest) = std::sync::mpsc::channel::<()>();
         let began = Instant::now();
         while began.elapsed() < Duration::from_secs(60) {
             app.update();
             if is_so(app.world().resource()) {
-                return;
+                return app.world().resource();
             }
             let _ = rest.recv_timeout(Duration::from_millis(2));
         }
         panic!("the condition never held");
+    }
+
+    /// Updates the app until the run is finished. Returns the run.
+    fn finished(app: &mut App) -> &CurrentRun {
+        wait_until(app, |run| run.status() == RunStatus::Finished)
     }
 
     /// Calls a method of the run that must succeed.
@@ -135,7 +139,7 @@ mod tests {
     /// Creates a studio whose run is paused after its first generation.
     fn paused_studio() -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut app = studio(&SavesFolder::find(Some(folder.path())));
+        let mut app = studio(folder.path());
         act(&mut app, |run| run.single_generation());
         wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == RunStatus::Paused);
         (folder, app)
@@ -202,9 +206,8 @@ mod tests {
             run.set_field("evolution.population", "6")?;
             run.single_generation()
         });
-        wait_until(&mut app, |run| !run.reports().is_empty());
-        let reports = app.world().resource::<CurrentRun>().reports();
-        assert_eq!(reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
+        let run = wait_until(&mut app, |run| !run.reports().is_empty());
+        assert_eq!(run.reports().iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
         // A reset does not discard later progress again.
         act(&mut app, |run| {
             run.set_seed(2);
@@ -213,8 +216,7 @@ mod tests {
             run.set_seed(1);
             run.begin_next()
         });
-        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let run = app.world().resource::<CurrentRun>();
+        let run = finished(&mut app);
         assert_eq!((run.plan_now.seed, run.reports().len()), (1, 3));
     }
 
@@ -222,8 +224,8 @@ mod tests {
     fn the_budget_counts_generations_before_a_change_at_their_size() {
         let (_folder, mut app) = paused_studio();
         act(&mut app, |run| run.set_field("evolution.population", "4"));
-        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 1);
-        assert_eq!(app.world().resource::<CurrentRun>().plan_now.budget(), 6 + 4 + 4);
+        let run = wait_until(&mut app, |run| run.plan_now.changes.made().len() == 1);
+        assert_eq!(run.plan_now.budget(), 6 + 4 + 4);
     }
 
     #[test]
@@ -236,8 +238,7 @@ mod tests {
                 .request_changes([("evolution.strategy".to_owned(), SettingValue::Name("ga"))]);
             run.change_running("evolution.halving.parents", SettingValue::Whole(2))
         });
-        wait_until(&mut app, |run| run.plan_now.changes.made().len() == 2);
-        let run = app.world().resource::<CurrentRun>();
+        let run = wait_until(&mut app, |run| run.plan_now.changes.made().len() == 2);
         assert_eq!(run.pending, []);
     }
 
@@ -261,18 +262,13 @@ mod tests {
             assert_eq!((run.status(), run.plan_now.changes.made().len()), (RunStatus::Ready, 0));
             run.start()
         });
-        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let run = app.world().resource::<CurrentRun>();
+        let run = finished(&mut app);
         assert_eq!((run.reports().len(), run.plan_now.changes.made().len()), (3, 1));
     }
 
     #[test]
     fn live_settings_change_in_both_runs_and_others_only_in_the_next() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let saves = SavesFolder::find(Some(folder.path()));
-        let mut app = studio(&saves);
-        act(&mut app, |run| run.single_generation());
-        wait_until(&mut app, |run| run.reports().len() == 1);
+        let (folder, mut app) = paused_studio();
         act(&mut app, |run| {
             run.set_field("halving.parents", "2")?;
             run.set_field("evolution.population", "4")?;
@@ -291,17 +287,15 @@ mod tests {
             assert!(run.run_allows("trial.surface.friction").is_err());
             run.start()
         });
-        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let run = app.world().resource::<CurrentRun>();
+        let run = finished(&mut app);
         let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
         // When the run is resumed after a restart of the program, it has the same hash and changes.
-        let (hash, folder) = (run.run_hash, run.source.folder.clone());
+        let (hash, run_folder) = (run.run_hash, run.source.folder.clone());
         drop(app);
-        let mut app = studio(&saves);
-        act(&mut app, |run| run.go_on_with(&folder));
-        wait_until(&mut app, |run| run.status() == RunStatus::Finished);
-        let run = app.world().resource::<CurrentRun>();
+        let mut app = studio(folder.path());
+        act(&mut app, |run| run.go_on_with(&run_folder));
+        let run = finished(&mut app);
         assert_eq!((run.run_hash, run.plan_now.changes.made().len()), (hash, 3));
         assert_eq!(run.settings().evolution.generations, 4);
         assert!(!run.next_run_differs(), "the next run is like this one");

@@ -31,32 +31,31 @@ pub fn prepared_run() -> CurrentRun {
 
 /// Creates a small MAP-Elites run with two finished generations.
 pub fn explored_run() -> CurrentRun {
-    let mut settings = Settings::default();
-    settings.evolution.strategy = StrategyKind::MapElites;
-    settings.genome.controller = ControllerKind::Gait;
-    evolved_run(settings)
+    evolved_run(StrategyKind::MapElites, ControllerKind::Gait, |_| {})
 }
 
 /// Creates a run of NEAT with two finished generations of several species.
 pub fn species_run() -> CurrentRun {
-    let mut settings = Settings::default();
-    settings.evolution.strategy = StrategyKind::Neat;
-    settings.evolution.neat.species_threshold = 0.25;
-    settings.genome.controller = ControllerKind::Grown;
-    evolved_run(settings)
+    let threshold = |settings: &mut Settings| settings.evolution.neat.species_threshold = 0.25;
+    evolved_run(StrategyKind::Neat, ControllerKind::Grown, threshold)
 }
 
 /// Creates a run of MAP-Elites over bodies with two finished generations.
 pub fn bodies_run() -> CurrentRun {
-    let mut settings = Settings::default();
-    settings.evolution.strategy = StrategyKind::BodyMapElites;
-    settings.genome.controller = ControllerKind::Gait;
-    settings.genome.bodies.vary = true;
-    evolved_run(settings)
+    let vary = |settings: &mut Settings| settings.genome.bodies.vary = true;
+    evolved_run(StrategyKind::BodyMapElites, ControllerKind::Gait, vary)
 }
 
-/// Creates a run with these settings and two finished generations of 20 snakes for 1 s.
-fn evolved_run(mut settings: Settings) -> CurrentRun {
+/// Creates a run with two finished generations of 20 snakes for 1 s.
+fn evolved_run(
+    strategy: StrategyKind,
+    controller: ControllerKind,
+    edit: impl FnOnce(&mut Settings),
+) -> CurrentRun {
+    let mut settings = Settings::default();
+    settings.evolution.strategy = strategy;
+    settings.genome.controller = controller;
+    edit(&mut settings);
     settings.evolution.population = 20;
     settings.trial.duration_s = 1.0;
     let plan = RunPlan::new("test", 2, settings);

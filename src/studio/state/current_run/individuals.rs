@@ -40,8 +40,7 @@ impl CurrentRun {
         let tree = self.exploration()?.stairs.as_ref()?;
         let node = tree.nodes.get(node as usize)?;
         let agent = node.agent.as_ref()?;
-        let (generation, individual) = (agent.generation, agent.individual);
-        let place = IndividualId { generation, individual };
+        let place = IndividualId { generation: agent.generation, individual: agent.individual };
         self.found(place, agent.genome.clone(), node.trial(&self.settings().trial), None)
     }
 
@@ -95,10 +94,7 @@ impl CurrentRun {
         let latest = self.latest(place.generation);
         let of_latest = latest.and_then(|latest| latest.genomes.get(place.individual as usize));
         let of_ancestor = || self.ancestor(place)?.genome.as_ref();
-        let of_champion = || {
-            let champion = self.champion_at(place)?;
-            Some(Arc::new(champion.genome.clone()))
-        };
+        let of_champion = || Some(Arc::new(self.champion_at(place)?.genome.clone()));
         of_latest.or_else(of_ancestor).cloned().or_else(of_champion)
     }
 

@@ -58,12 +58,9 @@ mod tests {
         let StageMode::Generation { number, size } = show.mode else { panic!("{:?}", show.mode) };
         assert_eq!((number, size as usize), (latest.number, latest.genomes.len()));
         assert_eq!(show.champions.len(), latest.genomes.len().min(MAX_GENERATION));
-        let healthy = show.champions.iter().map(StagedChampion::champion);
-        let fitness: Vec<f32> = healthy
-            .map(|champion| champion.evaluation)
-            .take_while(|evaluation| evaluation.disqualified.is_none())
-            .map(|evaluation| evaluation.fitness)
-            .collect();
+        let evaluations = show.champions.iter().map(|staged| staged.champion().evaluation);
+        let healthy = evaluations.take_while(|evaluation| evaluation.disqualified.is_none());
+        let fitness: Vec<f32> = healthy.map(|evaluation| evaluation.fitness).collect();
         assert!(fitness.is_sorted_by(|a, b| a >= b), "{fitness:?}");
         assert!(run.whole_generation(latest.number + 1).is_none());
     }

@@ -43,39 +43,35 @@ fn a_champion_in_a_changed_world_is_shared_with_its_result_there() {
 }
 
 #[test]
-fn without_a_snake_or_a_file_the_commands_are_refused_in_a_sentence() {
+fn without_a_file_under_way_there_is_nothing_to_cancel() {
     let mut shares = Shares::default();
-    let none = shares.begin(ExportFormat::Csv, Path::new("a.csv"), &[], &look());
-    assert_eq!(none, Err("There is no snake on the stage.".to_owned()));
     assert_eq!(shares.cancel(), Err("No file is being written.".to_owned()));
     assert_eq!((shares.progress(), shares.busy()), (None, None));
 }
 
 #[test]
-fn a_race_that_the_file_cannot_hold_is_refused_instead_of_shortened() {
-    for (format, found, problem) in [
+fn a_stage_or_a_path_that_does_not_suit_the_file_is_refused_in_a_sentence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("climb.csv"), "mine").expect("written");
+    for (format, found, name, problem) in [
+        (ExportFormat::Csv, 0, "a.csv", "There is no snake on the stage."),
         (
             ExportFormat::Html,
             7,
+            "race",
             "A .html file holds up to 6 snakes, and 7 are on the stage. Race fewer.",
         ),
         (
             ExportFormat::Mjcf,
             2,
+            "race",
             "A .xml file holds one snake, and 2 are on the stage. Leave the race with the one that you want.",
         ),
+        // A file that exists under the added ending is not replaced.
+        (ExportFormat::Csv, 1, "climb", "climb.csv exists already; choose another name."),
     ] {
-        let race = vec![climber(0); found];
-        let refused = Shares::default().begin(format, Path::new("race"), &race, &look());
+        let (race, path) = (vec![climber(0); found], folder.path().join(name));
+        let refused = Shares::default().begin(format, &path, &race, &look());
         assert_eq!(refused, Err(problem.to_owned()));
     }
-}
-
-#[test]
-fn a_file_that_exists_under_the_added_ending_is_not_replaced() {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("climb.csv"), "mine").expect("written");
-    let path = folder.path().join("climb");
-    let refused = Shares::default().begin(ExportFormat::Csv, &path, &[climber(0)], &look());
-    assert_eq!(refused, Err("climb.csv exists already; choose another name.".to_owned()));
 }

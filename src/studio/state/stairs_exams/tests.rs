@@ -6,18 +6,20 @@ use crate::studio::state::current_run::climber;
 use snakes_core::save::shipped_champion;
 use snakes_core::score::Trial;
 
+/// End of a trial without a landing.
+const NOT_LANDED: ExamEnd = ExamEnd {
+    steps: 2,
+    way: 0.2,
+    landed_s: None,
+    arrived_s: None,
+    has_landed: false,
+    is_disqualified: false,
+};
+
 /// Creates an exam in which no snake lands, without simulating it.
 pub(crate) fn made_up(suite: ExamSuite, own: &Trial) -> StairsGrid {
     let conditions = suite.conditions(own);
-    let end = ExamEnd {
-        steps: 2,
-        way: 0.2,
-        landed_s: None,
-        arrived_s: None,
-        has_landed: false,
-        is_disqualified: false,
-    };
-    StairsGrid::of(suite, own, &conditions, &vec![end; conditions.len()])
+    StairsGrid::of(suite, own, &conditions, &vec![NOT_LANDED; conditions.len()])
 }
 
 #[test]
@@ -48,10 +50,8 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
     let show = exams.apply(&watch, Some(&staged)).expect("allowed").expect("examined");
     let [there] = show.champions.as_slice() else { panic!("a single lane") };
     assert_eq!(show.mode, StageMode::Solo);
-    assert_eq!(
-        (there.trial().stairs.step_rise_m(0), there.trial().stairs.step_tread_m(0)),
-        (0.6, 1.5)
-    );
+    let stairs = &there.trial().stairs;
+    assert_eq!((stairs.step_rise_m(0), stairs.step_tread_m(0)), (0.6, 1.5));
     there.check().expect("it can be shown");
     assert!(there.is_on_stairs_of_exam() && !there.must_match_record());
     let score = staged.champion().score();
@@ -71,11 +71,8 @@ fn a_cell_is_watched_on_its_stairs_and_the_way_back_leads_to_the_own_ones() {
 fn only_the_latest_exams_are_kept() {
     let mut exams = StairsExams::default();
     let staged = climber(0);
-    let champion = |duration_s| {
-        let mut champion = staged.champion().clone();
-        champion.trial.duration_s = duration_s;
-        champion
-    };
+    let trial = |duration_s| Trial { duration_s, ..staged.trial().clone() };
+    let champion = |duration_s| Champion { trial: trial(duration_s), ..staged.champion().clone() };
     for number in 0..=MOST_KEPT {
         exams.keep(champion(number as f32 + 1.0), Vec::new());
     }
@@ -99,18 +96,14 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
 
 #[test]
 fn an_end_is_said_in_a_few_words() {
-    let end = |steps, landed_s, has_landed| ExamEnd {
-        arrived_s: None,
-        steps,
-        way: 0.0,
-        landed_s,
-        has_landed,
-        is_disqualified: false,
-    };
-    assert_eq!(end_in_words(&end(10, Some(12.34), true)), "lands after 12.3 s");
-    assert_eq!(end_in_words(&end(9, Some(12.34), false)), "lands after 12.3 s, but does not stay");
-    assert_eq!(end_in_words(&end(3, None, false)), "ends on step 3");
-    assert_eq!(end_in_words(&end(0, None, false)), "climbs no step");
-    let out = ExamEnd { is_disqualified: true, ..end(0, None, false) };
-    assert_eq!(end_in_words(&out), "is disqualified");
+    let end = |steps, landed_s, has_landed| ExamEnd { steps, landed_s, has_landed, ..NOT_LANDED };
+    for (end, words) in [
+        (end(10, Some(12.34), true), "lands after 12.3 s"),
+        (end(9, Some(12.34), false), "lands after 12.3 s, but does not stay"),
+        (end(3, None, false), "ends on step 3"),
+        (end(0, None, false), "climbs no step"),
+        (ExamEnd { is_disqualified: true, ..end(0, None, false) }, "is disqualified"),
+    ] {
+        assert_eq!(end_in_words(&end), words);
+    }
 }

@@ -94,7 +94,7 @@ fn stays_with_a_preset(field: &str) -> bool {
 mod tests {
     use super::*;
     use crate::studio::state::current_run::{climber, prepared_run};
-    use crate::studio::state::what_if::tests::{changed, changed_by, labels, solo, stage};
+    use crate::studio::state::what_if::tests::{changed, changed_by, labels, solo, stage, tried};
     use crate::studio::state::what_if::{WorldChange, another_beside, dropped};
 
     /// Returns the stage after a step from one plan to another, which must affect the stage.
@@ -104,9 +104,7 @@ mod tests {
 
     #[test]
     fn undo_reverts_the_changed_lane_step_by_step() {
-        let mut run = prepared_run();
-        let start = run.next_plan().clone();
-        let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let (mut run, start, first) = tried();
         let one = run.next_plan().clone();
         let second = changed(&mut run, &first, "stairs.rise_m", "0.7");
         let back = step(&second, run.next_plan(), &one);
@@ -123,9 +121,7 @@ mod tests {
 
     #[test]
     fn a_lane_that_stays_is_left_alone_by_undo() {
-        let mut run = prepared_run();
-        let start = run.next_plan().clone();
-        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let (mut run, start, tried) = tried();
         let fixed = another_beside(&run, tried).expect("there is a copy");
         let one = run.next_plan().clone();
         let three = changed(&mut run, &fixed, "surface.friction", "2");
@@ -136,8 +132,7 @@ mod tests {
         // After a further undo, the next run has the world of the original, but the copy stays.
         let first = step(&back, &one, &start);
         assert_eq!(labels(&first), ["climber", "friction 0.3"]);
-        let StageMode::WhatIf { current, .. } = first.mode else { panic!("a what-if") };
-        assert_eq!(current, 0);
+        assert!(matches!(first.mode, StageMode::WhatIf { current: 0, .. }), "{:?}", first.mode);
         let forth = step(&first, &start, &two);
         assert_eq!(labels(&forth), ["climber", "friction 0.3", "friction 2"]);
     }
@@ -158,8 +153,7 @@ mod tests {
 
     #[test]
     fn undoing_a_discard_shows_the_change_again() {
-        let mut run = prepared_run();
-        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let (mut run, _, tried) = tried();
         let with_change = run.next_plan().clone();
         let alone = dropped(&mut run, &tried).expect("allowed");
         let again = step(&alone.expect("the original"), run.next_plan(), &with_change);
@@ -168,9 +162,7 @@ mod tests {
 
     #[test]
     fn undoing_a_kept_change_leaves_one_lane() {
-        let mut run = prepared_run();
-        let start = run.next_plan().clone();
-        let tried = changed(&mut run, &solo(), "surface.friction", "0.3");
+        let (run, start, tried) = tried();
         let kept = Show::solo(tried.champions[1].clone());
         let back = step(&kept, run.next_plan(), &start);
         assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));

@@ -38,6 +38,14 @@ pub(in crate::studio::state) fn changed(
     changed_by(run, show, &field(name, text))
 }
 
+/// Tries a friction of 0.3 with the built-in champion. Returns the run, the plan before the change, and the stage.
+pub(in crate::studio::state) fn tried() -> (CurrentRun, RunPlan, Show) {
+    let mut run = prepared_run();
+    let start = run.next_plan().clone();
+    let show = changed(&mut run, &solo(), "surface.friction", "0.3");
+    (run, start, show)
+}
+
 /// Returns the built-in champion with a copy that is changed after this number of steps.
 fn changed_at(step: u32, name: &str, text: &str) -> Show {
     let mut rollout = climber(0).rollout();
@@ -56,9 +64,7 @@ pub(in crate::studio::state) fn labels(show: &Show) -> Vec<&str> {
 
 #[test]
 fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
-    let mut run = prepared_run();
-    let plan = run.next_plan().clone();
-    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+    let (mut run, plan, first) = tried();
     assert_eq!(labels(&first)[1], "friction 0.3");
     let second = changed(&mut run, &first, "stairs.rise_m", "0.7");
     let [original, copy] = &second.champions[..] else { panic!("two lanes") };
@@ -85,8 +91,7 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
 
 #[test]
 fn a_second_change_names_the_first_one_that_was_kept() {
-    let mut run = prepared_run();
-    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+    let (mut run, _, first) = tried();
     let kept = kept(&first).expect("kept");
     let second = changed(&mut run, &kept, "stairs.rise_m", "0.7");
     assert_eq!(labels(&second), ["friction 0.3", "rise 0.7, friction 0.3"]);
@@ -152,8 +157,7 @@ fn a_state_that_does_not_fit_starts_from_the_beginning_and_says_why() {
 
 #[test]
 fn a_value_set_back_ends_the_what_if() {
-    let mut run = prepared_run();
-    let first = changed(&mut run, &solo(), "surface.friction", "0.3");
+    let (mut run, _, first) = tried();
     let own = climber(0).trial().surface.friction.to_string();
     let back = changed(&mut run, &first, "surface.friction", &own);
     assert_eq!((labels(&back), &back.mode), (vec!["climber"], &StageMode::Solo));
@@ -161,9 +165,7 @@ fn a_value_set_back_ends_the_what_if() {
 
 #[test]
 fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
-    let mut run = prepared_run();
-    let start = run.next_plan().clone();
-    let ice = changed(&mut run, &solo(), "surface.friction", "0.3");
+    let (mut run, start, ice) = tried();
     let fixed = another_beside(&run, ice).expect("a copy");
     let again = another_beside(&run, fixed.clone());
     assert!(again.is_err(), "it stays already");

@@ -4,7 +4,7 @@ use super::*;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::{ExamCommand, StageCommand};
 use crate::studio::stage;
-use crate::studio::state::current_run::{climber, explored_run, run_in, small_run};
+use crate::studio::state::current_run::{explored_run, run_in, small_run};
 use crate::studio::state::stairs_exams::tests::made_up;
 use bevy::time::TimeUpdateStrategy;
 use snakes_core::save::SavesFolder;
@@ -40,7 +40,6 @@ fn seen(app: &mut App) -> Seen {
 
 /// Sends a command, and lets the stage draw frames of 0 s until it is there.
 fn send(app: &mut App, command: &Command) {
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     app.world_mut().write_message(command.clone());
     (0..4).for_each(|_| app.update());
 }
@@ -49,8 +48,9 @@ fn send(app: &mut App, command: &Command) {
 /// followed.
 fn studio() -> App {
     let mut app = app();
-    app.add_plugins((MinimalPlugins, stage::plugin));
-    app.insert_resource(explored_run());
+    app.add_plugins((MinimalPlugins, stage::plugin))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
+        .insert_resource(explored_run());
     let champion = climber(0).champion().clone();
     let grid = made_up(ExamSuite::Stairs, &champion.trial);
     app.world_mut().resource_mut::<StairsExams>().keep(champion, vec![grid]);
@@ -64,7 +64,6 @@ fn settle(app: &mut App) {
     app.world_mut().resource_mut::<CameraRig>().take(CameraMode::Top);
     app.world_mut().resource_mut::<Selection>().limb = Some(2);
     app.world_mut().resource_mut::<Following>().follow_evolution();
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     (0..4).for_each(|_| app.update());
 }
 
