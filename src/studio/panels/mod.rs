@@ -47,7 +47,6 @@ use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
-use super::state::run_names::with_title;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
 use super::ui::accessible::named;
@@ -56,6 +55,7 @@ use super::ui::viewport::StageArea;
 use super::workspace::Workspace;
 use super::workspace::layout::style;
 use super::workspace::scale::UiScale;
+use snakes_lab::run::names::with_title;
 
 use body::BodyPanel;
 use champions::{ChampionsPanel, ChampionsView};

@@ -14,7 +14,6 @@ pub mod new_file;
 pub mod options;
 pub mod plan_commands;
 pub mod run_context;
-pub mod run_names;
 pub mod shares;
 pub mod stairs_exams;
 pub mod stairs_race;

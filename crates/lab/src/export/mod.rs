@@ -18,6 +18,7 @@ mod progress;
 mod source;
 mod table_file;
 mod urdf;
+mod worksheet;
 mod xml_text;
 
 pub use columns::{Column, columns};
@@ -28,3 +29,4 @@ pub use order::ExportOrder;
 pub use picture::{PICTURE_SIDES, snapshot};
 pub use progress::ExportProgress;
 pub use source::{ExportSource, ExportedChampion, ExportedRun};
+pub use worksheet::worksheet_page;

@@ -16,6 +16,7 @@ mod lineage;
 mod lookahead;
 pub mod markdown;
 pub mod mujoco;
+pub mod names;
 mod panics;
 mod parallel_runs;
 pub mod progress_bar;

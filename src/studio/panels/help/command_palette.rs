@@ -5,12 +5,12 @@ use bevy_egui::egui;
 use crate::studio::commands::actions::{Action, Situation, actions};
 use crate::studio::commands::{Command, LessonCommand, PlanCommand, WindowCommand};
 use crate::studio::panels::settings::every_setting;
-use crate::studio::state::run_names::preset_title;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::{explain, weak};
 use crate::studio::ui::theme;
 use snakes_core::save::shipped_presets;
 use snakes_core::schema::ListedSetting;
+use snakes_lab::run::names::preset_title;
 
 /// The command palette, with its search text.
 #[derive(Debug, Default)]

@@ -7,7 +7,6 @@ use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::LibraryItem;
-use crate::studio::state::run_names::{preset_title, with_title};
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::text_rows::{explain, problem, row, title_text};
@@ -15,6 +14,7 @@ use crate::studio::ui::theme;
 use snakes_core::save::library::{RunDetails, SavePlace};
 use snakes_core::schema::{Choice, Choices};
 use snakes_core::score::{ExamSuite, SuiteResult};
+use snakes_lab::run::names::{preset_title, with_title};
 
 /// Draws a button for each action. Returns the action that was clicked.
 pub fn buttons(ui: &mut egui::Ui, actions: &[LibraryAction]) -> Option<LibraryActionKind> {

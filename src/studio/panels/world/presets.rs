@@ -5,10 +5,10 @@ use bevy_egui::egui;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::own_files::{OwnName, own_files};
 use crate::studio::state::current_run::CurrentRun;
-use crate::studio::state::run_names::{PRESET_TITLES, with_title};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
+use snakes_lab::run::names::{PRESET_TITLES, with_title};
 
 /// Draws the selection of presets, and the button and field that save a new one. Collects the user's commands.
 pub(super) fn preset_choice(
@@ -67,8 +67,8 @@ mod tests {
     use super::*;
     use crate::studio::panels::testing::{self, Sent, clicked, press, shows};
     use crate::studio::state::current_run::prepared_run;
-    use crate::studio::state::run_names::preset_title;
     use egui_kittest::kittest::Queryable;
+    use snakes_lab::run::names::preset_title;
 
     fn panel(run: &CurrentRun) -> Sent<'_> {
         let mut name = OwnName::default();

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::studio::state::run_names::{difference, name_of_listed, tell_apart};
 use snakes_core::evolve::{GenerationRecord, RunPlan};
 use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
 use snakes_lab::run::BackgroundTask;
+use snakes_lab::run::names::{difference, name_of_listed, tell_apart};
 
 /// A run of the saves folder.
 #[derive(Debug)]

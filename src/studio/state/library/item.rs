@@ -1,11 +1,11 @@
 //! An entry of the library list: its texts and sort keys.
 
-use crate::studio::state::run_names::{date, difference, run_name, with_title};
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::EntryNotes;
 use snakes_core::save::library::{
     ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
+use snakes_lab::run::names::{date, difference, run_name, with_title};
 
 /// An entry of the library with its contents, once they are read.
 #[derive(Debug)]

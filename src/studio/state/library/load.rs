@@ -5,10 +5,10 @@ use std::path::Path;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::state::run_names::preset_title;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::{SavePlace, load_entry};
 use snakes_core::save::{LoadedChampion, load_generation};
+use snakes_lab::run::names::preset_title;
 
 /// Maximum length of a champion's name on the stage, in characters.
 const MAX_LABEL: usize = 40;

@@ -9,10 +9,10 @@ use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
-use crate::studio::state::run_names::tell_apart;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::LibraryEntry;
+use snakes_lab::run::names::tell_apart;
 use snakes_lab::run::{BackgroundTask, LibraryEvent};
 
 pub(crate) fn plugin(app: &mut App) {

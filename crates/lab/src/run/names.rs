@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::studio::ui::decimals::{decimals, in_percent};
 use snakes_core::save::{RunSummary, load_log};
 use snakes_core::score::Fitness;
 
 /// The built-in presets by group, each with its readable title. The first group is for a first look.
-pub(crate) const PRESET_TITLES: [(&str, &[(&str, &str)]); 6] = [
+pub const PRESET_TITLES: [(&str, &[(&str, &str)]); 6] = [
     (
         "",
         &[
@@ -64,20 +63,20 @@ pub(crate) const PRESET_TITLES: [(&str, &[(&str, &str)]); 6] = [
 ];
 
 /// Returns the readable title of a preset, or its name if it is one of the user's.
-pub(crate) fn preset_title(name: &str) -> &str {
+pub fn preset_title(name: &str) -> &str {
     let mut all = PRESET_TITLES.iter().flat_map(|(_, presets)| presets.iter());
     all.find(|(of, _)| *of == name).map_or(name, |(_, title)| title)
 }
 
 /// Replaces the name of the preset, with which a description of settings begins, by its readable title.
-pub(crate) fn with_title(settings: &str) -> String {
+pub fn with_title(settings: &str) -> String {
     let preset = settings.split(", ").next().unwrap_or_default();
     format!("{}{}", preset_title(preset), &settings[preset.len()..])
 }
 
 /// Returns the readable name of a run: title of the preset, seed, day, best result, and in brackets the settings that
 /// differ from the preset. `settings` are the run's settings in words; a zero `saved_at` is an unknown day.
-pub(crate) fn run_name(
+pub fn run_name(
     settings: &str,
     seed: u64,
     saved_at: Duration,
@@ -95,7 +94,7 @@ pub(crate) fn run_name(
 }
 
 /// Returns the readable name of a listed run, or the user's own name for it.
-pub(crate) fn name_of_listed(run: &RunSummary, settings: &str) -> String {
+pub fn name_of_listed(run: &RunSummary, settings: &str) -> String {
     let best = || {
         let (_, records) = load_log(&run.folder).ok()?;
         let each = records.iter().filter_map(|record| Some(record.statistics?.best as f32));
@@ -109,15 +108,16 @@ pub(crate) fn name_of_listed(run: &RunSummary, settings: &str) -> String {
 fn way_in_words(rewarded: Fitness, fitness: f32) -> String {
     match rewarded {
         Fitness::Share if fitness >= 1.0 => "landed".to_owned(),
-        Fitness::Share => in_percent(fitness),
+        Fitness::Share => format!("{:.0} %", fitness * 100.0),
         Fitness::StepsClimbed => rewarded.text(fitness),
-        other => format!("{}{}", decimals(fitness, 0), other.unit()),
+        // Adding zero removes the sign of a negative zero.
+        other => format!("{}{}", fitness.round() + 0.0, other.unit()),
     }
 }
 
 /// Returns the part of a run's folder that tells the run apart from others of the same name: eight hexadecimal digits for
 /// runs of the same preset and seed, or the name of the folder for runs that the user named.
-pub(crate) fn difference(folder: &Path, is_named_by_user: bool) -> String {
+pub fn difference(folder: &Path, is_named_by_user: bool) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let of_run = name.split_once("-seed").and_then(|(_, rest)| rest.split_once('-'));
     let of_run = of_run.filter(|_| !is_named_by_user);
@@ -125,7 +125,7 @@ pub(crate) fn difference(folder: &Path, is_named_by_user: bool) -> String {
 }
 
 /// Adds the [`difference`] of its folder to each name that several runs have.
-pub(crate) fn tell_apart<'a>(runs: impl Iterator<Item = (&'a mut String, String)>) {
+pub fn tell_apart<'a>(runs: impl Iterator<Item = (&'a mut String, String)>) {
     let mut same: BTreeMap<String, Vec<(&mut String, String)>> = BTreeMap::new();
     for (name, folder) in runs {
         same.entry(name.clone()).or_default().push((name, folder));
@@ -136,7 +136,7 @@ pub(crate) fn tell_apart<'a>(runs: impl Iterator<Item = (&'a mut String, String)
 }
 
 /// Formats the time since the beginning of 1970 as a date in UTC: "21 Nov 2026".
-pub(crate) fn date(since_1970: Duration) -> String {
+pub fn date(since_1970: Duration) -> String {
     const MONTHS: [&str; 12] =
         ["Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec", "Jan", "Feb"];
     // Days since the first of March of the year 0. If years begin in March, a leap day is the last day of its year.
