@@ -14,8 +14,10 @@ use snakes_lab::mesh::MeshBuilder;
 #[derive(Component, Debug)]
 pub(super) struct Plants;
 
-/// Side of the squares of which each has at most one plant, in metres.
+/// Least side of the squares of which each has at most one plant, in metres. Beside long stairs, squares are larger.
 const SQUARE_M: f32 = 3.0;
+/// Maximum number of squares along the lanes.
+const MOST_SQUARES: f32 = 40.0;
 /// Number of squares around the lanes in the directions of -x, which is behind the lanes in the default view, +x, -y and +y.
 const SQUARES: [i32; 4] = [18, 9, 6, 14];
 /// Distances from the lanes beyond which there are grass, bushes and trees, in metres.
@@ -49,13 +51,14 @@ pub(super) fn plant(
 fn around(area: Rect) -> MeshBuilder {
     let mut solid = MeshBuilder::default();
     let [behind, before, back, ahead] = SQUARES;
-    let squares = |m: f32| libm::ceilf(m / SQUARE_M) as i32;
+    let square_m = (area.size().max_element() / MOST_SQUARES).max(SQUARE_M);
+    let squares = |m: f32| libm::ceilf(m / square_m) as i32;
     let (across, along) = (squares(area.width()), squares(area.height()));
     for column in -behind..across + before {
         for row in -back..along + ahead {
             let chance = |salt: u32| random(column as u32, row as u32, 71 + salt);
             let in_square = Vec2::new(column as f32 + chance(0), row as f32 + chance(1));
-            let at = area.min + in_square * SQUARE_M;
+            let at = area.min + in_square * square_m;
             let aside_m = at.distance(at.clamp(area.min, area.max));
             // The camera is usually on the side of +x, where high plants would hide the snakes.
             let is_behind = at.x < area.min.x || at.y > area.max.y + BUSHES_M;
@@ -132,5 +135,7 @@ mod tests {
             plants.positions.iter().all(|at| at.is_finite()) && plants.positions.len() < 50_000
         );
         assert_eq!(plants.positions, around(area).positions);
+        let long = around(Rect::new(-50.0, -15.0, 50.0, 2_100.0));
+        assert!(long.positions.len() < 200_000, "{}", long.positions.len());
     }
 }
