@@ -111,7 +111,7 @@ fn way_in_words(rewarded: Fitness, fitness: f32) -> String {
         Fitness::Share => format!("{:.0} %", fitness * 100.0),
         Fitness::StepsClimbed => rewarded.text(fitness),
         // Adding zero removes the sign of a negative zero.
-        other => format!("{}{}", fitness.round() + 0.0, other.unit()),
+        other => format!("{}{}", fitness.round_ties_even() + 0.0, other.unit()),
     }
 }
 
