@@ -93,11 +93,15 @@ fn build(
             let holder = if bones.len() > 1 { entity } else { bones[0] };
             let drawn = |mesh, material| (piece(mesh, material), ChildOf(holder));
             let mut pieces = vec![
-                commands.spawn(drawn(&block, color)).id(),
+                commands.spawn(drawn(&block, &props.limbs[limb % 2])).id(),
                 // The block already casts the shadow.
                 commands.spawn((drawn(&white, &paints[2]), NotShadowCaster)).id(),
                 commands.spawn((drawn(&dark, &paints[3]), NotShadowCaster)).id(),
             ];
+            if is_best {
+                // The material that is drawn over ghosts casts no shadow: its caster would be nearer to the light than the limb.
+                pieces.push(commands.spawn((drawn(&block, color), NotShadowCaster)).id());
+            }
             if limb == 0 {
                 let collar = drawn(&collar, props.of_lane(lane.number));
                 let is_mark = (LaneMark, Visibility::Hidden);
