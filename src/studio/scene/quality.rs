@@ -117,10 +117,7 @@ fn suit_device(mut quality: ResMut<StageQuality>, adapter: Res<RenderAdapterInfo
 fn lower(mut quality: ResMut<StageQuality>, mut watch: Local<FrameWatch>, time: Res<Time<Real>>) {
     if watch.is_slow_after(time.delta()) && quality.chosen.is_none() {
         *watch = FrameWatch::default();
-        quality.automatic = match quality.automatic {
-            Quality::Beautiful => Quality::Smooth,
-            Quality::Smooth | Quality::Fast => Quality::Fast,
-        };
+        quality.automatic = Quality::ALL[(quality.automatic as usize).saturating_sub(1)];
     }
 }
 
