@@ -37,7 +37,7 @@ fn f1_keys_act_by_their_position_under_a_russian_layout() {
     studio.wait_for_title("running");
     studio.key(E);
     studio.wait_for_title("paused");
-    let brightness = |picture: &Picture| picture.count(|pixel| pixel.iter().all(|of| *of > 200));
+    let brightness = |picture: &Picture| picture.count(|pixel| pixel.iter().all(|of| *of > 120));
     let light = brightness(&studio.picture());
     studio.key(T);
     studio.picture_with(|picture| brightness(picture) * 2 < light);
