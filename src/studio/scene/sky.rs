@@ -50,14 +50,14 @@ fn set_up(world: &mut World) {
     let light = StandardMaterial { alpha_mode: AlphaMode::Blend, ..sky.clone() };
     let light = themed(world, light, |palette| palette.sun_disc);
     let sky = world.resource_mut::<Assets<StandardMaterial>>().add(sky);
-    let dome = dome(world.resource::<Theme>().palette());
-    let [dome, disc] = [dome, disc()].map(|mesh| world.resource_mut::<Assets<Mesh>>().add(mesh));
+    let disc = world.resource_mut::<Assets<Mesh>>().add(disc());
     let is_far = (NotShadowCaster, NotShadowReceiver, NoFrustumCulling);
     let disc = (Mesh3d(disc), MeshMaterial3d(light), is_far.clone());
-    world.spawn((Dome, Mesh3d(dome), MeshMaterial3d(sky), is_far)).with_child(disc);
+    // The dome gets its mesh in the colours of the theme before the first frame: see `dress`.
+    world.spawn((Dome, Mesh3d::default(), MeshMaterial3d(sky), is_far)).with_child(disc);
 }
 
-/// Recolours the sky after a change of the theme.
+/// Builds the dome of the sky in the colours of the theme, at the start and after a change.
 fn dress(
     theme: Res<Theme>,
     mut domes: Query<&mut Mesh3d, With<Dome>>,
@@ -121,12 +121,14 @@ fn dome(palette: &Palette) -> Mesh {
     let azimuth_rad = |side: usize| -TAU * side as f32 / SIDES as f32;
     let (mut solid, mut colors) = (MeshBuilder::default(), Vec::new());
     let mut patch = |rows: usize, radius_m: f32, at: &dyn Fn(usize, usize) -> (f32, Color)| {
+        let corners = (0..=rows).flat_map(|row| (0..=SIDES).map(move |side| at(side, row)));
+        let corners: Vec<(f32, Color)> = corners.collect();
         solid.patch(SIDES, rows, |side, row| {
-            let out = direction(azimuth_rad(side), at(side, row).0);
+            let (elevation_rad, _) = corners[row * (SIDES + 1) + side];
+            let out = direction(azimuth_rad(side), elevation_rad);
             [out * radius_m, -out]
         });
-        let cells = (0..=rows).flat_map(|row| (0..=SIDES).map(move |side| at(side, row).1));
-        colors.extend(cells.map(|color| color.to_linear().to_f32_array()));
+        colors.extend(corners.iter().map(|(_, color)| color.to_linear().to_f32_array()));
     };
     patch(RINGS + 1, RADIUS_M, &|side, ring| {
         let elevation_rad = match ring {

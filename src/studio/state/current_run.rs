@@ -50,7 +50,7 @@ pub(crate) enum RunStatus {
 /// The current run and its results.
 #[derive(Resource, Debug)]
 pub(crate) struct CurrentRun {
-    /// What all runs since the start of the program share.
+    /// Evaluator, saves folder and presets, which all runs since the start of the program use.
     pub context: RunContext,
     /// Number of the run since the start of the program; the first is 0.
     number: u32,

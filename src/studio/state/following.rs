@@ -38,7 +38,7 @@ pub(crate) struct Following {
     shown_for: Duration,
 }
 
-/// What the stage shows next.
+/// Generations of the run that the stage shows next.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 enum FollowPlan {
     /// There is no plan: the user's choice stays on the stage.

@@ -1,4 +1,4 @@
-//! What all runs since the start of the program share: evaluator, saves folder, presets.
+//! Evaluator, saves folder and presets, which all runs since the start of the program use.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,7 +7,7 @@ use super::options::Options;
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, SavesFolder};
 use snakes_lab::run::{Evaluator, RunSource};
 
-/// What all runs since the start of the program share.
+/// Evaluator, saves folder and presets, which all runs since the start of the program use.
 #[derive(Debug, Clone)]
 pub(crate) struct RunContext {
     /// Evaluator of the genomes of runs.

@@ -93,10 +93,11 @@ pub fn run_name(
     if changes.is_empty() { name } else { format!("{name} ({changes})") }
 }
 
-/// Returns the readable name of a listed run, or the user's own name for it.
+/// Returns the readable name of a listed run, or the user's own name for it. Only a run that can be resumed is named with its best result,
+/// for which its whole log is read: only such runs are offered by their names.
 pub fn name_of_listed(run: &RunSummary, settings: &str) -> String {
     let best = || {
-        let (_, records) = load_log(&run.folder).ok()?;
+        let (_, records) = run.is_stopped().then(|| load_log(&run.folder).ok())??;
         let each = records.iter().filter_map(|record| Some(record.statistics?.best as f32));
         each.reduce(f32::max).map(|best| (run.plan.settings.trial.fitness, best))
     };

@@ -93,10 +93,19 @@ fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
-    use crate::studio::panels::testing::{clicked, panel};
+    use crate::studio::panels::testing::{Sent, clicked, panel};
     use egui_kittest::kittest::{NodeT, Queryable};
+
+    /// Draws the bar with everything switched off.
+    pub(in crate::studio::panels) fn switched_off_bar() -> Sent<'static> {
+        let mut cards = CardStates::default();
+        let quality = StageQuality::default();
+        panel([900.0, 600.0], move |ui, commands| {
+            view_bar(ui, CameraMode::Follow, false, &|_| None, &quality, &mut cards, commands);
+        })
+    }
 
     #[test]
     fn each_button_sends_its_command() {
@@ -106,36 +115,13 @@ mod tests {
             ("Larger", Command::Window(WindowCommand::Enlarge)),
             ("Picture", Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage))),
         ] {
-            let mut cards = CardStates::default();
-            let mut bar = panel([800.0, 600.0], move |ui, commands| {
-                view_bar(
-                    ui,
-                    CameraMode::Follow,
-                    false,
-                    &|_| None,
-                    &StageQuality::default(),
-                    &mut cards,
-                    commands,
-                );
-            });
-            assert_eq!(clicked(&mut bar, label), [command], "{label}");
+            assert_eq!(clicked(&mut switched_off_bar(), label), [command], "{label}");
         }
     }
 
     #[test]
     fn the_show_menu_switches_what_the_view_menu_does_and_brings_closed_cards_back() {
-        let mut cards = CardStates::default();
-        let mut bar = panel([800.0, 600.0], move |ui, commands| {
-            view_bar(
-                ui,
-                CameraMode::Follow,
-                false,
-                &|_| None,
-                &StageQuality::default(),
-                &mut cards,
-                commands,
-            );
-        });
+        let mut bar = switched_off_bar();
         clicked(&mut bar, "Show");
         for action in actions().iter().filter(|action| action.shows_on_stage()) {
             assert!(!action.hint.is_empty(), "{}", action.name);

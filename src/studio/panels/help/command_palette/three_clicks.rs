@@ -7,13 +7,11 @@ use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::quality::Quality;
 use crate::studio::panels::help::menu::menu;
-use crate::studio::panels::player::camera_bar::view_bar;
-use crate::studio::panels::player::stage_card::CardStates;
+use crate::studio::panels::player::camera_bar::tests::switched_off_bar;
 use crate::studio::panels::run::EvolutionPanel;
 use crate::studio::panels::testing::{clicked, panel, shows};
 use crate::studio::panels::world::WorldPanel;
 use crate::studio::panels::world::surface_readout::ReadLanes;
-use crate::studio::scene::quality::StageQuality;
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::files::RecentFiles;
 use crate::studio::state::lessons::LESSONS;
@@ -88,18 +86,7 @@ fn by_search() -> Vec<Way> {
 
 /// Returns the ways through the bar above the stage and the tabs, and from the Watch panel to one generation.
 fn by_buttons() -> Vec<Way> {
-    let mut cards = CardStates::default();
-    let mut bar = panel([900.0, 600.0], move |ui, commands| {
-        view_bar(
-            ui,
-            CameraMode::Follow,
-            false,
-            &|_| None,
-            &StageQuality::default(),
-            &mut cards,
-            commands,
-        );
-    });
+    let mut bar = switched_off_bar();
     let cameras = CameraMode::ALL.into_iter().filter(|mode| shows(&bar, mode.name()));
     let mut ways: Vec<Way> =
         cameras.map(|mode| (mode.name().to_owned(), vec![mode.name()])).collect();
