@@ -1,14 +1,16 @@
 //! A server that refuses something: both sides name its answer. What lacks room waits and goes on by itself, and what can never get
 //! better ends at once.
 
-use std::path::Path;
 use std::process::Child;
 use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::refusals::refusals;
-use super::server::{Run, Server, TellingWorker, empty, fill, run_hash, worker_that_tells};
+use super::server::{
+    Run, Server, TellingWorker, empty, fill, run_hash, wait_for_list, wait_for_workers,
+    worker_that_tells,
+};
 use crate::program::{folder, json_lines, run};
 
 const RUN: &str =
@@ -34,19 +36,6 @@ fn finished(mut run: Run) -> String {
         text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!(run_hash(&lines), local_hash());
     said
-}
-
-/// Waits until the list of the server's machines has what `is_there` looks for, for at most a minute.
-fn wait_for_list(place: &Path, url: &str, is_there: impl Fn(&str) -> bool) {
-    let began = Instant::now();
-    loop {
-        let listed = run(place, &format!("machines --nats {url}"));
-        let listed = String::from_utf8(listed.stdout).expect("UTF-8");
-        if is_there(&listed) {
-            return;
-        }
-        assert!(began.elapsed() < Duration::from_mins(1), "{listed}");
-    }
 }
 
 /// Stops a worker with the interrupt key, and returns its messages.
@@ -81,13 +70,13 @@ fn f3_a_full_store_is_named_by_both_sides_and_the_run_goes_on_once_there_is_room
     let (place, url) = (folder(), server.url());
     let worker = worker_that_tells(&url);
     // The worker makes the streams, for which a full store has no room either.
-    wait_for_list(place.path(), &url, |listed| !listed.contains("none\n\nrun"));
+    wait_for_workers(&server, 1);
     fill(&server);
     let under_way = Run::start(place.path(), RUN, &url);
     let of_run = format!("{url}: work cannot be stored: {FULL}");
     under_way.wait_for(&of_run);
     let listed = format!("    work cannot be stored: {FULL}");
-    wait_for_list(place.path(), &url, |list| list.contains(&listed));
+    wait_for_list(&server, "", |list| list.contains(&listed));
     worker.wait_for(FULL);
     empty(&server);
     let by_run = finished(under_way);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use futures_util::StreamExt;
 use serde_json::Value;
 
-use crate::program::{folder, snakes};
+use crate::program::{folder, run, snakes};
 
 /// A process that is killed when it is dropped.
 pub struct Process(pub Child);
@@ -205,6 +205,27 @@ pub fn worker_that_tells(url: &str) -> TellingWorker {
     let mut child = piped.spawn().expect("the worker starts");
     let stderr = Pipe::read(child.stderr.take().expect("piped"));
     TellingWorker { process: Process(child), stderr }
+}
+
+/// Waits until the list of the server's machines is as wanted, for at most a minute.
+pub fn wait_for_list(server: &Server, flags: &str, is_wanted: impl Fn(&str) -> bool) {
+    let began = Instant::now();
+    loop {
+        let listed =
+            run(&std::env::temp_dir(), &format!("machines --nats {} {flags}", server.url()));
+        let listed = String::from_utf8(listed.stdout).expect("UTF-8");
+        if is_wanted(&listed) {
+            return;
+        }
+        assert!(began.elapsed() < Duration::from_mins(1), "{listed}");
+    }
+}
+
+/// Waits until this number of workers is ready for work.
+pub fn wait_for_workers(server: &Server, count: usize) {
+    wait_for_list(server, "--json", |list| {
+        list.lines().filter(|line| line.contains("\"type\":\"worker\"")).count() == count
+    });
 }
 
 /// A pipe that is read while its process runs, so that it never fills.

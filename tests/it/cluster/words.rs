@@ -3,7 +3,7 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::server::{Run, Server, TellingWorker, worker, worker_that_tells};
+use super::server::{Run, Server, TellingWorker, wait_for_workers, worker, worker_that_tells};
 use crate::program::{folder, run};
 
 /// A run that takes longer than these tests.
@@ -39,7 +39,7 @@ fn a_worker_could_not_be_stopped_while_its_server_was_gone() {
     let mut workers: Vec<TellingWorker> =
         (0..7).map(|_| worker_that_tells(&server.url())).collect();
     let mut next = || workers.pop().expect("another one");
-    sleep(Duration::from_secs(6));
+    wait_for_workers(&server, 7);
     stopped(next(), "idle");
     let place = folder();
     let mut run = Run::start(place.path(), LONG, &server.url());
