@@ -11,7 +11,8 @@ use std::time::Duration;
 use super::display::{Studio, preferences};
 
 /// Widths and heights of the window, in pixels.
-const SIZES: [(u16, u16); 5] = [(1024, 640), (1280, 720), (1600, 900), (2560, 1440), (3840, 2160)];
+const SIZES: [(u16, u16); 6] =
+    [(1024, 640), (1280, 720), (1600, 900), (1920, 1080), (2560, 1440), (3840, 2160)];
 const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
 /// Least width and height of the window in the panels' units, below which the program reduces the scale.
 const LEAST: (f32, f32) = (800.0, 480.0);
@@ -23,14 +24,20 @@ const RUN: &str = "--preset climb --generations 30 --threads 2";
 type Show = fn(&Studio);
 
 /// Names of the views, and functions that bring them up, in an order in which each can follow the one before.
-const VIEWS: [(&str, Show); 8] = [
+const VIEWS: [(&str, Show); 14] = [
     ("story", story),
+    ("crowd", crowd),
     ("main", main_view),
+    ("landing", landing),
     ("world", world),
     ("sweep", sweep),
     ("race", race),
     ("charts", charts),
+    ("body", body),
     ("library", library),
+    ("creature", creature),
+    ("stairs", stairs),
+    ("presenting", presenting),
     ("lesson", lesson),
 ];
 
@@ -49,10 +56,20 @@ fn story(studio: &Studio) {
     hold(studio, 0.3);
 }
 
+fn crowd(studio: &Studio) {
+    studio.key("i");
+    studio.wait_for_title("showing generation");
+    hold(studio, 0.3);
+}
+
 fn main_view(studio: &Studio) {
     studio.key("0");
     studio.wait_for_title_without(", stopped");
     hold(studio, 0.42);
+}
+
+fn landing(studio: &Studio) {
+    studio.seek(0.97);
 }
 
 fn world(studio: &Studio) {
@@ -82,6 +99,13 @@ fn charts(studio: &Studio) {
     studio.place("Chart: Fitness by generation");
 }
 
+fn body(studio: &Studio) {
+    studio.key("0");
+    studio.wait_for_title("showing climber");
+    studio.open_panel("Body");
+    hold(studio, 0.3);
+}
+
 fn library(studio: &Studio) {
     studio.open_panel("Library");
     let is_read = || {
@@ -94,7 +118,37 @@ fn library(studio: &Studio) {
     studio.place("Replay");
 }
 
+fn creature(studio: &Studio) {
+    studio.click_at(
+        studio
+            .scrolled_to_where("the creature", |place| place.label.starts_with("crawler, "))
+            .area
+            .middle(),
+    );
+    studio.click_label("Replay");
+    studio.wait_for_title("showing crawler");
+    hold(studio, 0.3);
+}
+
+fn stairs(studio: &Studio) {
+    studio.key("0");
+    studio.wait_for_title_without("crawler");
+    studio.choose("Run", "Race the snake over ten staircases");
+    studio.wait_for_title("showing a race of 10");
+    hold(studio, 0.5);
+}
+
+fn presenting(studio: &Studio) {
+    studio.key("Escape");
+    studio.wait_for_title_without("race");
+    studio.key("F11");
+    studio.wait_for_no("Panel Change");
+    hold(studio, 0.42);
+}
+
 fn lesson(studio: &Studio) {
+    studio.key("Escape");
+    studio.place("Panel Change");
     studio.open_panel("Learn");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
@@ -107,7 +161,8 @@ fn lesson(studio: &Studio) {
 fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
     let scratch = super::folder();
     let path = scratch.path().join("studio.ron");
-    let fields = format!("ui_scale: {scale:.1}, tour_is_over: true");
+    let quality = std::env::var("SNAKES_SCREENSHOTS_QUALITY").unwrap_or("fast".to_owned());
+    let fields = format!("ui_scale: {scale:.1}, tour_is_over: true, quality: Some({quality:?})");
     std::fs::write(&path, preferences(&fields)).expect("written");
     let (preferences, saves) = (path.display(), scratch.path().join("saves"));
     let arguments =
@@ -122,7 +177,7 @@ fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
             let settling_s = if theme == "light" { 9 } else { 1 };
             std::thread::sleep(Duration::from_secs(settling_s));
             studio.wait_for_frames(3);
-            let name = format!("{width}x{height}-{scale:.1}-{view}-{theme}.png");
+            let name = format!("{width}x{height}-{scale:.1}-{quality}-{view}-{theme}.png");
             studio.picture().store(&folder.join(name));
             studio.key("t");
         }
@@ -131,7 +186,7 @@ fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
 }
 
 #[test]
-#[ignore = "takes half an hour or more; run it by hand after a change of what is drawn"]
+#[ignore = "takes an hour or more; run it by hand after a change of what is drawn"]
 fn views_at_every_size() {
     let folder = std::env::var_os("SNAKES_SCREENSHOTS").expect("SNAKES_SCREENSHOTS names a folder");
     let folder = PathBuf::from(folder);
