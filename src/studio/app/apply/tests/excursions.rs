@@ -144,6 +144,18 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
 }
 
 #[test]
+fn the_speed_that_was_set_within_an_excursion_stays_after_it() {
+    for (kind, begin, end) in excursions() {
+        let mut app = studio();
+        send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
+        enter(&mut app, &begin);
+        send(&mut app, &Command::Player(PlayerCommand::SetSpeed(0.25)));
+        send(&mut app, &end);
+        assert_eq!(app.world().resource::<Playback>().speed(), 0.25, "{kind}");
+    }
+}
+
+#[test]
 fn a5_a6_one_snake_of_a_crowd_keeps_its_moment_and_leads_back_to_the_crowd() {
     let mut app = studio();
     send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
