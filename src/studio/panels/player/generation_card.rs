@@ -38,18 +38,18 @@ pub(crate) fn generation_card(
     }
 }
 
-/// Draws large buttons for what to try after a landing, until one of them is used or they are closed. They come back
-/// with the next run.
+/// Draws large buttons for what to try after a landing, until they are closed. They come back with the next run.
 fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Command>) {
     let id = egui::Id::new("after the landing");
     if ui.data(|data| data.get_temp(id)) == Some(run) {
         return;
     }
     ui.separator();
-    let mut is_done = false;
     ui.horizontal(|ui| {
         ui.label(title_text("It has landed. Try next:"));
-        is_done |= ui.small_button("Close").clicked();
+        if ui.small_button("Close").clicked() {
+            ui.data_mut(|data| data.insert_temp(id, run));
+        }
     });
     let friction = "trial.surface.friction";
     for (label, hint, command) in [
@@ -71,10 +71,7 @@ fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Comm
     ] {
         let button = egui::Button::new(egui::RichText::new(label).strong());
         let button = button.min_size(LARGE_BUTTON);
-        is_done |= CommandButton::of(button, hint, command).show(ui, commands);
-    }
-    if is_done {
-        ui.data_mut(|data| data.insert_temp(id, run));
+        CommandButton::of(button, hint, command).show(ui, commands);
     }
 }
 
@@ -116,7 +113,10 @@ mod tests {
         let race = Command::Stage(StageCommand::RaceGenerations);
         assert_eq!(clicked(&mut panel, "Race the generations"), [race]);
         panel.run();
-        assert!(!shows(&panel, "On ice!"), "the hint was taken");
+        assert!(shows(&panel, "On ice!"), "the user may come back from the race");
+        clicked(&mut panel, "Close");
+        panel.run();
+        assert!(!shows(&panel, "On ice!"));
     }
 
     #[test]
