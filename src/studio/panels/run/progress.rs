@@ -19,7 +19,6 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let generations = run.settings().evolution.generations;
     let finished = run.reports().len();
     let (text, share) = match run.status() {
-        // The number of evaluations is fixed, so larger generations reduce the number of generations.
         RunStatus::Finished if finished < generations as usize => {
             (finished_early(finished, generations, run.plan_now.budget()), 1.0)
         }
@@ -85,10 +84,12 @@ fn evaluated(done: u32, all: u32, population: u32) -> String {
     format!("{done} of {all}{new} snakes")
 }
 
-/// Describes a run that has fewer generations than planned, because some were larger, such as the first of CMA-ES.
+/// Describes a run that ended after fewer generations than planned. The number of evaluations is limited, too, and some generations were
+/// larger than planned, such as the first of CMA-ES.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
-        "Finished after {finished} of {planned} generations: the first ones were larger and used up the run's {} snakes",
+        "Finished after {finished} generations: the run may try {} snakes, and too few are left for another one. \
+         {planned} generations were planned, but some had more snakes than usual",
         with_thousands(budget)
     )
 }
@@ -192,10 +193,11 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_finished_early_says_why_in_one_sentence() {
+    fn a_run_that_finished_early_says_what_ended_it_and_why_before_the_planned_number() {
         assert_eq!(
             finished_early(57, 60, 6000),
-            "Finished after 57 of 60 generations: the first ones were larger and used up the run's 6,000 snakes"
+            "Finished after 57 generations: the run may try 6,000 snakes, and too few are left for another one. \
+             60 generations were planned, but some had more snakes than usual"
         );
     }
 
