@@ -134,6 +134,7 @@ impl Action {
             Command::Redo => now.can_redo,
             Share(ShareCommand::Cancel) => now.is_sharing,
             Share(ShareCommand::Ask(_)) => !now.is_sharing,
+            Run(RunCommand::ShowHash) => now.is_finished,
             Stage(StageCommand::KeepChange) => now.is_what_if,
             Stage(StageCommand::TryAnother) => now.can_try_another,
             Stage(StageCommand::Leave) => now.can_leave,
@@ -247,6 +248,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
             ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
             ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
+            ("Show the run hash", &[], Run(RunCommand::ShowHash)),
             (
                 "Show a generation's champion",
                 &["1", "2", "3", "4", "5", "6", "7", "8", "9"],

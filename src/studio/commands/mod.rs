@@ -95,6 +95,8 @@ pub(super) enum RunCommand {
     Continue(PathBuf),
     /// Set the number of worker threads, from the next generation on.
     SetThreads(usize),
+    /// Show the hash of the finished run.
+    ShowHash,
     /// List all runs in the folder of saves.
     ListRuns,
     /// Add the run in this folder to the comparison chart, or remove it.

@@ -136,6 +136,11 @@ impl CurrentRun {
         self.plan_now.generations_in_words(self.reports.len() as u32, self.run_hash.is_some())
     }
 
+    /// Returns the hash of a finished run, as it is printed in the terminal: "Run hash 00c0ffee00c0ffee".
+    pub fn hash_in_words(&self) -> Option<String> {
+        self.run_hash.map(|hash| format!("Run hash {hash:016x}"))
+    }
+
     /// Returns the number of the run since the start of the program; the first is 0.
     pub fn number(&self) -> u32 {
         self.number

@@ -134,6 +134,11 @@ impl EvolutionPanel {
         founder(ui, run, commands);
         changes(ui, run);
         next_run(ui, run);
+        if let Some(hash) = run.hash_in_words() {
+            let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
+                        on every computer with an x86-64 processor";
+            ui.label(weak(ui, hash)).on_hover_text(hint);
+        }
         self.strategy(ui);
         self.controller(ui);
         self.sheet.send(commands);

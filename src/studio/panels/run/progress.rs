@@ -1,4 +1,4 @@
-//! Progress of a run: generations, hash, speed, remaining time and disqualifications.
+//! Progress of a run: generations, speed, remaining time and disqualifications.
 
 use bevy_egui::egui;
 
@@ -49,11 +49,6 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text(hint);
-    if let Some(hash) = run.run_hash {
-        let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
-                    on every computer with an x86-64 processor";
-        ui.label(weak(ui, format!("Run hash {hash:016x}"))).on_hover_text(hint);
-    }
     let evaluations_per_s = evaluations_per_s(run.reports());
     let evaluations_left = evaluations_left(run, done);
     // This line is always present, so that the layout does not move when the first generation is finished.

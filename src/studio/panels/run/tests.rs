@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
-use crate::studio::panels::testing::{Sent, press, set, shows, type_into};
+use crate::studio::panels::testing::{self, Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
+use crate::studio::ui::notifications::Notices;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{HalvingSettings, StrategyKind};
@@ -193,6 +194,26 @@ fn the_first_view_has_the_main_settings_and_the_others_are_below_a_fold() {
     harness.get_by_label(HOW_IT_LEARNS).click();
     harness.run();
     assert!(shows(&harness, "Seed") && shows(&harness, "Strategy"));
+}
+
+#[test]
+fn the_hash_of_a_finished_run_is_told_below_the_fold_and_by_a_command() {
+    let mut run = run();
+    run.run_hash = Some(0xc0ffee);
+    let hash = "Run hash 0000000000c0ffee";
+    let mut panel = EvolutionPanel::default();
+    let mut harness =
+        testing::panel([400.0, 1600.0], |ui, commands| panel.ui(ui, &run, |_, _| {}, commands));
+    assert!(!shows(&harness, hash));
+    testing::clicked(&mut harness, HOW_IT_LEARNS);
+    harness.run();
+    assert!(shows(&harness, hash));
+    drop(harness);
+    let mut notices = Notices::default();
+    run.apply(&RunCommand::ShowHash, &mut notices).expect("finished");
+    assert_eq!(notices.last(), Some(hash));
+    run.run_hash = None;
+    run.apply(&RunCommand::ShowHash, &mut notices).expect_err("there is none yet");
 }
 
 #[test]

@@ -43,6 +43,11 @@ impl CurrentRun {
             }
             RunCommand::Continue(folder) => self.go_on_with(folder),
             RunCommand::SetThreads(threads) => self.set_threads(*threads),
+            RunCommand::ShowHash => {
+                notices
+                    .info(self.hash_in_words().ok_or("A run has its hash when it is finished.")?);
+                Ok(())
+            }
             RunCommand::ListRuns => self.list_runs(),
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {
